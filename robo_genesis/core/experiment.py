@@ -9,13 +9,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Check, Finding, evaluate
-from robo_genesis.core.metrics import (
-    CaseMetrics,
-    Kind,
-    Record,
-    case_records,
-    reading_records,
-)
+from robo_genesis.core.metrics import ENGINE, CaseMetrics, Kind, Record, record
 from robo_genesis.core.trace import TimeSeries
 
 
@@ -192,10 +186,13 @@ class Experiment:
     def records(self) -> dict[str, dict[str, Record]]:
         """Return the content of `metrics.json`: readings of the engine and metrics of each run."""
         of_engine = {
-            name: reading_records(self.readings[name], of.units, of.kind)
-            for name, of in self.page.groups(self.rendered).items()
+            group: {
+                name: record(value, of.units[name], of.kind, ENGINE)
+                for name, value in self.readings[group].items()
+            }
+            for group, of in self.page.groups(self.rendered).items()
         }
-        return of_engine | case_records(self.metrics)
+        return of_engine | {case: found.records() for case, found in self.metrics.items()}
 
     def outcomes(self) -> tuple[Check, ...]:
         """Return the outcomes of the named checks."""

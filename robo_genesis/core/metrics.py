@@ -3,7 +3,7 @@
 A record in `metrics.json` has value, unit, class and source. A value that was not observed is None.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from typing import Any, Literal, NamedTuple
 
@@ -63,26 +63,15 @@ class CaseMetrics:
         """Return (name, value, unit) in the order of the table."""
         return [(name, getattr(self, name), unit) for name, unit in self.about("unit").items()]
 
-
-def reading_records(
-    found: Mapping[str, float], units: Mapping[str, str], kind: Kind
-) -> dict[str, Record]:
-    """Return values that the engine reported, with their units."""
-    return {name: _record(value, units[name], kind, ENGINE) for name, value in found.items()}
-
-
-def case_records(metrics: Mapping[str, CaseMetrics]) -> dict[str, dict[str, Record]]:
-    """Return the metrics of each case with class and source."""
-    return {case: _case_record(found) for case, found in metrics.items()}
+    def records(self) -> dict[str, Record]:
+        """Return the record of each metric by its name."""
+        sources = self.about("sources")
+        return {
+            name: record(value, unit, "exact" if unit == "1" else "value", sources[name])
+            for name, value, unit in self.items()
+        }
 
 
-def _case_record(found: CaseMetrics) -> dict[str, Record]:
-    sources = found.about("sources")
-    return {
-        name: _record(value, unit, "exact" if unit == "1" else "value", sources[name])
-        for name, value, unit in found.items()
-    }
-
-
-def _record(value: float | None, unit: str, kind: str, sources: Sequence[str]) -> Record:
+def record(value: float | None, unit: str, kind: Kind, sources: Sequence[str]) -> Record:
+    """Return a value as JSON values for `metrics.json`."""
     return {"value": value, "unit": unit, "class": kind, "from": list(sources)}

@@ -5,14 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.comparison import (
-    BROKEN,
-    HELD,
-    WITHIN_MARGIN,
-    Relation,
-    allowed,
-    outcome,
-)
+from robo_genesis.core.comparison import BROKEN, HELD, WITHIN_MARGIN, Relation, allowed, outcome
 from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import Arrays, JointRecord, Manifest, Metric, by_full_name

@@ -6,14 +6,7 @@ from dataclasses import replace
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.declaration import Lesson
-from robo_genesis.core.experiment import (
-    Experiment,
-    MeasuringPage,
-    Readings,
-    Run,
-    counts,
-    runs_of,
-)
+from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import checks, spec, study, study_deeper, study_spec
 from robo_genesis.lessons.l03.metrics import (

@@ -8,18 +8,8 @@ import numpy as np
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.engine_kinematics import (
-    IkAnswer,
-    IkSettings,
-    accepted_command,
-    solve_ik,
-)
-from robo_genesis.sim.arm.joint_control import (
-    ControlCase,
-    Controlled,
-    assign_postures,
-    run_case,
-)
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, accepted_command, solve_ik
+from robo_genesis.sim.arm.joint_control import ControlCase, Controlled, assign_postures, run_case
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics

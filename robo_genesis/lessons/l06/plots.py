@@ -97,13 +97,14 @@ def times(run: Experiment, name: str) -> FloatArray:
     return np.array([run.readings[GROUP][f"{name}_{size}"] for size in sizes(run)])
 
 
-def of_environments(ax: Axes, run: Experiment) -> None:
-    """Label a logarithmic axis with the measured numbers of environments."""
+def of_environments(ax: Axes, run: Experiment, title: str, ylabel: str) -> None:
+    """Make both axes logarithmic and label them: numbers of environments to the right."""
     shown = [size for size in sizes(run) if size != 512]
     ax.set_xscale("log")
     ax.set_xticks(shown, [str(size) for size in shown])
     ax.xaxis.set_minor_locator(NullLocator())
-    ax.set_xlabel("number of environments B")
+    ax.set(xlabel="number of environments B", yscale="log", ylabel=ylabel)
+    plotting.legend_above(ax, title)
 
 
 def throughput(run: Experiment) -> Figure:
@@ -114,11 +115,8 @@ def throughput(run: Experiment) -> Figure:
     ax.plot(numbers, numbers / step, label="measured", **MEASURED)
     slow, fast = (numbers / times(run, name) for name in ("slowest", "fastest"))
     ax.vlines(numbers, slow, fast, color=MEASURED["color"])
-    of_environments(ax, run)
-    ax.set_yscale("log")
+    of_environments(ax, run, "Throughput", "steps per second, all")
     ax.set_ylim(top=4 * (numbers / step).max())
-    ax.set_ylabel("steps per second, all")
-    plotting.legend_above(ax, "Throughput")
     return figure
 
 
@@ -131,9 +129,6 @@ def model(run: Experiment) -> Figure:
     dots = MEASURED | {"linestyle": "none", "markersize": 5}
     ax.plot(numbers[known], step[known], label="fitted", **dots)
     ax.plot(numbers[~known], step[~known], label="predicted", fillstyle="none", **dots)
-    of_environments(ax, run)
-    ax.set_yscale("log")
+    of_environments(ax, run, "Time of a step", "one step [ms]")
     ax.yaxis.set_major_formatter(ScalarFormatter())
-    ax.set_ylabel("one step [ms]")
-    plotting.legend_above(ax, "Time of a step")
     return figure

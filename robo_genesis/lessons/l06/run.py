@@ -9,12 +9,7 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.batch import Batch
-from robo_genesis.sim.arm.engine_kinematics import (
-    IkAnswer,
-    IkSettings,
-    accepted_command,
-    solve_ik,
-)
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, accepted_command, solve_ik
 from robo_genesis.sim.arm.joint_control import Controlled
 from robo_genesis.sim.arm.joints import JointMap
 

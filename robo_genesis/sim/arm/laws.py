@@ -27,7 +27,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.franka import per_joint
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
-from robo_genesis.sim.laws import apart, broken, times, unit_quaternions
+from robo_genesis.sim.laws import ZERO, apart, broken, times, unit_quaternions
 
 MEASURES = False
 
@@ -90,24 +90,18 @@ def assigned_postures(trace: Trace, case: ControlCase, links: Sequence[str]) -> 
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
     yield from apart("start", "q [rad or m]", trace.q[1:], trace.target, LIMIT_TOLERANCE)
-    yield from never_stepped(trace)
-    yield from poses(trace, links)
-
-
-def never_stepped(trace: Trace) -> Iterator[Finding]:
-    """Yield velocities and forces that no assigned states have."""
-    zero = np.zeros(())
-    yield from apart("motion", "qd [rad/s or m/s]", trace.qd, zero, 0.0)
-    yield from apart("law", "control_force [N·m or N]", trace.control_force, zero, 0.0)
-    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, zero, 0.0)
+    yield from apart("motion", "qd [rad/s or m/s]", trace.qd, ZERO, 0.0)
+    yield from apart("law", "control_force [N·m or N]", trace.control_force, ZERO, 0.0)
+    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, ZERO, 0.0)
     first = trace.internal_force[0]  # of the last step that the engine took, whenever that was
     yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, first, 0.0)
+    yield from poses(trace, links)
 
 
 def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Finding]:
     """Yield a start that is not the case's, or not at rest, and an effort limit of another case."""
     yield from apart("start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE)
-    yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, np.zeros(()), 0.0)
+    yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, ZERO, 0.0)
     yield from apart(
         "law", "effort_limit [N·m or N]", trace.effort_limit, case.effort_limit, LIMIT_TOLERANCE
     )
@@ -158,7 +152,7 @@ def dynamics(
     mean, middle = np.diff(q, axis=0) / case.dt, (speeds[1:] + speeds[:-1]) / 2
     beyond = np.maximum(np.abs(mean - middle) - np.abs(np.diff(speeds, axis=0)) / 2, 0)
     name = "mean velocity beyond those of both samples [rad/s or m/s]"
-    yield from apart("motion", name, beyond, np.zeros(()), MEAN)
+    yield from apart("motion", name, beyond, ZERO, MEAN)
 
 
 def last_step(

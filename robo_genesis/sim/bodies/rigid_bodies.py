@@ -57,7 +57,13 @@ def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
     """
     require_built(scene, case, DropError)
     scene.reset()
-    _check_start(read_body(box), case)
+    position, _, velocity, spin = read_body(box)
+    height = float(position[0, 2])
+    if abs(height - case.height) > START_TOLERANCE or velocity.any() or spin.any():
+        raise DropError(
+            f"The box starts at a height of {height:g} m with velocity {velocity[0].tolist()} m/s; "
+            f"the case asks for {case.height:g} m, at rest. Set its position before scene.build()."
+        )
     states = record_states(scene.step, case.steps, lambda: read_body(box))
     return BodyTrace(times(case), *stacked(states))
 
@@ -111,13 +117,3 @@ def read_body(body: Any) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray
         to_numpy(body.get_links_vel()),
         to_numpy(body.get_links_ang()),
     )
-
-
-def _check_start(state: tuple[FloatArray, ...], case: Drop) -> None:
-    position, _, velocity, angular_velocity = state
-    height = float(position[0, 2])
-    if abs(height - case.height) > START_TOLERANCE or velocity.any() or angular_velocity.any():
-        raise DropError(
-            f"The box starts at a height of {height:g} m with velocity {velocity[0].tolist()} m/s; "
-            f"the case asks for {case.height:g} m, at rest. Set its position before scene.build()."
-        )
