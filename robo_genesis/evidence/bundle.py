@@ -204,23 +204,18 @@ def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def canonical_sha256(value: Any) -> str:
-    """Return the SHA-256 of the canonical JSON of a value (RFC 8785).
-
-    Raises:
-        rfc8785.CanonicalizationError: JSON cannot hold the value, which `read_json` never returns.
-    """
-    return hashlib.sha256(rfc8785.dumps(value)).hexdigest()
-
-
 def evidence_key(predicate: dict[str, Any]) -> str:
-    """Return the digest of everything that decides the results of a bundle.
+    """Return the SHA-256 of what decides the results of a bundle, as canonical JSON (RFC 8785).
 
     It covers schema, lesson and page, the code that computes, engine versions, parameters, seed
     and precision. It does not cover commit, time, host, driver or prose.
+
+    Raises:
+        rfc8785.CanonicalizationError: JSON cannot hold a value, which `read_json` never returns.
     """
     engine = {name: predicate["engine"][name] for name in KEYED_OF_ENGINE}
-    return canonical_sha256({name: predicate[name] for name in KEYED} | {"engine": engine})
+    keyed = {name: predicate[name] for name in KEYED} | {"engine": engine}
+    return hashlib.sha256(rfc8785.dumps(keyed)).hexdigest()
 
 
 def read_manifest(folder: Path) -> Manifest:

@@ -1,7 +1,7 @@
 """Tables of L01, and the sentence that the lab generates, each a function of the experiment."""
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
@@ -37,17 +37,15 @@ PARTS = {
 }
 
 
-def doctor_table(run: Experiment) -> str:
+@tables.as_table
+def doctor_table(run: Experiment) -> Iterator[dict[str, str]]:
     """Return one row for each step of the doctor: its result, and what a pass rules out."""
-    found = run.readings[machine.DOCTOR]
-    rows = [
-        {
-            "step": f"{number} `{step}` {'passes' if found[step] else 'does not pass'}",
+    for number, step in enumerate(machine.STEPS, start=1):
+        verdict = "passes" if run.readings[machine.DOCTOR][step] else "does not pass"
+        yield {
+            "step": f"{number} `{step}` {verdict}",
             "what passing rules out": RULES_OUT[step],
         }
-        for number, step in enumerate(machine.STEPS, start=1)
-    ]
-    return tables.markdown(rows)
 
 
 def doctor_lines(steps: list[dict[str, str]]) -> str:

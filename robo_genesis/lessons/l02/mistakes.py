@@ -10,7 +10,7 @@ import numpy as np
 from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.bodies.free_fall import continuous_drop
-from robo_genesis.sim.bodies.rigid_bodies import Drop, read_body
+from robo_genesis.sim.bodies.rigid_bodies import Drop, read_body, record_states
 from robo_genesis.sim.camera.frames import FrameError, require_frame
 
 MEASURES = False
@@ -46,13 +46,12 @@ def heights(
 ) -> tuple[FloatArray, dict[str, FloatArray]]:
     """Reset and step; return times [s] and each body's height [m] at every state, (steps+1,)."""
     scene.reset()
-    found = {name: [read_body(body)[0][0, 2]] for name, body in bodies.items()}
-    for _ in range(steps):
-        scene.step()
-        for name, body in bodies.items():
-            found[name].append(read_body(body)[0][0, 2])
-    t = np.arange(steps + 1) * case.dt
-    return t, {name: np.array(values, dtype=np.float64) for name, values in found.items()}
+
+    def read() -> list[float]:
+        return [float(read_body(body)[0][0, 2]) for body in bodies.values()]
+
+    z = np.array(record_states(scene.step, steps, read)).T
+    return np.arange(steps + 1) * case.dt, dict(zip(bodies, z, strict=True))
 
 
 def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Mistake:

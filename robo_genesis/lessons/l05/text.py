@@ -1,5 +1,6 @@
 """Tables of L05, and the sentences that the lab generates, each a function of the experiment."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -199,14 +200,13 @@ def count_table(run: Experiment) -> str:
     return tables.markdown(rows)
 
 
-def family_table(run: Experiment) -> str:
+@tables.as_table
+def family_table(run: Experiment) -> Iterator[dict[str, Any]]:
     """Return the curves on which the accepted answers are."""
-    rows = []
     for number, (curve, inside) in enumerate(study.solution_families(run), start=1):
         length = np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()
         row = {"curve": number, "answers": len(inside), "length [rad]": f"{length:.1f}"}
-        rows.append(row | {f"{JOINT_NAMES[k]} [rad]": span(curve[:, k], 2) for k in (0, 1, 3)})
-    return tables.markdown(rows)
+        yield row | {f"{JOINT_NAMES[k]} [rad]": span(curve[:, k], 2) for k in (0, 1, 3)}
 
 
 def span(values: FloatArray, digits: int) -> str:
@@ -233,14 +233,13 @@ def unreachable_table(run: Experiment) -> str:
     return tables.number_table("posture", heads, rows)
 
 
-def reach_table(run: Experiment) -> str:
+@tables.as_table
+def reach_table(run: Experiment) -> Iterator[dict[str, Any]]:
     """Return how many targets of each plane are accepted, and what their answers span."""
-    rows = []
     for name in spec.PLANES:
         found = study.answers(run.traces[name], spec.QUESTIONS[name])
         yes = found["accepted"].astype(bool)
         row = {"plane": name, "targets": len(yes), "accepted": int(yes.sum())}
         row |= {head: span(found[QUANTITIES[head][0]][yes], 3) for head in [*QUANTITIES][:2]}
         left = span(1000 * found["position"][~yes], 1)
-        rows.append(row | {"distance left where refused [mm]": left})
-    return tables.markdown(rows)
+        yield row | {"distance left where refused [mm]": left}

@@ -3,7 +3,7 @@
 Those about throughput are correct for every outcome, because elapsed times differ in each run.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -30,19 +30,17 @@ def mm(value: float, digits: int = 2) -> str:
     return decimal(1000 * value, digits)
 
 
-def mixed_table(run: Experiment) -> str:
+@tables.as_table
+def mixed_table(run: Experiment) -> Iterator[dict[str, str]]:
     """Return residual and verdict of each row of the question with a target beyond reach."""
     found = run.readings["mixed"].values(), run.readings["mixed_accepted"].values()
-    rows = [
-        {
+    for k, (residual, accepted) in enumerate(zip(*found, strict=True)):
+        yield {
             "row": f"{k}",
             "target [m]": ", ".join(f"{value:g}" for value in spec.MIXED[k]).replace("-", "−"),
             "position residual [mm]": mm(residual, 3),
             "the row is": "accepted" if accepted else "**refused**",
         }
-        for k, (residual, accepted) in enumerate(zip(*found, strict=True))
-    ]
-    return tables.markdown(rows)
 
 
 def row_table(run: Experiment) -> str:
