@@ -123,7 +123,7 @@ def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
 
 
 def sentence_of(check: Check, sentence: str, values: Mapping[str, Any], advice: str) -> str:
-    """Return what a lab says of a check: its sentence with values, or why it failed, and advice."""
+    """Return the sentence on a check that passed, else why it failed, with advice."""
     if check.passed:
         return sentence.format(**values)
     return f"The check `{check.name}` failed: {check.detail}. {advice}"
