@@ -10,8 +10,7 @@ import asyncio
 import sys
 
 from robo_genesis.pipeline.command import choice, parser, port, run, set_contract
-from robo_genesis.pipeline.html.live import Live
-from robo_genesis.pipeline.html.live_server import serve
+from robo_genesis.pipeline.html.live import Live, serve
 
 if __name__ == "__main__":
     args = parser(__doc__).parse_args()

@@ -3,8 +3,9 @@
 from dataclasses import replace
 
 import pytest
-from lessons.changed_runs import failed
+from lessons.changed_runs import failed, trace
 
+from robo_genesis.core.check_spec import TIME_TOLERANCE
 from robo_genesis.core.experiment import Run
 from robo_genesis.sim import common_checks
 
@@ -22,6 +23,8 @@ def test_the_times_of_every_run_are_judged(experiment):
     )
     assert problems(common_checks.stamps(run)) == ["longer.steps"]
     assert failed(run) == {"stamps"}
+    shifted = trace("G1", t=lambda t: (1 + 2 * TIME_TOLERANCE) * t)(experiment)
+    assert problems(common_checks.stamps(shifted)) == ["G1.time_error_s"]
 
 
 @pytest.mark.parametrize(

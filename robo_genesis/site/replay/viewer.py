@@ -67,8 +67,7 @@ def copy_licences(folder: Path) -> Iterator[str]:
     """Write the licence of each package in the viewer; yield a line of the notice for each."""
     for name in PARTS:
         about = npm.locked(name)
-        file = f"LICENSE-{name.strip('@').replace('/', '-')}.txt"
-        if name == PARTS[0]:
-            file = VIEWER_LICENCE
+        own = f"LICENSE-{name.strip('@').replace('/', '-')}.txt"
+        file = VIEWER_LICENCE if name == PARTS[0] else own
         (folder / file).write_bytes(npm.published(f"{name}/LICENSE"))
         yield f"- {name} {about['version']}: {about['license']}, {file}\n"

@@ -1,11 +1,18 @@
-"""Files that a reader takes from a lab: notebooks, arrays with units, figures, the package."""
+"""Files that a reader takes from a lab: notebooks, arrays with units, figures, the package.
 
+The package is a wheel, built without the network: the same files give the same bytes.
+"""
+
+import json
+import os
 import re
 import shutil
+import sys
+import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import nbformat
@@ -14,11 +21,12 @@ from nbformat import NotebookNode
 from sphinx.config import Config
 
 from robo_genesis.core import project
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, write_whole
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import read_any_trace
+from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
@@ -28,7 +36,6 @@ from robo_genesis.site.takeaways.notebooks import (
     version_check,
 )
 from robo_genesis.site.takeaways.plain_markdown import Writer
-from robo_genesis.site.takeaways.wheel import build_wheel
 
 ENVIRONMENT = "course"
 CONSTRAINTS = "constraints.txt"
@@ -45,6 +52,14 @@ AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
 
 DEBIAN = ("python3-venv", "libegl1", "libgl1")
 """Packages of Debian that a fresh system lacks."""
+
+SOURCES = ("pyproject.toml", "README.md", "LICENSE")
+PACKAGE = "robo_genesis"
+CACHED = "__pycache__"
+EPOCH = "315532800"
+"""1980-01-01, the oldest time that a zip can hold."""
+
+BUILD = "import sys; from setuptools import build_meta; print(build_meta.build_wheel(sys.argv[1]))"
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,3 +236,44 @@ def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]
                 path = folder / f"{figure.get('name', f'figure-{number}')}.svg"
                 path.write_text(drawn.strip(), "utf8")
                 yield path
+
+
+@cache
+def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -> Path:
+    """Write the wheel and return its path; the labs of one site share it.
+
+    Args:
+        folder: gets the wheel.
+        root: the checkout.
+        repository: an address for the metadata of the wheel, empty for none.
+
+    Raises:
+        ProjectError: setuptools failed; the message contains its output.
+    """
+    files = [root / source for source in SOURCES]
+    files += sorted(p for p in (root / PACKAGE).rglob("*") if p.is_file() and CACHED not in p.parts)
+    inputs = [part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes())]
+    inputs.append(repository.encode())
+    built = derived("wheel", inputs, lambda: built_wheel(root, repository))
+    name, _, content = built.partition(b"\n")
+    wheel = folder / name.decode()
+    write_whole(wheel, content)
+    return wheel
+
+
+def built_wheel(root: Path, repository: str = "") -> bytes:
+    """Return the name of the wheel, a line end and its content; `root` stays as it is."""
+    with tempfile.TemporaryDirectory() as name:
+        copy = Path(name)
+        for source in SOURCES:
+            shutil.copy(root / source, copy)
+        if repository:
+            with (copy / SOURCES[0]).open("a", encoding="utf8") as facts:
+                facts.write(f"\n[project.urls]\nRepository = {json.dumps(repository)}\n")
+        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(CACHED))
+        for path in copy.rglob("*"):
+            path.chmod(0o755 if path.is_dir() else 0o644)  # whatever the user's umask
+        settings = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}
+        command, refusal = [sys.executable, "-c", BUILD, "."], "The package's wheel cannot be built"
+        name = output_of(command, refusal, cwd=copy, env=settings).splitlines()[-1]
+        return f"{name}\n".encode() + (copy / name).read_bytes()

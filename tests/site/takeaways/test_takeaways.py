@@ -21,8 +21,14 @@ from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways import files
 from robo_genesis.site.takeaways.directive import codespace, require_address
-from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
-from robo_genesis.site.takeaways.wheel import build_wheel, built_wheel
+from robo_genesis.site.takeaways.files import (
+    build_wheel,
+    built_wheel,
+    csv_text,
+    package_facts,
+    run_commands,
+    without_places,
+)
 
 LINKS = ["link0", "link4", "hand"]
 UP_TO_THE_ENGINE = """
