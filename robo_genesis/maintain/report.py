@@ -106,9 +106,7 @@ def read_build(root: Path, version: str, site: Path) -> EngineBuild:
                 bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
                 break
     lock = (root / "requirements.lock").read_text("utf8")
-    keys = [folder.parts[-2:] for folder in recorded_folders(book)]
-    recorded = {"/".join(key): recorded_status(book, *key, root=root) for key in keys}
-    return EngineBuild(version, lock, bundles, recorded, site)
+    return EngineBuild(version, lock, bundles, recorded(root), site)
 
 
 def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
@@ -131,6 +129,13 @@ def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
         {name: (old.recorded[name], new.recorded[name]) for name in old.recorded},
         tuple(changed_sentences(old.site, new.site, versions)) if new.site.is_dir() else (),
     )
+
+
+def recorded(root: Path) -> dict[str, Status]:
+    """Return lesson/backend → state of every recorded bundle under a checkout's own pin."""
+    book = root / "book"
+    keys = [folder.parts[-2:] for folder in recorded_folders(book)]
+    return {"/".join(key): recorded_status(book, *key, root=root) for key in keys}
 
 
 def changed_packages(old: str, new: str) -> dict[str, Pair]:

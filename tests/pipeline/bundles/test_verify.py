@@ -13,8 +13,7 @@ from robo_genesis.core.checks import FAILED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.bundles import verify
-from robo_genesis.pipeline.bundles.keys import changed
-from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
 
 READERS = ("evidence/*.py", "pipeline/bundles/*.py", "sim/**/*.py")
 OF_BODIES = {"contact", "second-engine"}  # the tests of L03 spoil its runs
