@@ -25,7 +25,7 @@ from timeit import timeit
 from urllib.request import urlopen
 
 from robo_genesis.core import project
-from robo_genesis.pipeline.command import positive, run
+from robo_genesis.pipeline.command import output_of, positive, run
 from robo_genesis.pipeline.fresh_checkout import CHECKOUT, environment, fresh_checkout
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
@@ -59,11 +59,9 @@ def shell(line: str, says: str = "", **variables: str) -> None:
     Raises:
         ProjectError: it failed, or its output lacks the words `says`.
     """
-    given = environment(TREE) | variables
-    done = subprocess.run(line, shell=True, cwd=TREE, env=given, capture_output=True, text=True)
-    if done.returncode or says not in done.stdout:
-        found = f"status {done.returncode}, {says!r} expected in:\n{done.stdout}{done.stderr}"
-        raise project.ProjectError(f"{line}: {found}")
+    said = output_of(["sh", "-c", line], line, cwd=TREE, env=environment(TREE) | variables)
+    if says not in said:
+        raise project.ProjectError(f"{line}: {says!r} expected in:\n{said}")
 
 
 def bare_sphinx() -> partial[None]:
@@ -72,9 +70,8 @@ def bare_sphinx() -> partial[None]:
     (TREE / "bare" / "conf.py").write_text(BARE_CONFIG, "utf8")
     newest = {page.docname: folders(STORE, page)[0] for page in find_pages(TREE / "book")}
     built = BuiltPages(folders=newest).write(TREE / "bare" / "executed-pages.json")
-    again = partial(shell, SPHINX, **built)
-    again()
-    return again
+    shell(SPHINX, **built)
+    return partial(shell, SPHINX, **built)
 
 
 def add_sentence(page: Page) -> str:
@@ -93,8 +90,11 @@ def build_edited(page: Page) -> None:
 def serve_edited(page: Page, address: str) -> None:
     """Edit a page and wait until an address has the new sentence."""
     sentence = add_sentence(page).encode()
-    while sentence not in urlopen(address).read():
+    for _ in range(3000):  # at least a minute
+        if sentence in urlopen(address).read():
+            return
         time.sleep(0.02)
+    raise project.ProjectError("make live does not serve an edit within a minute.")
 
 
 def sides(name: str, started: ExitStack) -> tuple[partial[None], partial[None]]:
@@ -135,8 +135,8 @@ def result(name: str, pairs: list[list[float]]) -> str:
     sides = [sorted(times) for times in zip(*pairs, strict=True)]
     ratio, limit = median(sides[0]) / median(sides[1]), LIMITS[name]
     course, bare = (" ".join(f"{time:.2f}" for time in times) for times in sides)
-    above = "ABOVE its limit" if ratio > limit else "limit"
-    return f"{name}: ratio {ratio:.2f}, {above} {limit}; course {course} s, bare {bare} s"
+    above = "ABOVE its " * (ratio > limit)
+    return f"{name}: ratio {ratio:.2f}, {above}limit {limit}; course {course} s, bare {bare} s"
 
 
 def measured(name: str, runs: int) -> str:
@@ -152,8 +152,7 @@ def measure() -> list[str]:
     names = os.environ.get("ROWS", "").replace(",", " ").split() or [*LIMITS]
     runs = positive("RUNS", 3)
     if unknown := [name for name in names if name not in LIMITS]:
-        valid = ", ".join(LIMITS)
-        raise project.ProjectError(f"ROWS names {', '.join(unknown)}. Choices: {valid}.")
+        raise project.ProjectError(f"ROWS names {unknown}. Choices: {', '.join(LIMITS)}.")
     with fresh_checkout(project.ROOT, FOLDER, project.CACHE):
         return [measured(name, runs) for name in names]
 

@@ -1,4 +1,4 @@
-"""Constants of the course scene, with units, and what a built scene must have."""
+"""Constants of the course scene, with units."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray

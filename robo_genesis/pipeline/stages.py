@@ -146,7 +146,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         The last lines for the user: where the page is, and what executed it.
 
     Raises:
-        BuildError: there is no such page, or it failed. Nothing was exported.
+        BuildError: the book lacks the page, or the page failed. Nothing was exported.
         ProjectError: folder, checkout or book are not fit for it, or a build runs here.
     """
     with build_lock(build.cache):

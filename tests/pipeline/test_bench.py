@@ -24,7 +24,7 @@ def test_a_row_has_the_times_of_both_sides_and_the_ratio_of_their_medians(pairs,
 @pytest.mark.parametrize(
     ("rows", "runs", "said"),
     [
-        ("lab c", "3", r"ROWS names c\. Choices: unchanged, prose, live, lab\."),
+        ("lab c", "3", r"ROWS names \['c'\]\. Choices: unchanged, prose, live, lab\."),
         *(("", runs, f"RUNS='{runs}' is not valid") for runs in ("0", "-1", "many")),
     ],
 )

@@ -50,7 +50,7 @@ def built(root: Path, status: int = 0, executed: Path | None = None) -> dict:
 
 
 def hidden_changes(root, monkeypatch):
-    """Hide changes of tracked files from git, and let files that it ignores stand in the way."""
+    """Hide changes of tracked files from git, and put ignored files where a checkout writes."""
     git(root, "update-index", "--skip-worktree", "page.md", "course.py")
     (root / "page.md").write_text("changed\n")
     (root / "course.py").write_text("VALUE = 2\n")

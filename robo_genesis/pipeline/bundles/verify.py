@@ -84,9 +84,7 @@ def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
 
 def _page_files(book: Path) -> list[Path]:
     """Return the table of contents and every file that may be a page, also in linked folders."""
-    found = glob(
-        "**/*.md", root_dir=book, recursive=True
-    )  # it follows links, and skips hidden ones
+    found = glob("**/*.md", root_dir=book, recursive=True)  # follows links, skips hidden names
     pages = sorted(name for name in found if not name.startswith(f"{PUBLISHED}{os.sep}"))
     return [*book.glob("_toc.yml"), *(book / name for name in pages)]
 
