@@ -49,7 +49,7 @@ extensions += ["robo_genesis.site.frame.executed"]  # reads the executed pages
 html_theme = "sphinx_book_theme"
 external_toc_path, external_toc_exclude_missing = "_toc.yml", True
 exclude_patterns = ["_build*", "_decisions"]
-myst_enable_extensions = yaml.safe_load(open("book/_config.yml"))["parse"]["myst_enable_extensions"]
+myst_enable_extensions = yaml.safe_load(open("../book/_config.yml"))["parse"]["myst_enable_extensions"]
 """
 
 
