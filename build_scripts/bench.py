@@ -46,10 +46,10 @@ BARE_CONFIG = """\
 import yaml
 extensions = ["myst_nb", "sphinx_external_toc", "sphinx_design", "sphinx_book_theme"]
 extensions += ["robo_genesis.site.frame.executed"]  # reads the executed pages
-html_theme = "sphinx_book_theme"
 external_toc_path, external_toc_exclude_missing = "_toc.yml", True
-exclude_patterns = ["_build*", "_decisions"]
-myst_enable_extensions = yaml.safe_load(open("../book/_config.yml"))["parse"]["myst_enable_extensions"]
+html_theme, exclude_patterns = "sphinx_book_theme", ["_build*", "_decisions"]
+parse = yaml.safe_load(open("../book/_config.yml"))["parse"]
+myst_enable_extensions = parse["myst_enable_extensions"]
 """
 
 
