@@ -26,7 +26,7 @@ from urllib.request import urlopen
 
 from robo_genesis.core import project
 from robo_genesis.pipeline.command import output_of, positive, run
-from robo_genesis.pipeline.fresh_checkout import CHECKOUT, environment, fresh_checkout
+from robo_genesis.pipeline.fresh_checkout import CHECKOUT, SETTINGS, environment, fresh_checkout
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK
@@ -37,6 +37,7 @@ LIMITS = {"unchanged": 1.5, "prose": 1.5, "live": 0.7, "lab": 1.2}
 
 FOLDER, STORE = project.CACHE / "bench", project.CACHE / project.STORE
 TREE = FOLDER / CHECKOUT
+VARIABLES = environment(TREE, *SETTINGS)
 PYTHON = quote(sys.executable)
 MAKE = f"make PYTHON={PYTHON}"
 SPHINX = f"{PYTHON} -m sphinx -c bare book bare/html"
@@ -59,7 +60,7 @@ def shell(line: str, says: str = "", **variables: str) -> None:
     Raises:
         ProjectError: it failed, or its output lacks the words `says`.
     """
-    said = output_of(["sh", "-c", line], line, cwd=TREE, env=environment(TREE) | variables)
+    said = output_of(["sh", "-c", line], line, cwd=TREE, env=VARIABLES | variables)
     if says not in said:
         raise project.ProjectError(f"{line}: {says!r} expected in:\n{said}")
 
@@ -117,7 +118,7 @@ def sides(name: str, started: ExitStack) -> tuple[partial[None], partial[None]]:
         return partial(shell, f"{MAKE} book", "Nothing changed"), bare
     if name == "prose":  # both sides see the same edit
         return partial(build_edited, page), bare
-    command, given = ["make", f"PYTHON={sys.executable}", "live"], environment(TREE) | {"PORT": "0"}
+    command, given = ["make", f"PYTHON={sys.executable}", "live"], VARIABLES | {"PORT": "0"}
     live = subprocess.Popen(command, cwd=TREE, env=given, stdout=subprocess.PIPE, text=True)
     started.enter_context(live)
     started.callback(live.terminate)

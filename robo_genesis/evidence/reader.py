@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from robo_genesis.core.comparison import differences
 from robo_genesis.core.experiment import Experiment, MeasuringPage
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence import bundle, trace_files
 from robo_genesis.evidence.bundle import Arrays, Manifest, Metric, Predicate
 from robo_genesis.evidence.picture_file import read_picture
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
 from robo_genesis.lessons import find_page
 
 
@@ -50,8 +49,7 @@ def check_cases(folder: Path, arrays: Arrays, page: MeasuringPage) -> None:
     """
     found = {name: case.note for name, case in arrays.cases.items()}
     declared = {name: run.note for name, run in page.runs.items()}
-    for name, here, there in differences(found, declared):
-        expect("cases", "arrays.json", f"note of the case {name}", here, there)
+    expect_equal("cases", "arrays.json", "note of the case {}", found, declared)
     present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
     expect("cases", "arrays/", "list of archives", present, sorted(declared))
 

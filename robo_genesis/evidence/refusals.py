@@ -1,5 +1,8 @@
 """Refusals of a bundle: a stable code, and a message with found, expected and what to do."""
 
+from typing import Any
+
+from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.text import printable, quoted
 
 AGAIN = "Record the bundle again."
@@ -31,6 +34,22 @@ def expect(
     """
     if found != expected:
         raise unexpected(code, file, what, found, expected, remedy)
+
+
+def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> None:
+    """Raise BundleRefused with `code` at the first difference of two JSON values.
+
+    Floats may differ by rounding, because another processor computes the last digits otherwise.
+
+    Args:
+        code: stable name of the refusal.
+        file: the file of the bundle that contains the value.
+        what: names the entry that differs; `{}` is its path.
+        found: the value in the bundle.
+        expected: the valid value.
+    """
+    for path, here, there in differences(found, expected, agree):
+        raise unexpected(code, file, what.format(path), here, there)
 
 
 def unexpected(

@@ -10,11 +10,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from robo_genesis.core.comparison import differences
 from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
 from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
 from robo_genesis.evidence.npz_archive import read_archive, write_archive
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
 from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
 
 Kind = TypeVar("Kind", bound=TimeSeries)
@@ -157,6 +156,5 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     labels = {axis: len(names) for axis, names in arrays.coords.items()}
     expect("labels", place, "number of labels", labels, found)
     expected = _description(case, trace, types, described.note)
-    for path, here, there in differences(described.model_dump(), expected.model_dump()):
-        expect("labels", place, path, here, there)
+    expect_equal("labels", place, "{}", described.model_dump(), expected.model_dump())
     return trace

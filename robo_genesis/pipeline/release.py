@@ -3,14 +3,13 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from robo_genesis.core.git import git
 from robo_genesis.evidence.bundle import GitRecord, Manifest
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.bundles.status import bundle_status, recorded_folders, recorded_status
 
 
 def missing_for_release(
-    book: Path, built: Mapping[str, Path | None], manifests: Mapping[str, Manifest], root: Path
+    book: Path, built: Mapping[str, Path | None], manifests: Mapping[str, Manifest], commit: str
 ) -> list[str]:
     """Return a line for each requirement of a release that the evidence of a book does not meet.
 
@@ -23,10 +22,9 @@ def missing_for_release(
         built: the folder of the lab's bundle of this build, by lesson of the book; None for a
             lesson without a lab.
         manifests: the manifests of all bundles of this build, by page.
-        root: the checkout that the build's bundles must name.
+        commit: the one that the build's bundles must name.
     """
-    lines = [line for lesson in built for line in _required(book, lesson, built[lesson])]
-    commit = git(root, "rev-parse", "HEAD").strip()
+    lines = [line for lesson, at in built.items() for line in _required(book, lesson, at)]
     for page, manifest in manifests.items():
         lines += _of_commit(f"{page}, this build", manifest, commit)
     for path in recorded_folders(book):

@@ -14,7 +14,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, put, settle, settle_below
-from robo_genesis.core.git import unclean
+from robo_genesis.core.git import git, unclean
 from robo_genesis.pipeline import npm, up_to_date
 from robo_genesis.pipeline.bundles.of_build import verify_results
 from robo_genesis.pipeline.bundles.status import refused_records
@@ -92,13 +92,13 @@ def run_build(build: Build) -> list[str]:
     ):
         target, progress = build.to or build.book, Progress(build.say)
         inputs = up_to_date.inputs_digest(build.root, build.book)  # before any is read
-        engine, pages, into = _prepare(build)
+        engine, pages, into, environment = _prepare(build)
         npm.require_published()
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         if build.executed:
             import_pages(build.executed, pages, into, verify)
-        results = _execute(build, pages, into, progress)
+        results = _execute(build, pages, into, environment, progress)
         manifests: dict[str, Any] = {}
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
@@ -150,7 +150,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         ProjectError: folder, checkout or book are not fit for it, or a build runs here.
     """
     with build_lock(build.cache):
-        engine, pages, into = _prepare(build)
+        engine, pages, into, environment = _prepare(build)
         names = {page.docname: page for page in pages}
         names |= {f"{page.lesson}/{page.page}": page for page in pages if page.declares_bundle}
         if name not in names:
@@ -160,24 +160,26 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
             raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
         place = exported(names[name], to)
         progress = Progress(build.say)
-        [result] = _execute(build, [names[name]], into, progress)
+        [result] = _execute(build, [names[name]], into, environment, progress)
         put(result.folder, place)
         progress("export", result.page.docname, result.status)
     return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
 
 
-def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
-    """Return the engine's version, the pages of the book, and their places in the store.
+def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path], dict[str, str]]:
+    """Return the engine's version, the book's pages, their places in the store, kernels' variables.
 
     What a killed build left is repaired first.
     """
+    environment = kernel_environment(build.root, build.cache, build.command)
     settle_below(build.book / "evidence")
     settle_below(build.cache / project.STORE)
     settle((build.to or build.book) / project.PUBLISHED)
     project.remove_stale_kernel_lock(build.cache)
     engine = project.require_pinned_engine(build.root)
     pages = find_pages(build.book)
-    return engine, pages, places(pages, build.cache / project.STORE, build.root)
+    into = places(pages, build.cache / project.STORE, build.root)
+    return engine, pages, into, environment
 
 
 def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
@@ -189,7 +191,11 @@ def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
 
 
 def _execute(
-    build: Build, pages: Sequence[Page], into: Mapping[str, Path], progress: Progress
+    build: Build,
+    pages: Sequence[Page],
+    into: Mapping[str, Path],
+    environment: Mapping[str, str],
+    progress: Progress,
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report.
 
@@ -202,7 +208,7 @@ def _execute(
         reuse=bool(build.executed) or not build.release,
         jobs=build.jobs,
         timeout=build.timeout,
-        environment=kernel_environment(build.root, build.cache, build.command),
+        environment=environment,
         logs=build.cache / project.LOGS,
         report=Lines(partial(progress, "execute")),
     )
@@ -219,12 +225,13 @@ def _accepted(
     Raises:
         BuildError: a bundle of this build or a recorded one is refused, or a release lacks one.
     """
+    labs = _labs(results)
     manifests, refused = verify_results(verify, results, progress)
-    if refused := refused + refused_records(build.book, _labs(results)):
+    if refused := refused + refused_records(build.book, labs):
         raise BuildError("\n".join(refused))
     if build.release:
-        lacking = missing_for_release(build.book, _labs(results), manifests, build.root)
-        if problems := lacking + unclean(build.root):
+        dirty, commit = unclean(build.root), git(build.root, "rev-parse", "HEAD").strip()
+        if problems := dirty + missing_for_release(build.book, labs, manifests, commit):
             raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
         progress("release", "clean tree, current evidence")
     return manifests

@@ -93,8 +93,14 @@ def _inside(folder: Path, skip: tuple[str, ...] = ()) -> Iterator[Path]:
     """Yield all files below a folder and its links, as Sphinx finds them.
 
     Python's caches and top-level names with the prefixes `skip` are left out.
+
+    Raises:
+        ProjectError: a link leads to a folder that contains it, so there would be no end.
     """
     for here, folders, files in os.walk(folder, followlinks=True):
+        for link in filter(Path.is_symlink, (Path(here, name) for name in folders)):
+            if link.parent.resolve().is_relative_to(link.resolve()):
+                raise ProjectError(f"{link} links to a folder that contains it. Remove the link.")
         top = skip if Path(here) == folder else ()
         folders[:] = [n for n in folders if n not in LEFT_OUT and not n.startswith(top)]
         yield from (Path(here, name) for name in files)

@@ -5,7 +5,7 @@ import logging
 import re
 from pathlib import Path
 
-from robo_genesis.core.project import without_home
+from robo_genesis.core.project import ROOT, without_home
 from robo_genesis.core.text import LINE_LIMIT, clean_message
 
 
@@ -35,7 +35,8 @@ class EngineLog(logging.Handler):
 
 
 def remove_private_paths(record: logging.LogRecord) -> bool:
-    """Remove the folders of packages and of the user from a line of the log; keep every record."""
+    """Remove the folders of packages, checkout and user from a line of the log; keep every record."""
     installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
-    record.msg = without_home(str(record.msg).replace(str(installed), "site-packages"))
+    plain = str(record.msg).replace(str(installed), "site-packages").replace(f"{ROOT}/", "")
+    record.msg = without_home(plain)
     return True

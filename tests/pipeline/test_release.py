@@ -38,7 +38,7 @@ def recorded_at(folder: Path, commit: str | None, dirty: bool = False) -> None:
 
 def missing(book: Path, built: dict[str, Path | None], root: Path) -> list[str]:
     manifests = {f"{name}/lab": read_manifest(at) for name, at in built.items() if at}
-    return missing_for_release(book, built, manifests, root)
+    return missing_for_release(book, built, manifests, git(root, "rev-parse", "HEAD").strip())
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from tiny_book import commit, git
 
+from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline import up_to_date
 
 ENVIRONMENT = {"SITE_URL": "https://example.org/"}
@@ -92,6 +93,13 @@ def test_each_other_change_is_work(root, change):
     before = digest(root)
     change(root)
     assert digest(root) != before
+
+
+def test_links_without_end_are_refused(root):
+    for name in ("one", "two"):
+        (root / "book" / "evidence" / name).symlink_to("..")
+    with pytest.raises(ProjectError, match=r"evidence/(one|two) links to a folder that contains it"):
+        digest(root)
 
 
 def test_each_variable_that_decides_the_site_and_another_python_is_work(root, monkeypatch):

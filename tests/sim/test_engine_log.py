@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from robo_genesis.core.project import ROOT
 from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 
 
@@ -34,7 +35,9 @@ def test_the_log_names_neither_the_environment_nor_the_user(monkeypatch, tmp_pat
     engine = SimpleNamespace(__file__=str(tmp_path / "packages" / "genesis" / "__init__.py"))
     monkeypatch.setitem(sys.modules, "genesis", engine)
     monkeypatch.setenv("HOME", str(tmp_path / "someone"))
-    text = f"Read {tmp_path}/packages/genesis/a.xml, wrote ~<{tmp_path}/someone/.cache/b.gsd>~."
+    text = f"Read {tmp_path}/packages/genesis/a.xml, wrote ~<{tmp_path}/someone/.cache/b.gsd>~, "
+    text += f"{ROOT}/robo_genesis/lessons/l07/door.xml."
     record = logging.LogRecord("genesis", logging.INFO, "", 0, text, None, None)
     assert remove_private_paths(record)
-    assert record.getMessage() == "Read site-packages/genesis/a.xml, wrote ~<~/.cache/b.gsd>~."
+    said = "Read site-packages/genesis/a.xml, wrote ~<~/.cache/b.gsd>~, "
+    assert record.getMessage() == f"{said}robo_genesis/lessons/l07/door.xml."

@@ -8,9 +8,9 @@ from types import MappingProxyType
 
 from robo_genesis.core import project
 from robo_genesis.core.checks import FAILED
-from robo_genesis.core.comparison import HELD, Relation, outcome
+from robo_genesis.core.comparison import HELD, outcome
 from robo_genesis.evidence import bundle, copies
-from robo_genesis.evidence.bundle import Manifest, Metric
+from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
@@ -165,19 +165,17 @@ def bundle_status(
                 reason += contradicted(book, about, reason)
         state = STATE_OF_CODE.get(code, "refused")
         return Status(state, backend, reason, None, code, summary)
-    numbers = bundle.by_full_name(bundle.read_metrics(folder))
-    claims = specification(manifest.predicate.lesson, manifest.predicate.page).relations
-    lines = not_shown(numbers, claims)
+    lines = not_shown(folder, manifest)
     if not lines:
         return Status("verified", backend, "", manifest)
     reason = f"Not shown of what the lesson claims: {'; '.join(lines)}."
     return Status("inconclusive", backend, reason, manifest, summary=reason)
 
 
-def not_shown(numbers: Mapping[str, Metric], claims: Sequence[Relation]) -> list[str]:
-    """Return a line for each claimed ordering that the metrics of a run do not show."""
-    lines = []
-    for claimed in claims:
+def not_shown(folder: Path, manifest: Manifest) -> list[str]:
+    """Return a line for each claimed ordering that the metrics of an accepted bundle do not show."""
+    numbers, lines = bundle.by_full_name(bundle.read_metrics(folder)), []
+    for claimed in specification(manifest.predicate.lesson, manifest.predicate.page).relations:
         (first, second), metric, claim, _ = claimed
         held, values = outcome(numbers, claimed)
         if held != HELD:

@@ -67,8 +67,9 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
     experiment, compared = None, 0
     for number, (named, found) in enumerate(zip(calls, outputs, strict=True), start=1):
         place = f"{page.docname}, code cell {number}"
-        what = "number of measured outputs"
-        expect("shown", place, what, len(found), len(named), f"{ONCE} {AGAIN}")
+        if len(found) != len(named):
+            what = f"number of measured outputs is {len(found)}, expected {len(named)}"
+            raise _refused(f"{place}: {what}. {ONCE}")
         for call, output in zip(named, found, strict=True):
             experiment = experiment or accepted_experiment(folder, manifest)
             _compare(f"{place}, {call['function']}", call, output, experiment)
