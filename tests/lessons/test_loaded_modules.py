@@ -13,11 +13,7 @@ from robo_genesis.core.project import BOOK, CACHE, ROOT
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import kernel_environment
-from robo_genesis.pipeline.pages.sources import (
-    Tree,
-    lesson_modules,
-    measuring_modules,
-)
+from robo_genesis.pipeline.pages.sources import Tree, lesson_modules, measuring_modules
 from robo_genesis.pipeline.pages.syntax import PACKAGE
 
 IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}

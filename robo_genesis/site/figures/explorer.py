@@ -142,9 +142,7 @@ def panel(data: Mapping[str, Any], first: str = "") -> nodes.Node:
     chooser = sliders(data["size"]) if "size" in data else selects(data)
     plots = '<div class="plots"></div>' * ("curves" in data)
     lines = "".join(map(controls.term, data["columns"]))
-    return html(
-        f'<div class="panel" hidden>{first}{chooser}{plots}<dl>{lines}</dl></div></div>',
-    )
+    return html(f'<div class="panel" hidden>{first}{chooser}{plots}<dl>{lines}</dl></div></div>')
 
 
 def selects(data: Mapping[str, Any]) -> str:

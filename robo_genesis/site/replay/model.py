@@ -79,10 +79,7 @@ class Binary:
 
 
 def glb(
-    scenery: Scenery,
-    links: Sequence[str],
-    traces: Mapping[str, Run],
-    credit: str | None = None,
+    scenery: Scenery, links: Sequence[str], traces: Mapping[str, Run], credit: str | None = None
 ) -> bytes:
     """Return the model with one animation a case.
 
