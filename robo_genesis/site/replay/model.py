@@ -139,13 +139,8 @@ def _mesh(
         faces = np.asarray(mesh.faces).ravel()
         small = np.uint16 if len(mesh.vertices) < 2**16 else np.uint32
         indices = binary.add(faces.astype(small), "SCALAR", gltf.ELEMENT_ARRAY_BUFFER)
-        primitives.append(
-            gltf.Primitive(
-                attributes=attributes,
-                indices=indices,
-                material=_material(model, colour or part.rgb),
-            )
-        )
+        look = {"indices": indices, "material": _material(model, colour or part.rgb)}
+        primitives.append(gltf.Primitive(attributes=attributes, **look))
     if not primitives:
         return None
     model.meshes.append(gltf.Mesh(name=link, primitives=primitives))
