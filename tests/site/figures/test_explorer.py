@@ -84,7 +84,7 @@ def assigned(height: float) -> Trace:
 def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
     visual_shape.write_shape(tmp_path, [box("box")])
     monkeypatch.setattr(explorer, "find_replay", lambda lesson: Replay((), "box", "box"))
-    monkeypatch.setattr(explorer, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
+    monkeypatch.setattr(explorer.replays, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
     rows = {run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
             for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))}  # fmt: skip
     data = maps() | {"postures": {"upright": TARGETS, "level": TARGETS}, "tables": rows}
