@@ -56,7 +56,7 @@ def assigned(run: Experiment) -> Figure:
         (commanded, 1, "control_dofs_position", solid("baseline"), (0.27, (2, -18))),
     ):
         (line,) = ax.plot(trace.t[::every], trace.q[::every, ENTRY], **style)
-        _direct(line, text, label)
+        _direct(ax, line, text, label)
     title = f"Assigned or commanded, {STEPPED_JOINT}"
     _finish(ax, title, "q [rad]", float(commanded.t[-1]))
     return figure
@@ -94,7 +94,7 @@ def _response(
             t, values = t[t <= until], values[t <= until]
             (line,) = ax.plot(t, values, marker=".", markersize=5, **solid(mark))
             if labels:
-                _direct(line, name, labels[panel][name])
+                _direct(ax, line, name, labels[panel][name])
         _finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel, until)
         ax.label_outer()
     return figure
@@ -109,7 +109,7 @@ def baseline_forces(run: Experiment) -> Figure:
         ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
     ):
         (line,) = ax.plot(trace.t_step, array[:, ENTRY], marker=".", markersize=5, **solid(mark))
-        _direct(line, name, label)
+        _direct(ax, line, name, label)
     _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", until)
     return figure
 
@@ -136,12 +136,12 @@ def defined(run: Experiment) -> Figure:
     return figure
 
 
-def _direct(line: Line2D, text: str, label: Label) -> None:
+def _direct(ax: Axes, line: Line2D, text: str, label: Label) -> None:
     """Write a name beside the sample of a curve that is nearest to a time."""
-    (time, offset), (t, values) = label, line.get_data()
+    (time, offset), (t, values) = label, np.array(line.get_data(), float)
     n = int(np.abs(t - time).argmin())
-    line.axes.annotate(text, (float(t[n]), float(values[n])), offset, textcoords="offset points",
-                       color=line.get_color(), fontweight="bold")  # fmt: skip
+    ax.annotate(text, (float(t[n]), float(values[n])), offset, textcoords="offset points",
+                color=line.get_color(), fontweight="bold")  # fmt: skip
 
 
 def _note(
