@@ -13,11 +13,7 @@ from robo_genesis.core.project import BOOK, CACHE, ROOT
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import kernel_environment
-from robo_genesis.pipeline.pages.sources import (
-    Tree,
-    lesson_modules,
-    measuring_modules,
-)
+from robo_genesis.pipeline.pages.sources import Tree, lesson_modules, measuring_modules
 from robo_genesis.pipeline.pages.syntax import PACKAGE
 
 IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}
@@ -48,15 +44,6 @@ os._exit(0)
 """
 
 
-@pytest.fixture(
-    params=[
-        name if name == SHORT else pytest.param(name, marks=pytest.mark.slow) for name in LESSONS
-    ]
-)
-def lab(request):
-    return LABS[request.param]
-
-
 def loaded_modules(lab, tmp_path):
     """Run the cells of a lab in a process of its own, which has the package without other lessons.
 
@@ -82,8 +69,13 @@ def loaded_modules(lab, tmp_path):
     return json.loads((tmp_path / "loaded.json").read_text())
 
 
+SLOWER = [pytest.param(name, marks=pytest.mark.slow) for name in LESSONS if name != SHORT]
+
+
 @pytest.mark.engine
-def test_a_run_loads_only_modules_that_the_keys_know(lab, tmp_path):
+@pytest.mark.parametrize("lesson", [SHORT, *SLOWER])
+def test_a_run_loads_only_modules_that_the_keys_know(lesson, tmp_path):
+    lab = LABS[lesson]
     loaded = set(loaded_modules(lab, tmp_path))
     reached = Tree().closure([*lesson_modules(lab.lesson, ROOT), *lab.code.imports])
     assert loaded <= reached.keys()

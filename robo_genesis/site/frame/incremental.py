@@ -222,11 +222,10 @@ def remove_others(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Remove the files that no page writes any more, and folders that become empty."""
     noted = set().union(*(page.get(FILES, ()) for page in env.metadata.values()))
     for folder in (Path(app.outdir) / REPLAYS, Path(app.outdir) / TAKEAWAYS):
-        for path in sorted(folder.rglob("*"), reverse=True):
+        for path in sorted([*folder.rglob("*"), folder], reverse=True):  # a folder comes last
             if path.is_file() and str(path) not in noted:
                 path.unlink()
-        for path in sorted([*folder.rglob("*/"), folder], reverse=True):
-            if path.is_dir() and not any(path.iterdir()):
+            elif path.is_dir() and not any(path.iterdir()):
                 path.rmdir()
     return []
 

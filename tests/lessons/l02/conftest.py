@@ -30,3 +30,9 @@ def run(frames) -> Experiment:
     traces = {name: make_drop(case) for name, case in (spec.CASES | spec.SUBSTEP_CASES).items()}
     pictures = frames | {spec.TRAYS: frames["final"]}
     return Experiment(LECTURE, traces, [spec.LINK], readings, pictures, True)
+
+
+@pytest.fixture(scope="session")
+def experiments(run) -> dict[str, Experiment]:
+    """The run, by its page."""
+    return {"lecture": run}

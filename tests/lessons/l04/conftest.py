@@ -71,6 +71,12 @@ def study_runs(joints, frames) -> Experiment:
     )
 
 
+@pytest.fixture(scope="session")
+def experiments(study_runs) -> dict[str, Experiment]:
+    """What each of these pages measured."""
+    return {name: of_page(study_runs, name) for name in PAGES}
+
+
 @pytest.fixture(scope="module")
 def run(lab):
     """Control cases on the lab's robot."""

@@ -58,12 +58,7 @@ LINKED = (
     ('<img srcset="picture.png 1x, gone.png 2x" alt="A picture">', "'gone.png' leads to no"),
     ('<p style="background: url(gone.svg)">x</p>', "'gone.svg' leads to no file"),
 )
-ALT_TEXTS = (
-    "",
-    'alt=""',
-    'alt="figure.png"',
-    'alt="picture"',
-)
+ALT_TEXTS = ("", 'alt=""', 'alt="figure.png"', 'alt="picture"')
 LOADED = (
     '<script src="https://cdn.example.org/x.js"></script>',
     '<link rel="stylesheet" href="https://fonts.example.org/a.css">',
