@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -26,6 +26,9 @@ from robo_genesis.pipeline.pages.kernels import wait_or_kill
 
 FILES = ("pyproject.toml", "requirements.lock")
 """What a change of the pin changes: measured results are never kept in the tree."""
+
+FAILED = re.compile(r"^\[ *[\d.]+ s\] \w+ +(.+?)  (failed|refused)\b.*?: (.+)\n", re.MULTILINE)
+"""The line of `make book` for a page that failed or whose bundle is refused, and why."""
 
 LINES = 50
 """How many last lines of a log an error and the report show."""
@@ -151,7 +154,11 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 
 @dataclass(slots=True)
 class Trial:
-    """The steps in the checkout, each with its log; `before` is what the old version built."""
+    """The steps in the checkout, each with its log.
+
+    `before` is what the old version built, `failed` what the current step has found: the name of
+    each page that is not accepted → `failed` or `refused`, and why.
+    """
 
     request: Repin
     old: str
@@ -159,6 +166,7 @@ class Trial:
     work: Path
     progress: Progress
     before: refresh.EngineBuild | None = None
+    failed: dict[str, refresh.Pair] = field(default_factory=dict)
 
     def run(self) -> list[Path]:
         """Resolve, build with the old and the new version, report, test; return the report."""
@@ -190,25 +198,34 @@ class Trial:
         version = project.engine_pin(self.work)
         log = self.request.cache / "repin" / "logs" / f"{stage}-{version}.log"
         self.progress(stage, what, f"log: {log}")
-        if run_logged(command, self.work, log):
+        self.failed = {}
+        if run_logged(command, self.work, log, lambda: self.name_failed(stage, log)):
+            self.name_failed(stage, log)
             head, lines = f"Failed: {stage} {what}", last_words(log)
             remedy = (
                 f"The checkout still pins {self.old}. Give another version, or change what failed "
                 f"so that it passes with {self.new} too, and commit; then run make repin again. It "
-                "reuses what is compiled and executed."
+                "reuses what is compiled and executed, and begins with the pages that failed."
             )
             pages = self.write_report(head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
             raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
+
+    def name_failed(self, stage: str, log: Path) -> None:
+        """Print each page of a build that failed or was refused since the last call."""
+        for page, state, why in FAILED.findall(log.read_text("utf8", errors="replace")):
+            if stage == "book" and page not in self.failed:  # tests print builds of their own
+                self.failed[page] = state, why
+                self.progress(stage, page, f"{state}: {why}")
 
     def write_report(self, *failed: str) -> list[Path]:
         """Compare what both versions built, as far as they did, and write the report."""
         found = refresh.Refresh((self.old, self.new))
         if self.before:
             site = self.work / "book" / PUBLISHED / "html"
-            after = refresh.read_build(self.work, self.new, site)
+            after = refresh.read_build(self.work, self.new, site, self.failed)
             found = refresh.compare_builds(self.before, after)
-        found = replace(found, failed=failed)
+        found = replace(found, failed=failed, pages=self.failed)
         folder = self.request.cache / "reports" / f"repin-{self.old}-{self.new}"
         self.progress("report", refresh.summary(found), str(folder))
         return refresh.document(found).write(folder)
@@ -221,13 +238,16 @@ def last_words(log: Path) -> list[str]:
     return [line.rstrip() for line in after.splitlines() if line.strip()][-LINES:]
 
 
-def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
+def run_logged(
+    command: Sequence[str], folder: Path, log: Path, meanwhile: Callable[[], None] = lambda: None
+) -> int:
     """Run a command in a checkout with its output in a log, and return its exit status.
 
     Args:
         command: program and arguments; it ends with this process.
         folder: the checkout.
         log: file of its output, written over.
+        meanwhile: called each second.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
@@ -241,4 +261,4 @@ def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
             start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
-        return wait_or_kill(process)
+        return wait_or_kill(process, meanwhile)

@@ -1,14 +1,16 @@
 """The refresh report: what another engine version changes in packages, evidence and sentences."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from itertools import groupby, zip_longest
 from pathlib import Path
+from types import MappingProxyType
 
 from bs4 import BeautifulSoup
 
+from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.project import STORE, locked_versions
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
@@ -36,6 +38,16 @@ HIDDEN = "math, svg, .cell_input"
 BREAK = "\x1e"
 LEFT_OUT = {Path("evidence", "ledger.html"), Path("performance", "costs.html")}
 """The ledger lists digests of other pages; the costs are the times of the build itself."""
+JUDGED = (
+    "Rule, if the run obeys mechanics: our check assumes more than the engine documents, for "
+    "example an order of work within a step. Correct the check. Engine, if the run does not: keep "
+    "the pin, and report the run to the engine's developers."
+)
+RAISED = (
+    "Engine, if its interface, a message or its speed changed: adapt the page, or keep the pin and "
+    "report the change. Rule, if the page expects more than the engine documents: correct the page."
+)
+"""What to decide about a page whose run was judged, and about one that ended before."""
 NOTHING = "Nothing was found here, or the trial failed before."
 
 
@@ -62,7 +74,8 @@ class Refresh:
     `packages` is name → versions in both locks, "" for none; `missing` is lesson/page/backend → why
     its bundles were not compared; `recorded` is lesson/backend → state under both pins; `changed`
     holds (page, old, new) of each changed sentence, see `changed_sentences`. `failed` says what
-    failed, why, and what to do; what was not reached is empty then.
+    failed, what to do, and the last lines of the log; what was not reached is empty then. `pages`
+    is the name of each page that is not accepted → `failed` or `refused`, and why.
     """
 
     versions: Pair
@@ -72,6 +85,7 @@ class Refresh:
     recorded: dict[str, tuple[Status, Status]] = field(default_factory=dict)
     changed: tuple[tuple[str, str, str], ...] = ()
     failed: tuple[str, ...] = ()
+    pages: Mapping[str, Pair] = field(default_factory=dict)
 
     @property
     def state(self) -> str:
@@ -91,10 +105,21 @@ class Refresh:
         return [name for name, (was, now) in both if now.state == "stale" != was.state]
 
 
-def read_build(root: Path, version: str, site: Path) -> EngineBuild:
-    """Return what an engine version has built in a checkout that pins it, refused or not."""
+def read_build(
+    root: Path, version: str, site: Path, judged: Mapping[str, Pair] = MappingProxyType({})
+) -> EngineBuild:
+    """Return what an engine version has built in a checkout that pins it, refused or not.
+
+    Args:
+        root: the checkout.
+        version: of the engine.
+        site: the folder of the HTML.
+        judged: see `Refresh.pages`. What the store has of a failed page is of an earlier run.
+    """
     bundles, book = {}, root / "book"
     for page in find_pages(book):
+        if judged.get(page.docname, ("",))[0] == "failed":
+            continue
         for folder in folders(root / ".cache" / STORE, page):
             try:
                 record = read_record(folder)
@@ -201,6 +226,11 @@ def document(refresh: Refresh) -> Document:
     return Document(refresh.title, verdict, refresh.state, list(_parts(refresh)))
 
 
+def _advice(state: str, why: str) -> str:
+    """Return how to decide whether the engine or a rule of ours must change."""
+    return JUDGED if state == "refused" or why.startswith(CheckFailed.__name__) else RAISED
+
+
 def _parts(refresh: Refresh) -> Iterator[Part]:
     """Yield the parts of the report.
 
@@ -210,7 +240,11 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
     old, new = refresh.versions
     both = refresh.comparisons
     if refresh.failed:
-        yield Part(refresh.failed[0], [()], remarks=refresh.failed[1:])
+        what, remedy, *lines = refresh.failed
+        table = [("page", "result", "reason", "rule or engine?")]
+        table += [(page, *found, _advice(*found)) for page, found in refresh.pages.items()]
+        yield Part(what, table, remarks=[remedy])
+        yield Part("Last lines of the log", [()], remarks=lines)
     rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
     rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]
     yield Part("Pages", [("page", "result", "rows"), *rows], NOTHING)

@@ -77,6 +77,9 @@ def test_a_build_that_was_refused_has_the_bundles_of_its_executed_pages(
     found = read_build(root, pin, tmp_path / "no site")
     assert found.bundles == {"l04/lab/cpu": place / "outputs" / "cpu"}
     assert read_build(root, "9.9.9", tmp_path / "no site").bundles == {}
+    for state, bundles in (("refused", found.bundles), ("failed", {})):
+        judged = {"lab": (state, "why")}
+        assert read_build(root, pin, tmp_path / "no site", judged).bundles == bundles
     assert compare_builds(builds[0], found).changed == ()
 
 

@@ -216,7 +216,7 @@ def _execute(
     )
     if failure := result.failure:
         report = failure_report([result])
-        raise project.ProjectError(f"{failure.error}: {failure.message}\n\n{report}")
+        raise project.ProjectError(f"{failure}\n\n{report}")
     assert result.bundle is not None  # a lab without a bundle has failed
     return result.bundle, result.run_id
 
