@@ -34,21 +34,19 @@ LINES = 50
 """How many last lines of a log an error and the report show."""
 
 
-@dataclass(frozen=True, slots=True)
-class Repin:
-    """Which checkout gets which engine version."""
-
-    genesis: str
-    root: Path = project.ROOT
-    cache: Path = project.CACHE
-    say: Callable[[str], None] = say
-
-
-def run_repin(request: Repin) -> list[str]:
+def run_repin(
+    genesis: str,
+    root: Path = project.ROOT,
+    cache: Path = project.CACHE,
+    say: Callable[[str], None] = say,
+) -> list[str]:
     """Try the version in a checkout of the last commit, then write pin and lock.
 
     Args:
-        request: see there.
+        genesis: the engine's version.
+        root: the checkout.
+        cache: the folder of its caches.
+        say: prints a line.
 
     Returns:
         The last lines for the user: what was changed, where the report is and what to do next.
@@ -56,9 +54,8 @@ def run_repin(request: Repin) -> list[str]:
     Raises:
         ProjectError, BundleRefused: nothing was changed.
     """
-    root, folder = request.root, request.cache / "repin"
-    old = project.engine_pin(root)
-    new = wanted_version(request.genesis, old)
+    folder, old = cache / "repin", project.engine_pin(root)
+    new = wanted_version(genesis, old)
     if problems := unclean(root, "make repin tries the last commit"):
         raise project.ProjectError("\n".join(problems))
     require_locked_packages(root)
@@ -66,9 +63,9 @@ def run_repin(request: Repin) -> list[str]:
 
     with (
         locked(folder / "lock", "Another make repin"),
-        fresh_checkout(root, folder / "work", request.cache) as work,
+        fresh_checkout(root, folder / "work", cache) as work,
     ):
-        trial = Trial(request, old, new, work, Progress(request.say))
+        trial = Trial(cache, old, new, work, Progress(say))
         pages, new = trial.run(), trial.new
         if texts(root) != before:
             raise project.ProjectError(
@@ -113,15 +110,14 @@ def require_locked_packages(root: Path) -> None:
     """
     installed = {canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()}
     unlike = [
-        f"{name} {installed.get(canonicalize_name(name), '(none)')} instead of {version}"
+        f"{name} {found} instead of {version}"
         for name, version in locked_versions((root / FILES[1]).read_text("utf8")).items()
-        if installed.get(canonicalize_name(name)) != version
+        if (found := installed.get(canonicalize_name(name), "(none)")) != version
     ]
     if unlike:
         raise project.ProjectError(
-            f"This environment differs from requirements.lock: {', '.join(unlike[:5])}"
-            f"{', …' if unlike[5:] else ''}. Install the lock (pip install -r requirements.lock), "
-            "or omit PYTHON=…, so that .venv is used."
+            f"This environment differs from requirements.lock: {', '.join(unlike)}. Install the "
+            "lock (pip install -r requirements.lock), or omit PYTHON=…, so that .venv is used."
         )
 
 
@@ -160,7 +156,7 @@ class Trial:
     each page that is not accepted → `failed` or `refused`, and why.
     """
 
-    request: Repin
+    cache: Path
     old: str
     new: str
     work: Path
@@ -196,7 +192,7 @@ class Trial:
             ProjectError: the command failed.
         """
         version = project.engine_pin(self.work)
-        log = self.request.cache / "repin" / "logs" / f"{stage}-{version}.log"
+        log = self.cache / "repin" / "logs" / f"{stage}-{version}.log"
         self.progress(stage, what, f"log: {log}")
         self.failed = {}
         if run_logged(command, self.work, log, lambda: self.name_failed(stage, log)):
@@ -223,10 +219,11 @@ class Trial:
         found = refresh.Refresh((self.old, self.new))
         if self.before:
             site = self.work / "book" / PUBLISHED / "html"
-            after = refresh.read_build(self.work, self.new, site, self.failed)
+            absent = [page for page, (state, _) in self.failed.items() if state == "failed"]
+            after = refresh.read_build(self.work, self.new, site, absent)
             found = refresh.compare_builds(self.before, after)
         found = replace(found, failed=failed, pages=self.failed)
-        folder = self.request.cache / "reports" / f"repin-{self.old}-{self.new}"
+        folder = self.cache / "reports" / f"repin-{self.old}-{self.new}"
         self.progress("report", refresh.summary(found), str(folder))
         return refresh.document(found).write(folder)
 

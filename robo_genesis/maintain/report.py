@@ -1,12 +1,12 @@
 """The refresh report: what another engine version changes in packages, evidence and sentences."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from itertools import groupby, zip_longest
 from pathlib import Path
-from types import MappingProxyType
 
 from bs4 import BeautifulSoup
 
@@ -94,42 +94,33 @@ class Refresh:
         return worst([comparison.state for comparison in self.comparisons] + lacking)
 
     @property
-    def title(self) -> str:
-        """The heading of the report."""
-        return f"Engine {self.versions[0]} → {self.versions[1]}"
-
-    @property
     def stale(self) -> list[str]:
         """Recorded bundles that the new pin makes stale."""
         both = self.recorded.items()
         return [name for name, (was, now) in both if now.state == "stale" != was.state]
 
 
-def read_build(
-    root: Path, version: str, site: Path, judged: Mapping[str, Pair] = MappingProxyType({})
-) -> EngineBuild:
+def read_build(root: Path, version: str, site: Path, failed: Collection[str] = ()) -> EngineBuild:
     """Return what an engine version has built in a checkout that pins it, refused or not.
 
     Args:
         root: the checkout.
         version: of the engine.
         site: the folder of the HTML.
-        judged: see `Refresh.pages`. What the store has of a failed page is of an earlier run.
+        failed: names of pages of which the store can have an earlier run alone.
     """
     bundles, book = {}, root / "book"
     for page in find_pages(book):
-        if judged.get(page.docname, ("",))[0] == "failed":
+        if page.docname in failed:
             continue
         for folder in folders(root / ".cache" / STORE, page):
-            try:
+            with suppress(PageRefused):  # of an older form, or damaged: no build of today
                 record = read_record(folder)
-            except PageRefused:  # of an older form, or damaged: no build of today
-                continue
-            bundle = find_bundle(folder / OUTPUTS, record.run_id)
-            current = record.engine == version and record.code == code_digest(page)
-            if bundle and current:
-                bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
-                break
+                bundle = find_bundle(folder / OUTPUTS, record.run_id)
+                current = record.engine == version and record.code == code_digest(page)
+                if bundle and current:
+                    bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
+                    break
     lock = (root / "requirements.lock").read_text("utf8")
     return EngineBuild(version, lock, bundles, recorded(root), site)
 
@@ -166,8 +157,8 @@ def recorded(root: Path) -> dict[str, Status]:
 def changed_packages(old: str, new: str) -> dict[str, Pair]:
     """Return name → (old, new) version of each package that differs between two locks."""
     was, now = locked_versions(old), locked_versions(new)
-    both = {name: (was.get(name, ""), now.get(name, "")) for name in was | now}
-    return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
+    names = sorted(was | now)
+    return {n: (was.get(n, ""), now.get(n, "")) for n in names if was.get(n) != now.get(n)}
 
 
 def changed_sentences(old: Path, new: Path, versions: Pair) -> Iterator[tuple[str, str, str]]:
@@ -223,7 +214,8 @@ def document(refresh: Refresh) -> Document:
     """Return the whole report."""
     text = summary(refresh)
     verdict = f"{text[0].upper()}{text[1:]}."
-    return Document(refresh.title, verdict, refresh.state, list(_parts(refresh)))
+    title = f"Engine {' → '.join(refresh.versions)}"
+    return Document(title, verdict, refresh.state, list(_parts(refresh)))
 
 
 def _advice(state: str, why: str) -> str:
@@ -241,9 +233,9 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
     both = refresh.comparisons
     if refresh.failed:
         what, remedy, *lines = refresh.failed
-        table = [("page", "result", "reason", "rule or engine?")]
-        table += [(page, *found, _advice(*found)) for page, found in refresh.pages.items()]
-        yield Part(what, table, remarks=[remedy])
+        named = [("page", "result", "reason", "rule or engine?")]
+        named += [(page, *found, _advice(*found)) for page, found in refresh.pages.items()]
+        yield Part(what, named, remarks=[remedy])
         yield Part("Last lines of the log", [()], remarks=lines)
     rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
     rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]

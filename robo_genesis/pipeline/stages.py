@@ -32,13 +32,7 @@ from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
-from robo_genesis.pipeline.pages.store import (
-    Verify,
-    exported,
-    forget,
-    import_pages,
-    places,
-)
+from robo_genesis.pipeline.pages.store import Verify, exported, forget, import_pages, places
 from robo_genesis.pipeline.release import missing_for_release
 
 

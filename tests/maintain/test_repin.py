@@ -14,7 +14,7 @@ from tiny_book import commit, fails, git, wait_for
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
-from robo_genesis.maintain.repin import Repin, run_logged, run_repin
+from robo_genesis.maintain.repin import run_logged, run_repin
 
 OLD, NEW = engine_pin(), "99.1"
 FAILS = {"resolve": "99.2", "install": "99.3", "book": "99.4", "test": "99.5"}
@@ -87,8 +87,7 @@ def root(tmp_path) -> Path:
 
 
 def repin(root: Path, genesis: str, **changes) -> list[str]:
-    values = {"say": lambda line: None} | changes
-    return run_repin(Repin(genesis=genesis, root=root, cache=root / ".cache", **values))
+    return run_repin(genesis, root, root / ".cache", **{"say": lambda line: None} | changes)
 
 
 def state(root: Path) -> tuple[str, str, str]:
@@ -217,15 +216,14 @@ RUN = """
 import sys
 from pathlib import Path
 from robo_genesis.pipeline.command import run
-from robo_genesis.maintain.repin import Repin, run_repin
+from robo_genesis.maintain.repin import run_repin
 root = Path(sys.argv[1])
-sys.exit(run(lambda: run_repin(Repin(sys.argv[2], root, root / ".cache")), "changed"))
+sys.exit(run(lambda: run_repin(sys.argv[2], root, root / ".cache"), "changed"))
 """
 
 
 @pytest.mark.parametrize(
-    ("sent", "status"),
-    [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)],
+    ("sent", "status"), [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)]
 )
 def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(root, sent, status):
     before, sleeper = state(root), root / ".cache" / "repin" / "work" / "checkout" / "sleeper"

@@ -28,13 +28,7 @@ from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.pages.book import PageError
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
-from robo_genesis.pipeline.stages import (
-    Build,
-    BuildError,
-    build_lock,
-    export_one,
-    run_build,
-)
+from robo_genesis.pipeline.stages import Build, BuildError, build_lock, export_one, run_build
 
 LAB = lab("cpu")
 NO_CAMERA = LAB.replace('"camera" if camera', '"skip" if camera')
