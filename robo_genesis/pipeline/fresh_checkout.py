@@ -19,12 +19,7 @@ from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import COMPILED, ROOT, STORE, ProjectError
 from robo_genesis.pipeline.command import end_with_parent
-from robo_genesis.pipeline.pages.kernels import (
-    ALLOWED,
-    MACHINE,
-    interrupts_blocked,
-    wait_or_kill,
-)
+from robo_genesis.pipeline.pages.kernels import ALLOWED, MACHINE, interrupts_blocked, wait_or_kill
 
 FOLDER, CHECKOUT = "release", "checkout"
 """Folders of a release in the caches, and of the checkout in it. They stay if a release fails."""

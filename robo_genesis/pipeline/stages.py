@@ -32,13 +32,7 @@ from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
-from robo_genesis.pipeline.pages.store import (
-    Verify,
-    exported,
-    forget,
-    import_pages,
-    places,
-)
+from robo_genesis.pipeline.pages.store import Verify, exported, forget, import_pages, places
 from robo_genesis.pipeline.release import missing_for_release
 
 
@@ -98,7 +92,7 @@ def run_build(build: Build) -> list[str]:
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         if build.executed:
             import_pages(build.executed, pages, into, verify)
-        results = _execute(build, pages, into, environment, progress)
+        results = _execute(build, pages, into, environment, progress, verify)
         manifests: dict[str, Any] = {}
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
@@ -196,12 +190,21 @@ def _execute(
     into: Mapping[str, Path],
     environment: Mapping[str, str],
     progress: Progress,
+    verify: Verify | None = None,
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report.
 
-    A release is executed at its commit, so it reuses only what was imported for it.
+    With `verify`, a page is also verified when it ends, so that a refusal is known early. A release
+    is executed at its commit, so it reuses only what was imported for it.
     """
     progress("execute", f"{len(pages)} pages")
+    refused: list[str] = []
+
+    def accept(*results: PageResult) -> bool:
+        found = verify_results(verify, results, progress, "execute")[1] if verify else []
+        refused.extend(found)
+        return not found
+
     results = execute_pages(
         pages,
         into,
@@ -211,9 +214,12 @@ def _execute(
         environment=environment,
         logs=build.cache / project.LOGS,
         report=Lines(partial(progress, "execute")),
+        accept=accept,
     )
-    if any(result.failure for result in results):
-        raise BuildError(failure_report(results))
+    failed = [failure_report(results)] if any(result.failure for result in results) else []
+    if failed or refused:
+        accept(*(result for result in results if result.status == "reused"))
+        raise BuildError("\n\n".join([*failed, *refused]))
     return results
 
 

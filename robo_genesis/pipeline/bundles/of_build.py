@@ -1,6 +1,6 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from robo_genesis.core.files import derived
@@ -17,14 +17,15 @@ from robo_genesis.pipeline.pages.store import Verify
 
 
 def verify_results(
-    verify: Verify, results: Sequence[PageResult], progress: Progress
+    verify: Verify, results: Iterable[PageResult], progress: Progress, stage: str = "verify"
 ) -> tuple[dict[str, Any], list[str]]:
-    """Verify the bundles of a build, and compare what the pages show with them.
+    """Verify the bundles of pages, and compare what the pages show with them.
 
     Args:
         verify: verifies one bundle.
-        results: of all executed pages, of which none failed.
-        progress: prints a line for each accepted bundle.
+        results: of pages that did not fail.
+        progress: prints a line for each bundle.
+        stage: the stage that the lines name.
 
     Returns:
         The accepted manifests by page name, and a line for each refused bundle.
@@ -40,8 +41,9 @@ def verify_results(
             require_contract(manifest.predicate, contract)
             compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
-            progress("verify", result.page.docname, f"accepted, {compared} outputs compared")
+            progress(stage, result.page.docname, f"accepted, {compared} outputs compared")
         except BundleRefused as error:
+            progress(stage, result.page.docname, f"refused: {error}")
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
     return manifests, refused
 

@@ -5,7 +5,7 @@ import os
 import tempfile
 import time
 import uuid
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait
 from pathlib import Path
@@ -18,7 +18,7 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
 from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
 from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
-from robo_genesis.pipeline.pages.store import last_record, stored_result
+from robo_genesis.pipeline.pages.store import failed_mark, last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
 
 HEARTBEAT = 30.0
@@ -118,11 +118,13 @@ def execute_pages(
     environment: Mapping[str, str] | None = None,
     logs: Path | None = None,
     report: Lines | None = None,
+    accept: Callable[[PageResult], bool] = lambda result: True,
 ) -> list[PageResult]:
-    """Execute the pages that the store does not have yet; try all of them, the longest first.
+    """Execute the pages that the store does not have yet; try all of them.
 
-    A page that declares `alone` runs when no other page does. While the engine's cache is empty,
-    the first page runs alone until it has saved kernels: others would compile the same ones.
+    Those whose last run with this engine failed start first, then the longest. A page that declares
+    `alone` runs when no other page does. While the engine's cache is empty, the first page runs
+    alone until it has saved kernels: others would compile the same ones.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -139,6 +141,8 @@ def execute_pages(
             default it is not kept.
         report: gets each event, and shows how far the running pages are; by default nothing
             is shown.
+        accept: called once for each page that was executed and did not fail, before the next page
+            starts; returns whether the page counts as one that did not fail.
 
     Returns:
         One result for each page, in the order of `pages`.
@@ -149,7 +153,8 @@ def execute_pages(
     report, environment = report or Lines(), environment or {}
     results = _reused(pages, places, report) if reuse else {}
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
-    waiting = longest_first((page for page in pages if page.docname not in results), last)
+    failed = [page.docname for page in pages if failed_mark(places[page.docname]).exists()]
+    waiting = in_order((page for page in pages if page.docname not in results), last, failed)
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
@@ -158,7 +163,7 @@ def execute_pages(
         try:
             while waiting or running:
                 cold = not (results or _has_kernels(environment))
-                while waiting and len(running) < (1 if cold or waiting[0].alone else jobs):
+                while waiting and _may_start(waiting[0], running, 1 if cold else jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -173,7 +178,12 @@ def execute_pages(
                         continue
                     del running[connection]
                     results[result.page.docname] = result
-                    report.say(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
+                    report.say(result.page.docname, result.ended)
+                    mark = failed_mark(result.folder)
+                    if result.failure or not accept(result):
+                        mark.touch()
+                    else:
+                        mark.unlink(missing_ok=True)
                 report.show([underway for *_, underway in running.values()])
         finally:
             kill_with_descendants(process.pid for process, *_ in running.values())
@@ -202,23 +212,30 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
     }
 
 
-def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> list[Page]:
-    """Return pages in the order in which they start.
-
-    Those that run alone come last, so no other page starts beside them.
+def in_order(
+    pages: Iterable[Page], last: Mapping[str, Record | None], failed: Collection[str] = ()
+) -> list[Page]:
+    """Return pages in the order in which they start: the longest first, those alone last.
 
     Args:
         pages: the pages to execute.
-        last: the record of the last execution of each page, by name. Pages without one come first,
-            and among them those with the most cells.
+        last: the record of the last execution of each page, by name. Pages without one come before
+            the others, and among them those with the most cells.
+        failed: the names of pages that come before all others.
     """
 
-    def sooner(page: Page) -> tuple[bool, float, int]:
+    def sooner(page: Page) -> tuple[bool, bool, float, int]:
         record = last[page.docname]
         seconds = -record.seconds if record else float("-inf")
-        return page.alone, seconds, -len(page.code.sources)
+        return page.docname not in failed, page.alone, seconds, -len(page.code.sources)
 
     return sorted(pages, key=sooner)
+
+
+def _may_start(page: Page, running: Running, jobs: int) -> bool:
+    """Return whether a page may start beside those that run."""
+    alone = page.alone or any(run.page.alone for _, run, _ in running.values())
+    return len(running) < (1 if alone else jobs)
 
 
 def _reused(
@@ -235,7 +252,7 @@ def _reused(
             continue
         if result is not None:
             results[page.docname] = result
-            report.say(page.docname, result.status)
+            report.say(page.docname, result.ended if result.failure else result.status)
     return results
 
 

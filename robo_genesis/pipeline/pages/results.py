@@ -12,6 +12,7 @@ from nbformat import NotebookNode
 
 from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
+from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.guards import contradicted
@@ -38,6 +39,9 @@ class Failure:
     source: str = ""
     log: tuple[str, ...] = ()
 
+    def __str__(self) -> str:
+        return f"{self.error}: {self.message}"
+
 
 @dataclass(frozen=True, slots=True)
 class PageResult:
@@ -56,6 +60,12 @@ class PageResult:
     failure: Failure | None = None
     folder: Path = Path()
     log: Path | None = None
+
+    @property
+    def ended(self) -> str:
+        """What the line at its end says; a failure in one line."""
+        why = f": {printable(' '.join(str(self.failure).split()))}" if self.failure else ""
+        return f"{self.status} in {self.seconds:.0f} s{why}"
 
 
 def find_bundle(left: Path, run_id: str) -> Path | None:
@@ -207,8 +217,7 @@ def failure_report(results: Sequence[PageResult]) -> str:
         place = page.docname
         if failure.cell is not None:
             place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
-        message = f"{failure.error}: {failure.message}".splitlines()
-        lines += ["", place, *(f"    {line}" for line in message)]
+        lines += ["", place, *(f"    {line}" for line in str(failure).splitlines())]
         if failure.log:
             whole = f" of {log}" if log else ""
             lines += [f"    last lines{whole}:", *(f"    | {line}" for line in failure.log)]

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.files import put, require_replaceable, require_writable
-from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.core.project import ENGINE, ROOT, ProjectError, installed_version
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import (
@@ -107,6 +107,15 @@ def last_record(store: Path, page: Page) -> Record | None:
     return None
 
 
+def failed_mark(place: Path) -> Path:
+    """Return the file that says that a page's last run with this engine failed or was refused.
+
+    Args:
+        place: the page's folder, where a failed page is absent.
+    """
+    return place.with_name(f"failed-{installed_version(ENGINE)}")
+
+
 def forget(store: Path, results: Iterable[PageResult]) -> None:
     """Remove the pages that the book no longer has, and all but the newest folders of the others.
 
@@ -169,7 +178,7 @@ def import_pages(
                 raise PageRefused("page", f"its page is {name!r}. Pages of this book: {valid}.")
             result = result_of(known[name], place, into[name].name)
             if result.failure:
-                raise PageRefused("outcome", f"{result.failure.error}: {result.failure.message}")
+                raise PageRefused("outcome", str(result.failure))
             if result.bundle:
                 verify(result.bundle, result.run_id)
             if name in found:

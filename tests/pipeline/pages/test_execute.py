@@ -16,9 +16,9 @@ from robo_genesis.core.project import (
     engine_cache_folder,
 )
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import Lines, execute_pages, longest_first
+from robo_genesis.pipeline.pages.execute import Lines, execute_pages, in_order
 from robo_genesis.pipeline.pages.results import failure_report
-from robo_genesis.pipeline.pages.store import places, stored_result
+from robo_genesis.pipeline.pages.store import failed_mark, places, stored_result
 
 CHECK = """\
 import sys
@@ -222,12 +222,16 @@ def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
         tmp_path, a=notebook(cell(WRITE_BUNDLE), front=alone), b=notebook(pause), c=notebook(pause)
     )
     said = []
-    results = execute(tmp_path, jobs=2, report=Lines(lambda *words: said.append(words)))
+    settings = {"jobs": 2, "report": Lines(lambda *words: said.append((words[0], words[1][:7])))}
+    results = execute(tmp_path, **settings, accept=lambda result: result.bundle is None)
     assert {result.status for result in results.values()} == {"executed"}
-    begun_or_ended = [(name, event.split()[0]) for name, event in said]
-    assert begun_or_ended[:2] == [("b", "started:"), ("c", "started:")]
-    assert begun_or_ended[-2:] == [("a", "started:"), ("a", "executed")]
-    assert len(begun_or_ended) == 6
+    marks = [failed_mark(result.folder).exists() for result in results.values()]
+    assert marks == [True, False, False]  # `a` was not accepted, so it is the first to run again
+    execute(tmp_path, **settings, reuse=False)
+    assert not failed_mark(results["a"].folder).exists()
+    alone, others = [("a", "started"), ("a", "execute")], [("b", "started"), ("c", "started")]
+    assert (said[:2], said[4:8], said[8:10]) == (others, alone * 2, others)
+    assert len(said) == 12
 
 
 def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
@@ -249,12 +253,12 @@ def test_what_cannot_be_stored_fails_its_page(tmp_path):
     assert results["good"].status == "executed"
 
 
-def test_the_longest_page_starts_first_and_before_it_new_ones_with_many_cells_first(tmp_path):
+def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest(tmp_path):
     cells = {"a": 1, "b": 1, "c": 1, "d": 9, "e": 2}
     make_book(tmp_path, **{name: notebook(*[cell("1")] * n) for name, n in cells.items()})
     last = {name: SimpleNamespace(seconds=s) for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))}
-    found = longest_first(find_pages(tmp_path / "book"), {"b": None, "e": None} | last)
-    assert [page.docname for page in found] == ["e", "b", "c", "d", "a"]
+    found = in_order(find_pages(tmp_path / "book"), {"b": None, "e": None} | last, ["a"])
+    assert [page.docname for page in found] == ["a", "e", "b", "c", "d"]
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):
