@@ -99,7 +99,7 @@ WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt
 PROSE := book robo_genesis build_scripts *.md LICENSE pyproject.toml .ci/* .github/* .rocm/*
 
 .PHONY: lint
-lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schemas of .github
+lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes and typed numbers of pages and the schemas of .github
 	@"$(PY)" -m ruff check .
 	@"$(PY)" -m ruff format --check .
 	@"$(PY)" -m mypy

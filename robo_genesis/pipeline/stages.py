@@ -32,7 +32,7 @@ from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
-from robo_genesis.pipeline.pages.store import Verify, exported, forget, import_pages, places
+from robo_genesis.pipeline.pages.store import Verify, exported, forget, handed_over, places
 from robo_genesis.pipeline.release import missing_for_release
 
 
@@ -90,14 +90,18 @@ def run_build(build: Build) -> list[str]:
         npm.require_published()
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
-        if build.executed:
-            import_pages(build.executed, pages, into, verify)
-        results = _execute(build, pages, into, environment, progress, verify)
         manifests: dict[str, Any] = {}
+        if build.executed:
+            progress("execute", f"no page: all are taken from {build.executed}")
+            results = handed_over(build.executed, pages, into)
+            manifests |= _accepted(build, verify, results, progress)
+        else:
+            results = _execute(build, pages, into, environment, progress, verify)
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
             draft.prepare()  # first: most files are still those of the last render
-            manifests.update(_accepted(build, verify, results, progress))
+            if not build.executed:
+                manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)
 
         progress("render", "all pages")
@@ -115,7 +119,10 @@ def run_build(build: Build) -> list[str]:
             if kept:  # what is wrong may be a file that the kept folder has lost
                 discard(kept)
             raise
-        forget(build.cache / project.STORE, results)
+        for result in results:
+            if build.executed:  # stored only now: what was refused must not stop later builds
+                put(result.folder, into[result.page.docname])
+        forget(build.cache / project.STORE, pages, into)
         summary = partial(_summary, engine, results, manifests, checked)
 
         def finish(published: Path) -> None:
@@ -140,7 +147,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         The last lines for the user: where the page is, and what executed it.
 
     Raises:
-        BuildError: the book lacks the page, or the page failed. Nothing was exported.
+        BuildError: the book lacks the page, or it failed or is refused. Nothing was exported.
         ProjectError: folder, checkout or book are not fit for it, or a build runs here.
     """
     with build_lock(build.cache):
@@ -154,7 +161,10 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
             raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
         place = exported(names[name], to)
         progress = Progress(build.say)
-        [result] = _execute(build, [names[name]], into, environment, progress)
+        [result] = results = _execute(build, [names[name]], into, environment, progress)
+        verify = build.verify or partial(verify_bundle, book=build.book)
+        if refused := verify_results(verify, results, progress)[1]:
+            raise BuildError(*refused)
         put(result.folder, place)
         progress("export", result.page.docname, result.status)
     return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
@@ -195,7 +205,7 @@ def _execute(
     """Run the execution stage; every page is tried before the report.
 
     With `verify`, a page is also verified when it ends, so that a refusal is known early. A release
-    is executed at its commit, so it reuses only what was imported for it.
+    is executed at its commit, so it reuses nothing.
     """
     progress("execute", f"{len(pages)} pages")
     refused: list[str] = []
@@ -208,7 +218,7 @@ def _execute(
     results = execute_pages(
         pages,
         into,
-        reuse=bool(build.executed) or not build.release,
+        reuse=not build.release,
         jobs=build.jobs,
         timeout=build.timeout,
         environment=environment,

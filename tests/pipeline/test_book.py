@@ -28,7 +28,7 @@ from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.pages.book import PageError
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
-from robo_genesis.pipeline.stages import Build, BuildError, build_lock, export_one, run_build
+from robo_genesis.pipeline.stages import Build, BuildError, build_lock, run_build
 
 LAB = lab("cpu")
 NO_CAMERA = LAB.replace('"camera" if camera', '"skip" if camera')
@@ -98,17 +98,6 @@ def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built
         build(built.folder, said, release=True)
     assert sum("  executed in " in line for line in said) == 2
     assert site.stat() == before
-
-
-def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
-    there = Build(book=built.folder / "book", cache=built.folder / "cache", say=[].append)
-    for name in ("lab", "lecture"):
-        export_one(name, tmp_path / "executed", there)
-    make_book(tmp_path, lab=LAB, lecture=notebook(cell("print('seen')")))
-    said: list[str] = []
-    assert "Pages: 0 executed, 2 reused." in build(tmp_path, said, executed=tmp_path / "executed")
-    assert (tmp_path / "book/_build/evidence/l04/cpu/manifest.json").is_file()
-    assert any("execute  lab  reused" in line for line in said)
 
 
 @pytest.mark.parametrize(

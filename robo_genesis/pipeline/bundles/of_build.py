@@ -10,7 +10,7 @@ from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown
-from robo_genesis.pipeline.pages.folder import RECORD, stored_notebook
+from robo_genesis.pipeline.pages.folder import MARK, RECORD, stored_notebook
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.pipeline.pages.store import Verify
@@ -20,6 +20,9 @@ def verify_results(
     verify: Verify, results: Iterable[PageResult], progress: Progress, stage: str = "verify"
 ) -> tuple[dict[str, Any], list[str]]:
     """Verify the bundles of pages, and compare what the pages show with them.
+
+    A refused page of the store is marked, so that it is executed again. One that was executed now
+    is verified once more by the next build, because the rule may be wrong.
 
     Args:
         verify: verifies one bundle.
@@ -44,7 +47,11 @@ def verify_results(
             progress(stage, result.page.docname, f"accepted, {compared} outputs compared")
         except BundleRefused as error:
             progress(stage, result.page.docname, f"refused: {error}")
-            refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
+            line = f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
+            if result.status == "reused":
+                (result.folder / MARK).write_text(line, "utf8")
+                line += " The next build executes the page again."
+            refused.append(line)
     return manifests, refused
 
 

@@ -248,7 +248,7 @@ def _reused(
             result = stored_result(page, places[page.docname])
         except PageRefused as refused:
             reason = str(refused).splitlines()[0]
-            report.say(page.docname, f"changed since it was stored; executed again ({reason})")
+            report.say(page.docname, f"its stored run is not used; executed again ({reason})")
             continue
         if result is not None:
             results[page.docname] = result

@@ -26,6 +26,8 @@ from robo_genesis.pipeline.pages.book import Page, code_digest, code_of
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
+MARK = "refused-by-a-build.txt"
+"""Is added to a folder of the store whose bundle was refused: `require_this_page` refuses it."""
 SIZE_LIMIT = 64 * 2**20
 """Bytes of one file; those of a lesson have under 2 MiB."""
 FILES_LIMIT = 500
@@ -137,8 +139,9 @@ def read_record(place: Path) -> Record:
     """Return what the record of an executed page says.
 
     Raises:
-        PageRefused: it is missing or not what `write_page` writes.
+        PageRefused: it is missing or not what `write_page` writes, or a file is not a plain one.
     """
+    plain_files(place)  # before any is read
     try:
         return Record.model_validate_json((place / RECORD).read_bytes())
     except (OSError, ValidationError) as error:
@@ -175,6 +178,10 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
         nbformat.validate(notebook)
     except Exception as error:  # nbformat passes on a dozen kinds of exceptions
         raise PageRefused("notebook", f"{NOTEBOOK} is not a notebook: {error}") from error
+    timed = sum(bool(cell.source.strip()) for cell in notebook.cells if cell.cell_type == "code")
+    if len(record.cell_seconds) != timed:
+        seconds = len(record.cell_seconds)
+        raise PageRefused("record", f"it has the times of {seconds} cells, expected {timed}.")
     cells = code_and_kernel(notebook) == code_and_kernel(page.notebook)
     if not cells or record.code != code_digest(page):
         raise PageRefused("code", f"its code cells are not those of {page.path}.")

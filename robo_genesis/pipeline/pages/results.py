@@ -18,7 +18,7 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.guards import contradicted
 
 LOG_LINES = 15
-Status = Literal["executed", "reused", "failed"]
+Status = Literal["executed", "reused", "taken over", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 
 
@@ -47,9 +47,9 @@ class Failure:
 class PageResult:
     """The result of one page in one build.
 
-    `bundle` is None if the page declares none. `folder` is the page's folder in the store, where a
-    failed page may be absent. `log` is the file with all that an executed page wrote, None if that
-    is not kept.
+    `bundle` is None if the page declares none. `folder` is the page's folder: in the store, where a
+    failed page may be absent, or outside if it is taken over from another machine. `log` is the
+    file with all that an executed page wrote, None if that is not kept.
     """
 
     page: Page
@@ -78,7 +78,7 @@ def find_bundle(left: Path, run_id: str) -> Path | None:
     for manifest in sorted(left.glob("*/manifest.json")):
         try:
             found = json.loads(manifest.read_text("utf8"))["predicate"]["run_id"]
-        except (ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             continue
         if found == run_id:
             return manifest.parent

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.pipeline.html.checks import Site, run_checks
+from robo_genesis.pipeline.html.checks import QUOTING, Site, run_checks
 
 PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article id='top-of-page'>{body}</article>"
 GOOD = """\
@@ -11,6 +11,7 @@ GOOD = """\
 <a href="#">top</a> <a href="sub/">folder</a>
 <img src="picture.png" alt="Joint angle over time, three cases">
 <pre>{eval}`x` in code is fine</pre>"""
+GOOD += "".join(f"<ul class='a {name}'><li>{{a}}`b` $$ [[1 2]]</li></ul>" for name in QUOTING)
 
 
 def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
