@@ -48,14 +48,19 @@ SOLUTIONS = "SOLUTIONS"
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = (
     "GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "ROCM_", "HSA_", "CUDA_",
+    "NVIDIA_TF32_",
 )  # fmt: skip
 SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
 """Switches that Genesis itself sets when it is imported; they decide only how messages print."""
 
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
+LIBRARIES = ("LD_LIBRARY_PATH",)
+"""Where drivers may lie. It is no switch of a manifest: the engine appends to it at its import."""
+
 COMPILED_KERNELS = "QD_OFFLINE_CACHE_FILE_PATH"
 CACHE_FOLDERS = {
     COMPILED_KERNELS: "kernels",
+    "GS_CACHE_FILE_PATH": "geometry",  # by default below the user's home, for all versions
     "NUMBA_CACHE_DIR": "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",
     "MPLCONFIGDIR": "matplotlib",  # its font list; also ignores a user's matplotlibrc
@@ -224,13 +229,14 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
         environment: variables, by default those of this process.
 
     Returns:
-        Backend and render, with defaults if they are not set, and the engine's switches that are
-        set; the folders of compiled code are not included.
+        Backend and render, with defaults if they are not set, and of the engine's switches and the
+        folders of libraries those that are set; the folders of compiled code are not included.
     """
     given = os.environ if environment is None else environment
     defaults = {BACKEND: BUILD_BACKEND, RENDER: "1"}
     requested = {name: given.get(name) or default for name, default in defaults.items()}
-    return requested | engine_switches(given)
+    libraries = {name: given[name] for name in LIBRARIES if given.get(name)}
+    return requested | engine_switches(given) | libraries
 
 
 def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:

@@ -11,12 +11,13 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from datetime import UTC, datetime
+from importlib.machinery import all_suffixes
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.files import replaced
+from robo_genesis.core.files import files_below, replaced
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle_files import list_files
@@ -29,6 +30,7 @@ from robo_genesis.sim.camera.frames import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
+IMPORTABLE = tuple(all_suffixes())
 NOT_RECORDED = f":(exclude,glob){project.BOOK.name}/evidence/*/*/**"
 """The pathspec of git for all files of a checkout that are not in a recorded bundle."""
 
@@ -183,17 +185,25 @@ def require_complete(run: Experiment) -> None:
 def files_match_wheel(*distributions: str) -> bool:
     """Whether every installed file of the packages has the digest that its wheel recorded.
 
-    A package without recorded digests, such as an editable one, does not match.
+    A package without recorded digests, such as an editable one, does not match, nor does one in
+    whose folder Python finds a module that the wheel does not list.
     """
     for name in distributions:
-        files = [f for f in importlib.metadata.distribution(name).files or [] if f.hash]
-        if not any(f.suffix == ".py" for f in files) or not all(map(_is_unchanged, files)):
+        listed = importlib.metadata.distribution(name).files or []
+        files = {Path(str(file.locate())): file for file in listed if file.hash}
+        folders = {
+            path.parents[len(file.parts) - 2]
+            for path, file in files.items()
+            if file.suffix == ".py" and len(file.parts) > 1
+        }
+        found = (path for folder in folders for path in files_below(folder))
+        added = (path for path in found if path.name.endswith(IMPORTABLE) and path not in files)
+        if not folders or any(added) or not all(map(_is_unchanged, files, files.values())):
             return False
     return True
 
 
-def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
-    path = Path(str(file.locate()))
+def _is_unchanged(path: Path, file: importlib.metadata.PackagePath) -> bool:
     if file.hash is None or not path.is_file():
         return False
     digest = hashlib.new(file.hash.mode, path.read_bytes()).digest()

@@ -31,7 +31,11 @@ END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)
 SPARE_SEARCHES = (
     "__import__('robo_genesis.sim.session', fromlist=['spare_searches']).spare_searches()"
 )
-ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in (END_BEFORE_IPYKERNEL, SPARE_SEARCHES)]
+NOTE_OPENED = (
+    "__import__('robo_genesis.pipeline.pages.opened', fromlist=['note_opened']).note_opened()"
+)
+START = (END_BEFORE_IPYKERNEL, SPARE_SEARCHES, NOTE_OPENED)
+ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in START]
 
 
 class CleanKernelManager(AsyncKernelManager):
@@ -102,9 +106,12 @@ def clean_environment(
         **{name: str(path) for name, path in folders.items()},
         "JUPYTER_NO_CONFIG": "1",
         "JUPYTER_PREFER_ENV_PATH": "1",
+        "LC_ALL": "C.UTF-8",
         "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+        "PYTHONHASHSEED": "0",
         "PYTHONNOUSERSITE": "1",
         "PYTHONPATH": str(root),
+        "TZ": "UTC",
         **extra,
     }
 

@@ -22,6 +22,7 @@ from robo_genesis.pipeline.pages.kernels import (
     clean_environment,
     die_with_parent,
 )
+from robo_genesis.pipeline.pages.opened import unkeyed_files
 from robo_genesis.pipeline.pages.results import (
     Failure,
     at_cell,
@@ -29,6 +30,7 @@ from robo_genesis.pipeline.pages.results import (
     missing_bundle,
     unexpected_outcome,
 )
+from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +141,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
             error = caught
     elapsed = time.monotonic() - begin
-    failure = _failure(run, error, list(begins))
+    failure = _failure(run, error, list(begins)) or _unkeyed(run)
     if failure is None:
         notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
         try:
@@ -155,6 +157,22 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         except (PageRefused, OSError) as caught:
             failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return failure
+
+
+def _unkeyed(run: PageRun) -> Failure | None:
+    """Return the failure of a page that read files on which no key depends."""
+    tree = Tree()
+    modules = tree.behind(run.page).values()
+    data = (ROOT / PACKAGE / name for name in tree.data_for(modules))
+    names = unkeyed_files([*modules, *data, ROOT / "pyproject.toml", ROOT / "requirements.lock"])
+    if not names:
+        return None
+    return Failure(
+        "FileNotKeyed",
+        f"the page read {', '.join(names)}. It would not be executed again if that changed. Valid "
+        "are files of its lesson's folder, of modules that it imports, of installed packages, and "
+        f"files that it makes. Move them into {PACKAGE}/lessons/{run.page.lesson or '…'}.",
+    )
 
 
 def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failure | None:

@@ -21,7 +21,7 @@ from nbformat import NotebookNode
 from sphinx.config import Config
 
 from robo_genesis.core import project
-from robo_genesis.core.files import derived, write_whole
+from robo_genesis.core.files import NO_SOURCE, derived, files_below, write_whole
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
@@ -55,7 +55,6 @@ DEBIAN = ("python3-venv", "libegl1", "libgl1")
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 PACKAGE = "robo_genesis"
-CACHED = "__pycache__"
 EPOCH = "315532800"
 """1980-01-01, the oldest time that a zip can hold."""
 
@@ -250,8 +249,7 @@ def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -
     Raises:
         ProjectError: setuptools failed; the message contains its output.
     """
-    files = [root / source for source in SOURCES]
-    files += sorted(p for p in (root / PACKAGE).rglob("*") if p.is_file() and CACHED not in p.parts)
+    files = [*(root / source for source in SOURCES), *sorted(files_below(root / PACKAGE))]
     inputs = [part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes())]
     inputs.append(repository.encode())
     built = derived("wheel", inputs, lambda: built_wheel(root, repository))
@@ -270,7 +268,7 @@ def built_wheel(root: Path, repository: str = "") -> bytes:
         if repository:
             with (copy / SOURCES[0]).open("a", encoding="utf8") as facts:
                 facts.write(f"\n[project.urls]\nRepository = {json.dumps(repository)}\n")
-        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(CACHED))
+        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(*NO_SOURCE))
         for path in copy.rglob("*"):
             path.chmod(0o755 if path.is_dir() else 0o644)  # whatever the user's umask
         settings = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}

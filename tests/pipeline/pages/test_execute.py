@@ -10,7 +10,7 @@ import psutil
 import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
-from robo_genesis.core.project import engine_cache_environment, engine_cache_folder
+from robo_genesis.core.project import ROOT, engine_cache_environment, engine_cache_folder
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, longest_first
 from robo_genesis.pipeline.pages.results import failure_report
@@ -263,6 +263,47 @@ print(os.environ["GIVEN"], len(os.environ["ROBO_GENESIS_RUN_ID"]))"""
     [executed] = (tmp_path / "store/page").glob("*/executed.ipynb")
     [output] = nbformat.read(executed, as_version=4).cells[0].outputs
     assert output.text == f"{sys.executable} False []\nyes 32\n"
+
+
+READS = """\
+import os, pathlib
+away, root = pathlib.Path({away!r}), pathlib.Path({root!r})
+os.chdir(away)
+for name in ("relative", os.fsencode(away / "bytes")):
+    open(name).close()
+for name, mode in (("both", "r+"), ("appended", "a+")):
+    open(away / name, mode).close()
+os.close(os.open(away / "low", os.O_RDONLY))
+for name in ("README.md", "robo_genesis/doctor.py", "robo_genesis/maintain/template/book/lab.md.tmpl"):
+    (root / name).read_text()
+(away / "written").write_text("only written")"""
+READ = ("relative", "bytes", "both", "appended", "low", "README.md", "doctor.py", "lab.md.tmpl")
+
+READS_ITS_OWN = """\
+import os, pathlib, sys, tempfile
+from robo_genesis.core import text
+pathlib.Path(text.__file__).read_text()
+for name in ("own", pathlib.Path({away!r}, "made")):
+    pathlib.Path(name).write_text("own")
+    pathlib.Path(name).read_text()
+with tempfile.NamedTemporaryFile() as file:
+    open(file.name).close()
+for name in ("/etc/passwd", "/proc/cpuinfo", os.__file__, os.devnull):
+    open(name, "rb").close()"""
+
+
+def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp_path):
+    for name in READ[:5]:
+        (tmp_path / name).touch()
+    codes = {"refused": READS, "accepted": READS_ITS_OWN}
+    folders = {"away": str(tmp_path), "root": str(ROOT)}
+    make_book(tmp_path, **{n: notebook(cell(c.format(**folders))) for n, c in codes.items()})
+    results = execute(tmp_path, jobs=2)
+    assert results["accepted"].status == "executed", results["accepted"].failure
+    failure = results["refused"].failure
+    assert failure.error == "FileNotKeyed"
+    names = failure.message.removeprefix("the page read ").partition(". It would not")[0]
+    assert sorted(Path(name).name for name in names.split(", ")) == sorted(READ)
 
 
 def test_a_killed_worker_is_a_failed_page(tmp_path):
