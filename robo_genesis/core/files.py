@@ -25,7 +25,7 @@ KEPT = 30 * 24 * 3600
 
 MADE_BY_TOOLS = ("__pycache__", ".ipynb_checkpoints")
 NO_SOURCE = ("__pycache__", ".*", "*~", "#*#", "*.bak", "*.orig", "*.rej")
-"""Names of what Python, Jupyter, editors and Git leave beside the files of a package."""
+"""Names of what Python and Jupyter make; the same with hidden files and back-ups of editors."""
 
 
 @contextmanager
@@ -148,14 +148,14 @@ def put(source: Path, folder: Path) -> None:
 
 
 def files_below(
-    folder: Path, left_out: Sequence[str] = NO_SOURCE, skip: tuple[str, ...] = ()
+    folder: Path, skip: tuple[str, ...] = (), left_out: Sequence[str] = MADE_BY_TOOLS
 ) -> Iterator[Path]:
     """Yield all files below a folder and its links.
 
     Args:
         folder: it need not exist.
-        left_out: patterns of names of files and folders.
         skip: how the names begin that are left out at the top.
+        left_out: patterns of names of files and folders that are left out anywhere.
 
     Raises:
         ProjectError: a link leads to a folder that contains it, so there would be no end.

@@ -57,9 +57,8 @@ HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])
 LIBRARIES = ("LD_LIBRARY_PATH",)
 """Where drivers may lie. It is no switch of a manifest: the engine appends to it at its import."""
 
-COMPILED_KERNELS = "QD_OFFLINE_CACHE_FILE_PATH"
 CACHE_FOLDERS = {
-    COMPILED_KERNELS: "kernels",
+    "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
     "GS_CACHE_FILE_PATH": "geometry",  # by default below the user's home, for all versions
     "NUMBA_CACHE_DIR": "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",

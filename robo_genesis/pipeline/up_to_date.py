@@ -12,7 +12,7 @@ import sys
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from robo_genesis.core.files import MADE_BY_TOOLS, files_below, json_digest
+from robo_genesis.core.files import files_below, json_digest
 from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import (
     PUBLISHED,
@@ -62,16 +62,10 @@ def other_inputs(
         environment: variables, by default those of this process.
     """
     given = os.environ if environment is None else environment
-    kept = (
-        path
-        for path in files_below(book, MADE_BY_TOOLS, (PUBLISHED, f".{PUBLISHED}"))
-        if path not in pages
-    )
+    kept = (path for path in files_below(book, (PUBLISHED, f".{PUBLISHED}")) if path not in pages)
     return {
         "book": [str(book), files_digest(book, kept)],
-        "code": files_digest(
-            root, (p for name in FOLDERS for p in files_below(root / name, MADE_BY_TOOLS))
-        ),
+        "code": files_digest(root, (p for name in FOLDERS for p in files_below(root / name))),
         "files": files_digest(root, (root / name for name in FILES)),
         "contract": environment_contract(given),
         "variables": {name: given.get(name) or "" for name in VARIABLES},
@@ -104,9 +98,7 @@ def history(book: Path) -> list[str | None]:
 
 def site_digest(published: Path) -> str:
     """Return the digest of a published folder: the site and its bundles."""
-    return files_digest(
-        published, (p for name in SITE for p in files_below(published / name, MADE_BY_TOOLS))
-    )
+    return files_digest(published, (p for name in SITE for p in files_below(published / name)))
 
 
 def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:

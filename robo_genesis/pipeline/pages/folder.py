@@ -64,7 +64,6 @@ def write_page(
     page: Page,
     notebook: NotebookNode,
     left: Path,
-    *,
     run_id: str,
     seconds: float,
     cell_seconds: Sequence[float],

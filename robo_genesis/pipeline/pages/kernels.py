@@ -24,18 +24,8 @@ from robo_genesis.core.project import ENGINE_PREFIXES
 MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
 ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 
-# ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run last:
-# one that is registered right after them runs right before them, after the engine's, and ends it.
-END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)"
-# Pages import the engine before the course, which would only spare the searches that are left then.
-SPARE_SEARCHES = (
-    "__import__('robo_genesis.sim.session', fromlist=['spare_searches']).spare_searches()"
-)
-NOTE_OPENED = (
-    "__import__('robo_genesis.pipeline.pages.opened', fromlist=['note_opened']).note_opened()"
-)
-START = (END_BEFORE_IPYKERNEL, SPARE_SEARCHES, NOTE_OPENED)
-ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in START]
+START = "__import__('robo_genesis.pipeline.pages.opened', fromlist=['start']).start()"
+ARGUMENTS = [f"--IPKernelApp.exec_lines={START}"]
 
 
 class CleanKernelManager(AsyncKernelManager):

@@ -1,5 +1,6 @@
-"""The files that a page opens for reading: its kernel notes them, and its worker judges them."""
+"""The start of a kernel, which notes the files that its page reads; the worker judges them."""
 
+import atexit
 import os
 import re
 import sys
@@ -8,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
+from robo_genesis.sim.session import spare_searches
 
 SYSTEM = ("/dev", "/etc", "/lib", "/nix", "/opt", "/proc", "/run", "/sys", "/usr")
 """Folders of the operating system."""
@@ -16,6 +18,16 @@ RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")
 OWN = os.O_TRUNC | os.O_EXCL
 """The flags of a file that the process makes or empties."""
+
+
+def start() -> None:
+    """Do what each kernel does first, before the page's own cells."""
+    # ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run
+    # last: one that is registered right after them runs right before them, after the engine's, and
+    # ends it.
+    atexit.register(os._exit, 0)
+    spare_searches()  # here, because pages import the engine before the course
+    note_opened()
 
 
 def note_opened() -> None:

@@ -10,12 +10,13 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property, partial
-from importlib.machinery import all_suffixes
+from importlib.machinery import BYTECODE_SUFFIXES, EXTENSION_SUFFIXES
 from itertools import accumulate
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
-from robo_genesis.core.files import files_below, json_digest
+from robo_genesis.core.files import NO_SOURCE, files_below, json_digest
 from robo_genesis.core.project import (
     PAGE_IMPORTS,
     ROOT,
@@ -30,7 +31,9 @@ from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_name
 if TYPE_CHECKING:  # a verification loads no Jupyter
     from robo_genesis.pipeline.pages.book import Page
 
-IMPORTABLE = tuple(all_suffixes())
+IMPORTABLE = (*EXTENSION_SUFFIXES, *BYTECODE_SUFFIXES)
+"""How the name of an importable file ends that is no source."""
+
 USED_BY_NO_PAGE = ("maintain", "site")
 
 COMPUTING = ("core", "sim", "lessons")
@@ -94,7 +97,7 @@ class Tree:
     @cached_property
     def data(self) -> dict[Path, str]:
         """The digest of each file that is not a module, except in what no page can import."""
-        files = files_below(self.root / PACKAGE, skip=USED_BY_NO_PAGE)
+        files = files_below(self.root / PACKAGE, USED_BY_NO_PAGE, NO_SOURCE)
         return {path: sha256(path) for path in files if module_name(path, self.root) is None}
 
     def data_for(self, used: Iterable[Path]) -> dict[str, str]:
@@ -127,7 +130,7 @@ def module_name(path: Path, root: Path) -> str | None:
 
 def lesson_modules(lesson: str, root: Path) -> list[str]:
     """Return the modules below the folder of a lesson."""
-    files = sorted(files_below(root / PACKAGE / "lessons" / lesson))
+    files = sorted(files_below(root / PACKAGE / "lessons" / lesson, left_out=NO_SOURCE))
     return [name for path in files if (name := module_name(path, root))]
 
 
@@ -138,23 +141,16 @@ def require_keyed_imports(root: Path) -> None:
         ProjectError: naming each importable file or package beside the course's package, and each
             file in it that Python would run in the place of a module's source.
     """
-    found = [
-        path
-        for path in root.iterdir()
-        if path.name != PACKAGE
-        and path.name.partition(".")[0].isidentifier()
-        and (path.name.endswith(IMPORTABLE) or any(path.glob("__init__.*")))
-    ]
+    found = [module.name for module in iter_modules([str(root)]) if module.name != PACKAGE]
     found += [
-        path
+        path.relative_to(root).as_posix()
         for path in files_below(root / PACKAGE)
-        if path.name.endswith(IMPORTABLE[1:])
+        if path.name.endswith(IMPORTABLE)
         or (path.name == "__init__.py" and path.parent.with_suffix(".py").is_file())
     ]
     if found:
-        names = ", ".join(sorted(path.relative_to(root).as_posix() for path in found))
         raise ProjectError(
-            f"Python would import {names} in {root}, which no key of a page covers. Valid is the "
+            f"Python would import {', '.join(sorted(found))} in {root}, which no key of a page covers. Valid is the "
             f"folder {PACKAGE}, in which each module is one .py file. Move the others to another "
             "folder or delete them."
         )

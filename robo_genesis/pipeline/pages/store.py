@@ -22,12 +22,7 @@ from robo_genesis.pipeline.pages.folder import (
     read_record,
     require_this_page,
 )
-from robo_genesis.pipeline.pages.results import (
-    PageResult,
-    Status,
-    find_bundle,
-    unexpected_outcome,
-)
+from robo_genesis.pipeline.pages.results import PageResult, Status, find_bundle, unexpected_outcome
 from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint, require_keyed_imports
 
 Verify = Callable[[Path, str], Any]

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import resolve_name
+from itertools import groupby
 from typing import Any
 
 from robo_genesis.core.files import derived_value, json_digest
@@ -118,17 +119,11 @@ def is_text(statement: ast.AST) -> bool:
 
 def _joined(parts: Iterable[ast.expr]) -> Iterator[ast.expr]:
     """Yield the parts of an f-string with adjacent constants joined and empty ones left out."""
-    text = ""
-    for part in parts:
-        if isinstance(part, ast.Constant) and isinstance(part.value, str):
-            text += part.value
-            continue
-        if text:
+    for constant, group in groupby(parts, lambda part: isinstance(part, ast.Constant)):
+        if not constant:
+            yield from group
+        elif text := "".join(part.value for part in group):  # type: ignore[attr-defined]
             yield ast.Constant(text)
-        text = ""
-        yield part
-    if text:
-        yield ast.Constant(text)
 
 
 def _ends_with_semicolon(source: str, statements: Sequence[ast.stmt]) -> bool:

@@ -145,15 +145,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     if failure is None:
         notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
         try:
-            write_page(
-                run.place,
-                run.page,
-                notebook,
-                run.left,
-                run_id=run.run_id,
-                seconds=elapsed,
-                cell_seconds=seconds,
-            )
+            write_page(run.place, run.page, notebook, run.left, run.run_id, elapsed, seconds)
         except (PageRefused, OSError) as caught:
             failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return failure

@@ -30,11 +30,7 @@ from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
-from robo_genesis.site.takeaways.notebooks import (
-    executed_notebook,
-    student_notebook,
-    version_check,
-)
+from robo_genesis.site.takeaways.notebooks import executed_notebook, student_notebook, version_check
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
 ENVIRONMENT = "course"
@@ -249,7 +245,10 @@ def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -
     Raises:
         ProjectError: setuptools failed; the message contains its output.
     """
-    files = [*(root / source for source in SOURCES), *sorted(files_below(root / PACKAGE))]
+    files = [
+        *(root / source for source in SOURCES),
+        *sorted(files_below(root / PACKAGE, left_out=NO_SOURCE)),
+    ]
     inputs = [part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes())]
     inputs.append(repository.encode())
     built = derived("wheel", inputs, lambda: built_wheel(root, repository))

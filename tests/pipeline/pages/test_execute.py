@@ -150,11 +150,7 @@ MANIFEST, NOTEBOOK, RECORD = "outputs/cpu/manifest.json", "executed.ipynb", "pag
 
 @pytest.mark.parametrize(
     ("name", "content"),
-    [
-        (MANIFEST, '{"predicate": {"run_id": "of another run"}}'),
-        (NOTEBOOK, None),
-        (RECORD, "{"),
-    ],
+    [(MANIFEST, '{"predicate": {"run_id": "of another run"}}'), (NOTEBOOK, None), (RECORD, "{")],
 )
 def test_a_page_that_changed_since_it_was_stored_is_executed_again_with_one_line(
     lab, name, content
@@ -274,10 +270,10 @@ for name in ("relative", os.fsencode(away / "bytes")):
 for name, mode in (("both", "r+"), ("appended", "a+")):
     open(away / name, mode).close()
 os.close(os.open(away / "low", os.O_RDONLY))
-for name in ("README.md", "robo_genesis/doctor.py", "robo_genesis/maintain/template/book/lab.md.tmpl"):
+for name in ("README.md", "robo_genesis/doctor.py", "book/_toc.yml"):
     (root / name).read_text()
 (away / "written").write_text("only written")"""
-READ = ("relative", "bytes", "both", "appended", "low", "README.md", "doctor.py", "lab.md.tmpl")
+READ = ("relative", "bytes", "both", "appended", "low", "README.md", "doctor.py", "_toc.yml")
 
 READS_ITS_OWN = """\
 import os, pathlib, sys, tempfile
