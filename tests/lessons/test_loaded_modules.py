@@ -1,23 +1,13 @@
-"""Evidence keys cover what a page can load by its imports, and what the run of a lab does load."""
+"""Evidence keys cover what a page can load by its imports; a build compares what it does load."""
 
 import ast
-import json
-import os
-import shutil
-import subprocess
-import sys
 
 import pytest
 
-from robo_genesis.core.project import BOOK, CACHE, ROOT
+from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import kernel_environment
-from robo_genesis.pipeline.pages.sources import (
-    Tree,
-    lesson_modules,
-    measuring_modules,
-)
+from robo_genesis.pipeline.pages.sources import Tree, measuring_modules
 from robo_genesis.pipeline.pages.syntax import PACKAGE
 
 IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}
@@ -29,64 +19,6 @@ MADE_NAMES = {
 }
 """Where the package imports by a name made at run time: extensions of Sphinx, the module of a shown
 function, and the modules of lessons, which the keys have by their folders."""
-
-SHORT = "l02"
-"""The lesson with the shortest lab, which runs each time."""
-assert SHORT in LESSONS
-
-LABS = {page.lesson: page for page in find_pages(BOOK) if page.page == "lab"}
-
-RUN = """
-import json, os, sys
-from IPython.core.interactiveshell import InteractiveShell
-shell = InteractiveShell.instance()
-for cell in json.load(sys.stdin):
-    shell.run_cell(cell).raise_error()
-names = [name for name in sys.modules if name.split(".")[0] == "robo_genesis"]
-json.dump(names, open("loaded.json", "w"))
-os._exit(0)
-"""
-
-
-@pytest.fixture(
-    params=[
-        name if name == SHORT else pytest.param(name, marks=pytest.mark.slow) for name in LESSONS
-    ]
-)
-def lab(request):
-    return LABS[request.param]
-
-
-def loaded_modules(lab, tmp_path):
-    """Run the cells of a lab in a process of its own, which has the package without other lessons.
-
-    Where the registry finds all lessons, it loads what they use, which hides what this one uses.
-    """
-    others = [name for name in LESSONS if name != lab.lesson]
-    left_out = shutil.ignore_patterns("__pycache__", *others)
-    shutil.copytree(ROOT / PACKAGE, tmp_path / PACKAGE, ignore=left_out)
-    for name in ("pyproject.toml", "requirements.lock"):
-        shutil.copy(ROOT / name, tmp_path)
-    settings = kernel_environment(ROOT, CACHE, "a test", ROBO_GENESIS_RENDER="0")
-    cells = [cell.source for cell in lab.notebook.cells if cell.cell_type == "code"]
-    done = subprocess.run(
-        [sys.executable, "-c", RUN],
-        input=json.dumps(cells),
-        cwd=tmp_path,
-        env=os.environ | settings | {"PYTHONPATH": str(tmp_path), "MPLBACKEND": "agg"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return json.loads((tmp_path / "loaded.json").read_text())
-
-
-@pytest.mark.engine
-def test_a_run_loads_only_modules_that_the_keys_know(lab, tmp_path):
-    loaded = set(loaded_modules(lab, tmp_path))
-    reached = Tree().closure([*lesson_modules(lab.lesson, ROOT), *lab.code.imports])
-    assert loaded <= reached.keys()
 
 
 @pytest.mark.parametrize("page", find_pages(BOOK), ids=lambda page: f"{page.lesson}-{page.page}")

@@ -15,7 +15,6 @@ import psutil  # type: ignore[import-untyped]
 from jupyter_client.kernelspec import KernelSpecManager
 from jupyter_client.manager import AsyncKernelManager
 from jupyter_core.paths import jupyter_runtime_dir
-from traitlets import default
 
 from robo_genesis.core.project import ENGINE_PREFIXES
 
@@ -37,28 +36,18 @@ class CleanKernelManager(AsyncKernelManager):
 
     busy = False
 
-    @default("shutdown_wait_time")
-    def _time_to_save(self) -> float:
-        """Return the seconds for a kernel's exit; SIGTERM comes after the first half of them.
+    def __init__(self, **given: Any) -> None:
+        """Set what differs from a usual kernel.
 
-        The engine saves what it compiled in its exit handler, and the usual 5 s are too short.
+        The engine saves what it compiled in its exit handler, for which the usual 5 s are too
+        short; SIGTERM comes after the first half. The sockets are files, because kernels that start
+        at the same time can draw the same TCP port; their path is absolute, because kernels run in
+        other folders.
         """
-        return 120.0
-
-    @default("transport")
-    def _sockets_as_files(self) -> str:
-        """Return ipc: kernels that start at the same time can draw the same TCP port."""
-        return "ipc"
-
-    @default("ip")
-    def _place_of_sockets(self) -> str:
-        """Return an absolute path: the default is relative, and kernels run in other folders."""
-        return str(Path(jupyter_runtime_dir()) / "kernel")
-
-    @default("kernel_spec_manager")
-    def _no_installed_kernelspecs(self) -> KernelSpecManager:
-        """Return a manager that finds no folder, so that only the native kernel is left."""
-        return KernelSpecManager(kernel_dirs=[])
+        sockets = {"transport": "ipc", "ip": str(Path(jupyter_runtime_dir()) / "kernel")}
+        no_specs = KernelSpecManager(kernel_dirs=[])  # so that only the native kernel is left
+        own = {"shutdown_wait_time": 120.0, "kernel_spec_manager": no_specs}
+        super().__init__(**given | sockets | own)
 
     async def shutdown_kernel(  # type: ignore[override]
         self, now: bool = False, restart: bool = False

@@ -67,11 +67,10 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
     own = (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)
     accepted += [os.environ[name] for name in own if name in os.environ]
     places = {form: True for each in accepted for form in (each, os.path.realpath(each))}
-    places |= {str(ROOT): False, str(Path.home()): False}
+    places |= {"": False, str(ROOT): False, str(Path.home()): False}
 
     def is_accepted(path: str) -> bool:
-        around = [folder for folder in places if path.startswith(f"{folder}/")]
-        return bool(around) and places[max(around, key=len)]
+        return places[max((each for each in places if path.startswith(f"{each}/")), key=len)]
 
     names = os.fsdecode(_notes().read_bytes()).split("\0")
     found = {BYTECODE.sub(r"\1.py", name) for name in names} - set(map(str, keyed))

@@ -150,9 +150,9 @@ def require_keyed_imports(root: Path) -> None:
     ]
     if found:
         raise ProjectError(
-            f"Python would import {', '.join(sorted(found))} in {root}, which no key of a page covers. Valid is the "
-            f"folder {PACKAGE}, in which each module is one .py file. Move the others to another "
-            "folder or delete them."
+            f"Python would import {', '.join(sorted(found))} in {root}, which no key of a page "
+            f"covers. Valid is the folder {PACKAGE}, where each module is one .py file. Move the "
+            "others to another folder or delete them."
         )
 
 
