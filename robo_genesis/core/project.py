@@ -54,9 +54,6 @@ SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
 """Switches that Genesis itself sets when it is imported; they decide only how messages print."""
 
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
-LIBRARIES = ("LD_LIBRARY_PATH",)
-"""Where drivers may lie. It is no switch of a manifest: the engine appends to it at its import."""
-
 CACHE_FOLDERS = {
     "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
     "GS_CACHE_FILE_PATH": "geometry",  # by default below the user's home, for all versions
@@ -96,16 +93,15 @@ def engine_pin(root: Path = ROOT) -> str:
             not exact.
     """
     file, fix = str(root / "pyproject.toml"), "Fix the line in project.dependencies"
-    from_metadata = root == ROOT and not in_checkout()
-    if from_metadata:
+    if from_metadata := root == ROOT and not in_checkout():
         file = f"The metadata of the installed package {COURSE}"
         fix = "Install the course's wheel again with pip, or use a checkout"
     try:
-        if from_metadata:
-            lines = requires(COURSE) or []
-        else:
-            lines = tomllib.loads(Path(file).read_text("utf8"))["project"]["dependencies"]
-        engines = [line for line in map(Requirement, lines) if line.name == ENGINE]
+        text = "" if from_metadata else Path(file).read_text("utf8")
+        declared = (
+            requires(COURSE) if from_metadata else tomllib.loads(text)["project"]["dependencies"]
+        )
+        engines = [line for line in map(Requirement, declared or []) if line.name == ENGINE]
     except (KeyError, ValueError, PackageNotFoundError) as error:
         raise ProjectError(
             f'{file} cannot be read: {error}\nValid dependencies are like "numpy>=2.0". {fix}.'
@@ -234,8 +230,11 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
     given = os.environ if environment is None else environment
     defaults = {BACKEND: BUILD_BACKEND, RENDER: "1"}
     requested = {name: given.get(name) or default for name, default in defaults.items()}
-    libraries = {name: given[name] for name in LIBRARIES if given.get(name)}
-    return requested | engine_switches(given) | libraries
+    if libraries := given.get("LD_LIBRARY_PATH"):
+        requested["LD_LIBRARY_PATH"] = (
+            libraries  # no switch of a manifest: the engine appends to it
+        )
+    return requested | engine_switches(given)
 
 
 def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:

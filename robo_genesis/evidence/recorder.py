@@ -189,14 +189,12 @@ def files_match_wheel(*distributions: str) -> bool:
     whose folder Python finds a module that the wheel does not list.
     """
     for name in distributions:
-        listed = importlib.metadata.distribution(name).files or []
-        files = {Path(str(file.locate())): file for file in listed if file.hash}
-        folders = {
-            path.parents[len(file.parts) - 2]
-            for path, file in files.items()
-            if file.suffix == ".py" and len(file.parts) > 1
-        }
-        found = (path for folder in folders for path in files_below(folder))
+        package = importlib.metadata.distribution(name)
+        files = {Path(str(file.locate())): file for file in package.files or [] if file.hash}
+        folders = {file.parts[0] for file in files.values() if file.suffix == ".py"}
+        found = (
+            path for top in folders for path in files_below(Path(str(package.locate_file(top))))
+        )
         added = (path for path in found if path.name.endswith(IMPORTABLE) and path not in files)
         if not folders or any(added) or not all(map(_is_unchanged, files, files.values())):
             return False

@@ -162,9 +162,8 @@ def test_files_that_are_not_those_of_the_wheel_do_not_match_it(
         )
         for n in listed
     ]
-    monkeypatch.setattr(
-        record.importlib.metadata, "distribution", lambda name: SimpleNamespace(files=files)
-    )
+    package = SimpleNamespace(files=files, locate_file=lambda name: tmp_path / name)
+    monkeypatch.setattr(record.importlib.metadata, "distribution", lambda name: package)
     for name, text in ((beside, b""), (MODULE, content)):
         if text is not None:
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

@@ -39,25 +39,10 @@ class Underway:
     log: Path | None = None
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
-    cell_begin: float = 0.0
-
-    def reach(self, cell: int) -> None:
-        """Note that a cell starts."""
-        self.cell, self.cell_begin = cell, time.monotonic()
 
     def left(self, now: float) -> float | None:
-        """Return the estimated seconds to the end of the last cell, None without an earlier run.
-
-        Cells that wait are expected to take as long as last time. If the page has another number
-        of cells now, the estimate is for the whole page.
-        """
-        if self.last is None:
-            return None
-        seconds = self.last.cell_seconds
-        if self.cell == 0 or len(seconds) != self.cells:
-            return max(0.0, self.last.seconds - (now - self.begin))
-        this_cell = max(0.0, seconds[self.cell - 1] - (now - self.cell_begin))
-        return this_cell + sum(seconds[self.cell :])
+        """Return the estimated seconds to the end of the last cell, None without an earlier run."""
+        return max(0.0, self.last.seconds - (now - self.begin)) if self.last else None
 
     def started(self) -> str:
         """Return what the line at its start says."""
@@ -251,7 +236,7 @@ def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) ->
     try:
         received = connection.recv()
         if isinstance(received, int):
-            underway.reach(received)
+            underway.cell = received
             return None
         seconds, failure = received
     except EOFError:
