@@ -50,9 +50,6 @@ ENGINE_PREFIXES = (
     "GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "ROCM_", "HSA_", "CUDA_",
     "NVIDIA_TF32_",
 )  # fmt: skip
-SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
-"""Switches that Genesis itself sets when it is imported; they decide only how messages print."""
-
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
 CACHE_FOLDERS = {
     "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
@@ -149,12 +146,11 @@ def require_pinned_engine(root: Path = ROOT) -> str:
     """
     pin, installed = engine_pin(root), installed_version(ENGINE)
     if installed != pin:
-        found = f"Installed is {ENGINE} {installed or '(none)'}, "
-        if not in_checkout():
-            raise ProjectError(f"{found}the course needs {pin}. Run pip install {ENGINE}=={pin}.")
+        fix = f"Run pip install {ENGINE}=={pin}."
+        if in_checkout():
+            fix = "Run pip install -r requirements.lock, or change pin and lock together."
         raise ProjectError(
-            f"{found}pinned in pyproject.toml is {pin}. Install the lock (pip install -r "
-            "requirements.lock), or change pin and lock together."
+            f"Installed is {ENGINE} {installed or '(none)'}, pinned here is {pin}. {fix}"
         )
     return pin
 
@@ -181,8 +177,8 @@ def locked_versions(lock: str) -> dict[str, str]:
 
 def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
     """Return the folder for what the engine compiles: one per engine version and lock."""
-    name = f"{engine_pin(root)}-{lock_digest(root)[:12]}"
-    return (cache or root / ".cache") / COMPILED / name
+    cache = cache or root / ".cache"
+    return cache / COMPILED / f"{engine_pin(root)}-{lock_digest(root)[:12]}"
 
 
 def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> dict[str, str]:
@@ -228,13 +224,10 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
         folders of libraries those that are set; the folders of compiled code are not included.
     """
     given = os.environ if environment is None else environment
-    defaults = {BACKEND: BUILD_BACKEND, RENDER: "1"}
-    requested = {name: given.get(name) or default for name, default in defaults.items()}
-    if libraries := given.get("LD_LIBRARY_PATH"):
-        requested["LD_LIBRARY_PATH"] = (
-            libraries  # no switch of a manifest: the engine appends to it
-        )
-    return requested | engine_switches(given)
+    # The engine appends to LD_LIBRARY_PATH, so it is no switch of a manifest.
+    names = (BACKEND, RENDER, "LD_LIBRARY_PATH")
+    requested = {name: given[name] for name in names if given.get(name)}
+    return {BACKEND: BUILD_BACKEND, RENDER: "1"} | requested | engine_switches(given)
 
 
 def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
@@ -243,7 +236,8 @@ def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
     They are the same before and after the import of the engine.
     """
     switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)}
-    switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | set(SET_BY_ENGINE)
+    # Genesis itself sets the last one at its import; it decides only how messages print.
+    switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | {"QD_ENABLE_PYBUF"}
     return {name: environment[name] for name in sorted(switches)}
 
 

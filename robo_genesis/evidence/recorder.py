@@ -11,13 +11,12 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from datetime import UTC, datetime
-from importlib.machinery import all_suffixes
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.files import files_below, replaced
+from robo_genesis.core.files import replaced
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle_files import list_files
@@ -30,7 +29,6 @@ from robo_genesis.sim.camera.frames import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
-IMPORTABLE = tuple(all_suffixes())
 NOT_RECORDED = f":(exclude,glob){project.BOOK.name}/evidence/*/*/**"
 """The pathspec of git for all files of a checkout that are not in a recorded bundle."""
 
@@ -185,23 +183,17 @@ def require_complete(run: Experiment) -> None:
 def files_match_wheel(*distributions: str) -> bool:
     """Whether every installed file of the packages has the digest that its wheel recorded.
 
-    A package without recorded digests, such as an editable one, does not match, nor does one in
-    whose folder Python finds a module that the wheel does not list.
+    A package without recorded digests, such as an editable one, does not match.
     """
     for name in distributions:
-        package = importlib.metadata.distribution(name)
-        files = {Path(str(file.locate())): file for file in package.files or [] if file.hash}
-        folders = {file.parts[0] for file in files.values() if file.suffix == ".py"}
-        found = (
-            path for top in folders for path in files_below(Path(str(package.locate_file(top))))
-        )
-        added = (path for path in found if path.name.endswith(IMPORTABLE) and path not in files)
-        if not folders or any(added) or not all(map(_is_unchanged, files, files.values())):
+        files = [f for f in importlib.metadata.distribution(name).files or [] if f.hash]
+        if not any(f.suffix == ".py" for f in files) or not all(map(_is_unchanged, files)):
             return False
     return True
 
 
-def _is_unchanged(path: Path, file: importlib.metadata.PackagePath) -> bool:
+def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
+    path = Path(str(file.locate()))
     if file.hash is None or not path.is_file():
         return False
     digest = hashlib.new(file.hash.mode, path.read_bytes()).digest()

@@ -7,6 +7,7 @@ import time
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
@@ -20,8 +21,6 @@ from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_de
 from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
 from robo_genesis.pipeline.pages.store import last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
-
-HEARTBEAT = 30.0
 
 
 @dataclass(slots=True)
@@ -40,10 +39,6 @@ class Underway:
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
 
-    def left(self, now: float) -> float | None:
-        """Return the estimated seconds to the end of the last cell, None without an earlier run."""
-        return max(0.0, self.last.seconds - (now - self.begin)) if self.last else None
-
     def started(self) -> str:
         """Return what the line at its start says."""
         expected = f", about {self.last.seconds:.0f} s" if self.last else ""
@@ -53,16 +48,16 @@ class Underway:
     def state(self, now: float) -> str:
         """Return cell, elapsed time and estimated remaining time."""
         cell = f"cell {self.cell} of {self.cells}" if self.cell else "kernel starts"
-        left = self.left(now)
-        estimate = "" if left is None else f", ~{left:.0f} s left"
-        return f"{cell}, {now - self.begin:.0f} s{estimate}"
+        elapsed = now - self.begin
+        left = f", ~{max(0.0, self.last.seconds - elapsed):.0f} s left" if self.last else ""
+        return f"{cell}, {elapsed:.0f} s{left}"
 
 
 class Lines:
     """Reports pages as lines: each start and end, and now and then how far the pages are."""
 
     def __init__(
-        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = HEARTBEAT
+        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = 30.0
     ) -> None:
         """Report to `say`, which takes a page's name and an event, or the running pages and "".
 
@@ -146,8 +141,8 @@ def execute_pages(
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
-                    kept = log if logs else None
-                    underway = Underway(page.docname, cells, last[page.docname], kept)
+                    before, kept = last[page.docname], log if logs else None
+                    underway = Underway(page.docname, cells, before, kept)
                     report.say(page.docname, underway.started())
                     _start(run, underway, running)
                 for connection in wait(list(running), timeout=report.pause()):
@@ -189,13 +184,11 @@ def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> l
         last: the record of the last execution of each page, by name. Pages without one come first,
             and among them those with the most cells.
     """
-
-    def sooner(page: Page) -> tuple[bool, float, int]:
-        record = last[page.docname]
-        seconds = -record.seconds if record else float("-inf")
-        return page.alone, seconds, -len(page.code.sources)
-
-    return sorted(pages, key=sooner)
+    seconds = {name: record.seconds for name, record in last.items() if record}
+    return sorted(
+        pages,
+        key=lambda page: (page.alone, -seconds.get(page.docname, inf), -len(page.code.sources)),
+    )
 
 
 def _reused(

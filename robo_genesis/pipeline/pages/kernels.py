@@ -74,8 +74,7 @@ def clean_environment(
     """
     folders = {
         "IPYTHONDIR": home / "ipython",
-        "JUPYTER_CONFIG_DIR": home / "jupyter-config",
-        "JUPYTER_DATA_DIR": home / "jupyter-data",
+        **dict.fromkeys(("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR"), home / "jupyter"),
         "JUPYTER_RUNTIME_DIR": runtime,
     }
     for folder in folders.values():

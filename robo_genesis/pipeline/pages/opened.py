@@ -21,21 +21,16 @@ OWN = os.O_TRUNC | os.O_EXCL
 
 
 def start() -> None:
-    """Do what each kernel does first, before the page's own cells."""
+    """Prepare a kernel, and note from now on each file that its Python opens for reading.
+
+    What the process itself made or emptied is not noted. What compiled code or a child process
+    opens is not seen.
+    """
     # ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run
     # last: one that is registered right after them runs right before them, after the engine's, and
     # ends it.
     atexit.register(os._exit, 0)
     spare_searches()  # here, because pages import the engine before the course
-    note_opened()
-
-
-def note_opened() -> None:
-    """Note from now on each file that Python opens for reading in this process.
-
-    What the process itself made or emptied is not noted. What compiled code or a child process
-    opens is not seen.
-    """
     notes, seen = os.open(_notes(), os.O_WRONLY | os.O_CREAT), set()
 
     def note(event: str, arguments: tuple[Any, ...]) -> None:
@@ -64,8 +59,7 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
         keyed: the files of the checkout that the page's fingerprint covers.
     """
     accepted = [*SYSTEM, sys.prefix, sys.base_prefix, str(CACHE / "derived")]
-    own = (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)
-    accepted += [os.environ[name] for name in own if name in os.environ]
+    accepted += filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))
     places = {form: True for each in accepted for form in (each, os.path.realpath(each))}
     places |= {"": False, str(ROOT): False, str(Path.home()): False}
 

@@ -31,9 +31,6 @@ from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_name
 if TYPE_CHECKING:  # a verification loads no Jupyter
     from robo_genesis.pipeline.pages.book import Page
 
-IMPORTABLE = (*EXTENSION_SUFFIXES, *BYTECODE_SUFFIXES)
-"""How the name of an importable file ends that is no source."""
-
 USED_BY_NO_PAGE = ("maintain", "site")
 
 COMPUTING = ("core", "sim", "lessons")
@@ -98,7 +95,7 @@ class Tree:
     def data(self) -> dict[Path, str]:
         """The digest of each file that is not a module, except in what no page can import."""
         files = files_below(self.root / PACKAGE, USED_BY_NO_PAGE, NO_SOURCE)
-        return {path: sha256(path) for path in files if module_name(path, self.root) is None}
+        return {path: sha256(path) for path in files if path.suffix != ".py"}
 
     def data_for(self, used: Iterable[Path]) -> dict[str, str]:
         """Return digests by names below the package: of a lesson only if a file of it is used.
@@ -121,17 +118,11 @@ class Tree:
         return self.closure([*page.code.imports, *own])
 
 
-def module_name(path: Path, root: Path) -> str | None:
-    """Return the dotted name of a module's file, None for a file that no statement can import."""
-    stem, suffix = os.path.splitext(str(path).removeprefix(f"{root}{os.sep}"))
-    parts = stem.split(os.sep)
-    return ".".join(parts) if suffix == ".py" and all(map(str.isidentifier, parts)) else None
-
-
 def lesson_modules(lesson: str, root: Path) -> list[str]:
     """Return the modules below the folder of a lesson."""
     files = sorted(files_below(root / PACKAGE / "lessons" / lesson, left_out=NO_SOURCE))
-    return [name for path in files if (name := module_name(path, root))]
+    names = (path.relative_to(root).with_suffix("") for path in files if path.suffix == ".py")
+    return [".".join(name.parts) for name in names]
 
 
 def require_keyed_imports(root: Path) -> None:
@@ -145,7 +136,7 @@ def require_keyed_imports(root: Path) -> None:
     found += [
         path.relative_to(root).as_posix()
         for path in files_below(root / PACKAGE)
-        if path.name.endswith(IMPORTABLE)
+        if path.name.endswith((*EXTENSION_SUFFIXES, *BYTECODE_SUFFIXES))
         or (path.name == "__init__.py" and path.parent.with_suffix(".py").is_file())
     ]
     if found:
@@ -173,8 +164,7 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
         `lessons/l04/arm.xml`, to digest.
     """
     own, tree = f"{PACKAGE}.lessons.{lesson}", Tree(root)
-    init = tree.module(own)
-    given = imported_names(tree.text(init), own) if init else ()
+    given = imported_names(tree.text(init), own) if (init := tree.module(own)) else ()
     of_sim = [name for name in given if name.startswith(f"{PACKAGE}.sim.")]
     modules = tree.closure([*lesson_modules(lesson, root), *of_sim, *imports], tree.measures)
     data = tree.data_for([*modules.values(), root / PACKAGE / "lessons" / lesson / "__init__.py"])

@@ -118,8 +118,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     def cell_starts(cell: NotebookNode, cell_index: int) -> None:
         CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
-        before = notebook.cells[: cell_index + 1]
-        on_cell(sum(cell.cell_type == "code" for cell in before))
+        on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False
@@ -162,8 +161,8 @@ def _unkeyed(run: PageRun) -> Failure | None:
     return Failure(
         "FileNotKeyed",
         f"the page read {', '.join(names)}. It would not be executed again if that changed. Valid "
-        "are files of its lesson's folder, of modules that it imports, of installed packages, and "
-        f"files that it makes. Move them into {PACKAGE}/lessons/{run.page.lesson or '…'}.",
+        "are files of its lesson's folder, of imported modules and of packages, and its own. "
+        f"Move them into {PACKAGE}/lessons/{run.page.lesson or '…'}.",
     )
 
 

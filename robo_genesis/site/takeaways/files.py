@@ -28,7 +28,7 @@ from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.sources import Tree
+from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.takeaways.notebooks import executed_notebook, student_notebook, version_check
 from robo_genesis.site.takeaways.plain_markdown import Writer
@@ -50,7 +50,6 @@ DEBIAN = ("python3-venv", "libegl1", "libgl1")
 """Packages of Debian that a fresh system lacks."""
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
-PACKAGE = "robo_genesis"
 EPOCH = "315532800"
 """1980-01-01, the oldest time that a zip can hold."""
 
@@ -251,15 +250,13 @@ def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -
     ]
     inputs = [part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes())]
     inputs.append(repository.encode())
-    built = derived("wheel", inputs, lambda: built_wheel(root, repository))
-    name, _, content = built.partition(b"\n")
-    wheel = folder / name.decode()
-    write_whole(wheel, content)
+    wheel = folder / f"{PACKAGE}-{package_facts()['version']}-py3-none-any.whl"
+    write_whole(wheel, derived("wheel", inputs, lambda: built_wheel(root, repository)))
     return wheel
 
 
 def built_wheel(root: Path, repository: str = "") -> bytes:
-    """Return the name of the wheel, a line end and its content; `root` stays as it is."""
+    """Return the content of the wheel; `root` stays as it is."""
     with tempfile.TemporaryDirectory() as name:
         copy = Path(name)
         for source in SOURCES:
@@ -273,4 +270,4 @@ def built_wheel(root: Path, repository: str = "") -> bytes:
         settings = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}
         command, refusal = [sys.executable, "-c", BUILD, "."], "The package's wheel cannot be built"
         name = output_of(command, refusal, cwd=copy, env=settings).splitlines()[-1]
-        return f"{name}\n".encode() + (copy / name).read_bytes()
+        return (copy / name).read_bytes()

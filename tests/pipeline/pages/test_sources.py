@@ -79,7 +79,6 @@ def test_a_cell_that_cannot_run_or_needs_no_module_imports_nothing(source):
         ("robo_genesis/evidence/data.json", "1", True),
         ("robo_genesis/lessons/l04/arm.xml", "1", True),
         ("robo_genesis/lessons/l04/data/arm", "1", True),
-        ("robo_genesis/lessons/l04/data.v1/arm.py", "# a comment", True),  # no module by its name
         ("robo_genesis/lessons/l04/deep/spec.py", "X = 1", True),
         ("robo_genesis/lessons/l03/data.csv", "1", False),
         ("robo_genesis/lessons/l04/arm.xml~", "1", False),
