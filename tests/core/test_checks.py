@@ -140,8 +140,7 @@ def test_a_shared_check_names_each_value_that_is_not_allowed(findings, labels):
 
 
 @pytest.mark.parametrize(
-    ("other", "passed"),
-    [(Case(steps=8), True), (Case(), False), (Case(steps=8, dt=0.25), False)],
+    ("other", "passed"), [(Case(steps=8), True), (Case(), False), (Case(steps=8, dt=0.25), False)]
 )
 def test_compared_cases_differ_in_the_given_fields_alone(other, passed):
     pairs = {("one", "other"): ["steps"]}

@@ -7,6 +7,7 @@ import time
 import uuid
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
@@ -20,8 +21,6 @@ from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_de
 from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
 from robo_genesis.pipeline.pages.store import failed_mark, last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
-
-HEARTBEAT = 30.0
 
 
 @dataclass(slots=True)
@@ -39,25 +38,6 @@ class Underway:
     log: Path | None = None
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
-    cell_begin: float = 0.0
-
-    def reach(self, cell: int) -> None:
-        """Note that a cell starts."""
-        self.cell, self.cell_begin = cell, time.monotonic()
-
-    def left(self, now: float) -> float | None:
-        """Return the estimated seconds to the end of the last cell, None without an earlier run.
-
-        Cells that wait are expected to take as long as last time. If the page has another number
-        of cells now, the estimate is for the whole page.
-        """
-        if self.last is None:
-            return None
-        seconds = self.last.cell_seconds
-        if self.cell == 0 or len(seconds) != self.cells:
-            return max(0.0, self.last.seconds - (now - self.begin))
-        this_cell = max(0.0, seconds[self.cell - 1] - (now - self.cell_begin))
-        return this_cell + sum(seconds[self.cell :])
 
     def started(self) -> str:
         """Return what the line at its start says."""
@@ -68,16 +48,16 @@ class Underway:
     def state(self, now: float) -> str:
         """Return cell, elapsed time and estimated remaining time."""
         cell = f"cell {self.cell} of {self.cells}" if self.cell else "kernel starts"
-        left = self.left(now)
-        estimate = "" if left is None else f", ~{left:.0f} s left"
-        return f"{cell}, {now - self.begin:.0f} s{estimate}"
+        elapsed = now - self.begin
+        left = f", ~{max(0.0, self.last.seconds - elapsed):.0f} s left" if self.last else ""
+        return f"{cell}, {elapsed:.0f} s{left}"
 
 
 class Lines:
     """Reports pages as lines: each start and end, and now and then how far the pages are."""
 
     def __init__(
-        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = HEARTBEAT
+        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = 30.0
     ) -> None:
         """Report to `say`, which takes a page's name and an event, or the running pages and "".
 
@@ -168,8 +148,8 @@ def execute_pages(
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
-                    kept = log if logs else None
-                    underway = Underway(page.docname, cells, last[page.docname], kept)
+                    before, kept = last[page.docname], log if logs else None
+                    underway = Underway(page.docname, cells, before, kept)
                     report.say(page.docname, underway.started())
                     _start(run, underway, running)
                 for connection in wait(list(running), timeout=report.pause()):
@@ -223,11 +203,11 @@ def in_order(
             the others, and among them those with the most cells.
         failed: the names of pages that come before all others.
     """
+    seconds = {name: record.seconds for name, record in last.items() if record}
 
     def sooner(page: Page) -> tuple[bool, bool, float, int]:
-        record = last[page.docname]
-        seconds = -record.seconds if record else float("-inf")
-        return page.docname not in failed, page.alone, seconds, -len(page.code.sources)
+        name = page.docname
+        return name not in failed, page.alone, -seconds.get(name, inf), -len(page.code.sources)
 
     return sorted(pages, key=sooner)
 
@@ -276,7 +256,7 @@ def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) ->
     try:
         received = connection.recv()
         if isinstance(received, int):
-            underway.reach(received)
+            underway.cell = received
             return None
         seconds, failure = received
     except EOFError:

@@ -66,7 +66,6 @@ def write_page(
     page: Page,
     notebook: NotebookNode,
     left: Path,
-    *,
     run_id: str,
     seconds: float,
     cell_seconds: Sequence[float],
@@ -121,16 +120,11 @@ def plain_files(folder: Path) -> list[str]:
             found, name = path.lstat(), path.relative_to(folder).as_posix()
             if stat.S_ISDIR(found.st_mode):
                 continue
-            if not stat.S_ISREG(found.st_mode):
-                raise PageRefused(
-                    "files", f"{name} is a link or device. Only plain files are accepted."
-                )
+            reason = "" if stat.S_ISREG(found.st_mode) else "is a link or device, no plain file"
             if found.st_size > SIZE_LIMIT or len(names) == FILES_LIMIT:
-                raise PageRefused(
-                    "files",
-                    f"{name} exceeds a limit: at most {FILES_LIMIT} files, of at most {SIZE_LIMIT} "
-                    "bytes each. Let the page leave less.",
-                )
+                reason = f"exceeds a limit: at most {FILES_LIMIT} files, each of {SIZE_LIMIT} bytes"
+            if reason:
+                raise PageRefused("files", f"{name} {reason}. Let the page leave only plain files.")
             names.append(name)
     return names
 

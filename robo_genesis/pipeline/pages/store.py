@@ -22,7 +22,7 @@ from robo_genesis.pipeline.pages.folder import (
     require_this_page,
 )
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle, unexpected_outcome
-from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint
+from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint, require_keyed_imports
 
 Verify = Callable[[Path, str], Any]
 """Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""
@@ -45,7 +45,11 @@ def places(
         store: the folder of all executed pages.
         root: the checkout.
         environment: variables, by default those of this process.
+
+    Raises:
+        ProjectError: Python would run files of the checkout that no fingerprint covers.
     """
+    require_keyed_imports(root)
     store, tree = store.absolute(), Tree(root)
     return {
         page.docname: store / _folder(page) / page_fingerprint(page, tree, environment)

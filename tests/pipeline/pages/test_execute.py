@@ -12,6 +12,7 @@ from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raisin
 
 from robo_genesis.core.project import (
     COMPILED_KERNELS,
+    ROOT,
     engine_cache_environment,
     engine_cache_folder,
 )
@@ -254,6 +255,40 @@ print(os.environ["GIVEN"], len(os.environ["ROBO_GENESIS_RUN_ID"]))"""
     [executed] = (tmp_path / "store/page").glob("*/executed.ipynb")
     [output] = nbformat.read(executed, as_version=4).cells[0].outputs
     assert output.text == f"{sys.executable} False []\nyes 32\n"
+
+
+READS = """\
+import importlib, os, pathlib
+os.chdir({away!r})
+for name, mode in (("relative", "r"), (os.fsencode({away!r} + "/bytes"), "r+"), ("added", "a+")):
+    open(name, mode).close()
+os.close(os.open("low", os.O_RDONLY))
+pathlib.Path({root!r}, "README.md").read_text()
+importlib.import_module("robo_genesis." + "compare")
+pathlib.Path("written").write_text("only written")"""
+READ = ("relative", "bytes", "added", "low", "README.md", "compare.py")
+OWN = """\
+import os, pathlib, tempfile
+from robo_genesis.core import text
+for name in ("own", {away!r} + "/made"):
+    pathlib.Path(name).write_text("own")
+with tempfile.NamedTemporaryFile() as file:
+    for name in ("own", {away!r} + "/made", file.name, "/etc/passwd", os.__file__, text.__file__):
+        open(name, "rb").close()"""
+
+
+def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp_path):
+    for name in READ[:4]:
+        (tmp_path / name).touch()
+    codes = {"refused": READS, "accepted": OWN}
+    place = {"away": str(tmp_path), "root": str(ROOT)}
+    make_book(tmp_path, **{name: notebook(cell(of.format(**place))) for name, of in codes.items()})
+    results = execute(tmp_path, jobs=2)
+    assert results["accepted"].status == "executed", results["accepted"].failure
+    failure = results["refused"].failure
+    names = failure.message.removeprefix("the page read ").partition(". It would not")[0]
+    assert failure.error == "FileNotKeyed"
+    assert {*READ} <= {Path(name).name for name in names.split(", ")}
 
 
 def test_a_killed_worker_is_a_failed_page(tmp_path):

@@ -59,7 +59,7 @@ def test_what_is_missing_or_does_not_apply_is_named_with_the_remedy(given, said)
 
 def test_the_same_switches_are_passed_as_by_a_recording_without_a_container():
     """Except the place of ROCm: the image has its own."""
-    assert set(rocm_container.PASSED) == set(ENGINE_PREFIXES) - {"ROCM_"}
+    assert set(rocm_container.PASSED) == set(ENGINE_PREFIXES) - {"ROCM_", "NVIDIA_TF32_"}
 
 
 def test_a_host_without_packages_gets_the_message(tmp_path):
