@@ -1,7 +1,8 @@
 """Measured outputs of a page: named functions of the experiment, and their results as MIME data.
 
 A page shows such an output with `page.show`. The build calls the same function on the experiment
-that it reads from the page's bundle, and refuses a page with another result.
+that it reads from the page's bundle, and refuses a page with another result. Any other output of a
+cell is only compared with the copy in the bundle.
 """
 
 import io

@@ -1,5 +1,6 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,6 +12,7 @@ from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown
 from robo_genesis.pipeline.pages.folder import RECORD, stored_notebook
+from robo_genesis.pipeline.pages.printed import declared
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.pipeline.pages.store import Verify
@@ -49,8 +51,8 @@ def verify_results(
 def outputs_compared(result: PageResult, manifest: Manifest) -> str:
     """Compare the outputs of a page with its bundle, and return their number.
 
-    A page is compared once: the result is kept for the record of its files with their digests, and
-    for the code that compares.
+    A page is compared once: the result is kept for the record of its files with their digests, for
+    the values that its cells name, and for the code that compares.
 
     Raises:
         BundleRefused: `shown`.
@@ -59,12 +61,13 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> str:
     assert bundle is not None
     record = (folder / RECORD).read_bytes()
     code = [path.read_bytes() for path in Tree().closure([shown.__name__]).values()]
+    named = json.dumps(declared(result.page.notebook)).encode()
 
     def compare() -> bytes:
         notebook = stored_notebook(result)
         return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
 
-    return derived("shown", [record, *code], compare).decode()
+    return derived("shown", [record, named, *code], compare).decode()
 
 
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:

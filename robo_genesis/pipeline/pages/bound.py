@@ -1,14 +1,20 @@
-"""What a page shows is what was measured: its measured outputs follow again from its bundle.
+"""What a page shows is what its run put out: all of its outputs are compared with its bundle.
 
-Each `page.show(function, ...)` leaves one output, and the metadata of the output name the function.
-The same function, called on the experiment of the bundle with the accepted metrics, must give the
-same output. Other outputs are not compared, and the site says so below them.
+Three rules, from the strongest:
+
+1. Each `page.show(function, ...)` leaves one output, and the metadata of the output name the
+   function. The same function, called on the experiment of the bundle with the accepted metrics,
+   must give the same output.
+2. A number that a cell prints, and names with the option `prints`, is that value of the bundle.
+3. Every output, also of these two kinds, is the one in the bundle's `printed.json`. Nothing else
+   confirms other outputs, and the site says below them that the run printed them.
 """
 
 import ast
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +27,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import BundleRefused, expect
+from robo_genesis.pipeline.pages import printed
 from robo_genesis.pipeline.pages.book import Page
 
 PAGE = "page"
@@ -48,7 +55,7 @@ metadata of the output."""
 
 
 def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Manifest) -> int:
-    """Require that each measured output of an executed page follows from its bundle.
+    """Require that all outputs of an executed page are those of its bundle.
 
     Args:
         page: the page as it is now.
@@ -57,16 +64,18 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
         manifest: of that bundle.
 
     Returns:
-        The number of outputs compared.
+        The number of outputs that were computed again.
 
     Raises:
-        BundleRefused: `shown`, naming page, cell and function.
+        BundleRefused: `shown`, naming page, cell and output.
     """
-    calls = calls_of(page)
-    outputs = [marked(cell) for cell in executed.cells if cell.cell_type == "code"]
+    cells = [cell for cell in executed.cells if cell.cell_type == "code"]
     experiment, compared = None, 0
-    for number, (named, found) in enumerate(zip(calls, outputs, strict=True), start=1):
-        place = f"{page.docname}, code cell {number}"
+    options = printed.declared(page.notebook)
+    for number, (named, values, cell) in enumerate(
+        zip(calls_of(page), options, cells, strict=True), start=1
+    ):
+        place, found = f"{page.docname}, code cell {number}", marked(cell)
         if len(found) != len(named):
             what = f"number of measured outputs is {len(found)}, expected {len(named)}"
             raise _refused(f"{place}: {what}. {ONCE}")
@@ -74,7 +83,32 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
             experiment = experiment or accepted_experiment(folder, manifest)
             _compare(f"{place}, {call['function']}", call, output, experiment)
             compared += 1
+        if values and (reason := printed.contradiction(values, cell, folder)):
+            raise BundleRefused("shown", f"{place}: {reason}. Correct the option or the cell.")
+    require_printed(page.docname, executed, folder)
     return compared
+
+
+def require_printed(docname: str, executed: NotebookNode, folder: Path) -> None:
+    """Require that the outputs of an executed page are those that its bundle has kept.
+
+    Raises:
+        BundleRefused: `shown`, naming page, cell, output and place of the first difference.
+    """
+    if not (folder / bundle.PRINTED).is_file():
+        raise _refused(
+            f"{docname}: its bundle has no {bundle.PRINTED}, which only the build writes."
+        )
+    found, kept = printed.outputs_of(executed), bundle.read_printed(folder)
+    cells = enumerate(zip_longest(found, kept, fillvalue=()), start=1)
+    for cell, number, here, there in (
+        (cell, number, *pair)
+        for cell, outputs in cells
+        for number, pair in enumerate(zip_longest(*outputs), start=1)
+    ):
+        if here != there:
+            what = difference_of(str(here), str(there), False)
+            raise _refused(f"{docname}, code cell {cell}, output {number} of its run: {what}.")
 
 
 def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:

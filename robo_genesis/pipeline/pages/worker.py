@@ -152,7 +152,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
                 seconds=elapsed,
                 cell_seconds=seconds,
             )
-        except (PageRefused, OSError) as caught:
+        except (PageRefused, OSError, ValueError) as caught:
             failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return failure
 

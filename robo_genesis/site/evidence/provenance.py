@@ -1,14 +1,14 @@
-"""Finds each figure and measured table of a page, and writes its origin below it.
+"""Finds what cells and runs show on a page, and writes its origin below it.
 
-A picture or table is measured if it is an output of a code cell, shown there or glued elsewhere, or
-was read from a bundle. The tables of a cell that is tagged `inputs` were chosen. Outputs of a page
-that `page.show` did not display are printed: the build does not compare them with the bundle. A
-picture that no run made is an illustration. A table typed in prose is not listed.
+A picture or table is measured if `page.show` displayed it, on the page or glued elsewhere, or if it
+was read from a bundle. Other outputs of cells are printed, also texts: the build compares them with
+the bundle, but does not compute them again. The outputs of a cell that is tagged `inputs` were
+chosen. A picture that no run made is an illustration. A table typed in prose is not listed.
 """
 
 import re
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
@@ -23,7 +23,7 @@ from robo_genesis.pipeline.pages.bound import marked
 from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
-from robo_genesis.site.evidence.ledger_data import MEASURED, Item, PageRun
+from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, PageRun
 from robo_genesis.site.evidence.origin import INPUTS, above, cell_of, origin
 
 TITLE = 80
@@ -49,56 +49,66 @@ def all_runs(book: Path) -> dict[str, PageRun]:
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:
-    """List the figures and tables of a page, and write its origin below each of them."""
+    """List the outputs and pictures of a page, and write its origin below each of them."""
     env = app.env
     book, items = Path(env.srcdir), []
-    known, compared = all_runs(book), compared_cells(book, env.docname)
-    for node in list(doctree.findall(lambda n: isinstance(n, nodes.table | nodes.image))):
-        keys = origin(node, measured_pages(book).get(env.docname))
-        is_table = isinstance(node, nodes.table)
-        if keys is None and is_table:
+    known, page = all_runs(book), measured_pages(book).get(env.docname)
+    recomputed = recomputed_cells(book, env.docname) if page else set()
+    for node in list(doctree.findall(nodes.Element)):
+        texts = printed_texts(node, recomputed)
+        if not texts and not isinstance(node, nodes.table | nodes.image):
             continue
-        if problem := _problem(keys, known, is_table):
+        last = texts[-1] if texts else node
+        cell, keys = cell_of(last), origin(last, page)
+        if keys is None and isinstance(node, nodes.table):
+            continue
+        if problem := _problem(keys, known, node):
             logger.warning(problem, location=env.docname)
             continue
-        holder = node if is_table else next(above(node, nodes.figure), node)
-        item = describe(holder, node, env.docname, keys, book)
-        cell = cell_of(node)
-        not_compared = cell is not None and cell.get("cell_index") not in (compared or ())
-        if compared is not None and not_compared and item.kind != "settings":
-            item = replace(item, kind="printed", runs=())
+        in_figure = next(above(node, nodes.figure), node)
+        holder = in_figure if isinstance(node, nodes.image) else node
+        item = describe(holder, node, env.docname, keys, book, texts)
+        by_page = page and cell is not None and cell.get("cell_index") not in recomputed
+        if by_page and item.kind != "settings":
+            item = replace(item, kind="printed")
         items.append(item)
         runs = [known[key] for key in item.runs]
-        add_line(holder, ledger_data.provenance(item.kind, runs), item.row)
+        line = ledger_data.provenance(item.kind, runs)
+        add_line(last if texts else holder, line, item.row)
     env.metadata[env.docname][ITEMS] = items
 
 
-def compared_cells(book: Path, docname: str) -> set[int] | None:
-    """Return the places of the cells all of whose outputs the build compared with the bundle.
-
-    Returns:
-        None for a page that declares no bundle.
-    """
-    if docname not in measured_pages(book):
-        return None
+def recomputed_cells(book: Path, docname: str) -> set[int]:
+    """Return the places of the cells of which `page.show` displayed all but texts."""
     page = next(page for page in find_pages(book) if page.docname == docname)
     places = [k for k, cell in enumerate(page.notebook.cells) if cell.cell_type == "code"]
-    ran = executed_notebook(docname, page.notebook).cells
-    found = {}
-    for place, cell in zip(places, ran, strict=True):
-        shown = [output for output in cell.outputs if "data" in output]
-        found[place] = (len(shown), len(marked(cell)))
-    return {place for place, (shown, count) in found.items() if shown == count}
+    ran = zip(places, executed_notebook(docname, page.notebook).cells, strict=True)
+    return {k for k, cell in ran if marked(cell) == [out for out in cell.outputs if "data" in out]}
+
+
+def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Element]:
+    """Return the texts among the outputs of a cell, nothing for a node that is no box of outputs.
+
+    Args:
+        box: any node.
+        recomputed: the cells whose texts are streams and errors alone.
+    """
+    if box.get("nb_element") not in ("cell_code_output", "glued"):
+        return []
+    shown = box.parent.get("cell_index") in recomputed
+    parts = (part for part in box if not (shown and part.get("nb_element") == "mime_bundle"))
+    others = lambda node: isinstance(node, nodes.table | nodes.image)  # noqa: E731
+    return [part for part in parts if part.astext().strip() and not [*part.findall(others)]]
 
 
 def _problem(
-    keys: tuple[str, ...] | None, known: Mapping[str, PageRun], is_table: bool
+    keys: tuple[str, ...] | None, known: Mapping[str, PageRun], node: nodes.Element
 ) -> str | None:
     """Return why an item cannot be listed."""
-    if keys == () and not is_table:
+    if keys == () and isinstance(node, nodes.image):
         return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."
-    if not set(keys or ()) <= known.keys():
-        what = "table" if is_table else "picture"
+    if isinstance(node, nodes.table | nodes.image) and not set(keys or ()) <= known.keys():
+        what = "table" if isinstance(node, nodes.table) else "picture"
         return (
             f"a cell shows a {what}, but the page declares no bundle. Give its front matter "
             f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
@@ -112,28 +122,39 @@ def describe(
     docname: str,
     keys: tuple[str, ...] | None,
     book: Path,
+    texts: Sequence[nodes.Element],
 ) -> Item:
-    """Return the ledger's item of a table or picture, and give `holder` an anchor."""
-    is_table = isinstance(node, nodes.table)
+    """Return the ledger's item of a table, picture or texts, and give `holder` an anchor."""
+    is_table, is_picture = isinstance(node, nodes.table), isinstance(node, nodes.image)
     section = next(above(holder, nodes.section), None)
+    heading = section.next_node(nodes.title).astext() if section is not None else docname
     if not holder["ids"]:
-        _name(holder, "table" if is_table else "picture", section)
+        _name(holder, "table" if is_table else "picture" if is_picture else "printed", section)
     anchor = holder["ids"][0]
-    if is_table:
-        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
-        data = ledger_data.csv_bytes(rows)
-        heading = section.next_node(nodes.title).astext() if section is not None else docname
-        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
-        kind, file = "table" if keys else "settings", f"{docname}-{anchor}.csv".replace("/", "-")
-    else:
+    kind, file = "table" if keys else "settings", f"{docname}-{anchor}".replace("/", "-")
+    if is_picture:
         caption, path = holder.next_node(nodes.caption), book / node["uri"]
         title = caption.astext() if caption is not None else str(node.get("alt", anchor))
         drawn = node.get("kind") or ledger_data.picture_kind(path)
         kind = "illustration" if keys is None else drawn
         data, file = path.read_bytes(), node["uri"]
+    elif is_table:
+        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
+        data, file = ledger_data.csv_bytes(rows), f"{file}.csv"
+        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
+    else:  # of a result in several forms, the first is Markdown
+        bundles = (part[0] if part.get("nb_element") == "mime_bundle" else part for part in texts)
+        text = "\n".join(part.astext() for part in bundles)
+        data, file = text.encode(), f"{file}.txt"
+        title = f"{heading}: {text.split(chr(10))[-1]}"
+        holder["classes"].append("printed")
+        if keys == ("",):  # of a page without a bundle
+            kind, keys = "unbound", ()
+        elif keys:
+            kind = "printed"
     digest = ledger_data.sha256(data)
     return Item(
-        kind, _short(title), docname, anchor, keys or (), digest, file, data if is_table else None
+        kind, _short(title), docname, anchor, keys or (), digest, file, None if is_picture else data
     )
 
 
@@ -156,14 +177,14 @@ def _short(text: str) -> str:
 def add_line(holder: nodes.Element, text: str, row: str) -> None:
     """Insert the line of provenance at the end of the caption, or below an item without one.
 
-    What was measured has an icon, and the words appear under the mouse or the focus. What was not
-    measured says so in words.
+    What a run measured or printed has an icon, and the words appear under the mouse or the focus.
+    Anything else says so in words.
     """
     link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
     caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
     joint = nodes.inline("", " · " if text[-1] != "." else " ", classes=["provenance-joint"])
     parts = [nodes.inline("", text, classes=["provenance-text"]), joint, link]
-    classes = ["provenance", *(["as-icon"] if text.startswith(MEASURED) else [])]
+    classes = ["provenance", *(["as-icon"] if text.startswith((MEASURED, PRINTED)) else [])]
     if caption is not None:
         caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=classes)]
     else:

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from unittest.mock import Mock
 
 import pytest
+from nbformat.v4 import new_notebook
 
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
@@ -22,7 +23,8 @@ def result(tmp_path, monkeypatch):
     monkeypatch.setattr(
         "robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda result: None
     )
-    return PageResult(None, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder)
+    page = SimpleNamespace(notebook=new_notebook())
+    return PageResult(page, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder)
 
 
 def test_an_accepted_page_is_compared_again_when_its_record_changed(result, monkeypatch):
