@@ -111,13 +111,14 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
         if isinstance(result, str):
             return {TEXT: result}
         if isinstance(result, Figure):
-            return {DRAWING: _svg(result)}
+            return {DRAWING: svg(result)}
     raise ShownError(
         f"{name} returned {type(result).__name__}. Return Markdown (str) or a Matplotlib Figure."
     )
 
 
-def _svg(figure: "Figure") -> str:
+def svg(figure: "Figure") -> str:
+    """Return a figure as SVG without a date: equal figures give equal text."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return stream.getvalue()

@@ -1,10 +1,9 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value
 from robo_genesis.core.project import BACKEND, RENDER, environment_contract
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused, expect
@@ -48,7 +47,7 @@ def verify_results(
     return manifests, refused
 
 
-def outputs_compared(result: PageResult, manifest: Manifest) -> str:
+def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     """Compare the outputs of a page with its bundle, and return their number.
 
     A page is compared once: the result is kept for the record of its files with their digests, for
@@ -59,15 +58,13 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> str:
     """
     folder, bundle = result.folder, result.bundle
     assert bundle is not None
-    record = (folder / RECORD).read_bytes()
-    code = [path.read_bytes() for path in Tree().closure([shown.__name__]).values()]
-    named = json.dumps(declared(result.page.notebook)).encode()
+    code = [path.read_text("utf8") for path in Tree().closure([shown.__name__]).values()]
+    inputs = [(folder / RECORD).read_text("utf8"), declared(result.page.notebook), code]
 
-    def compare() -> bytes:
-        notebook = stored_notebook(result)
-        return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
+    def compare() -> int:
+        return shown.require_shown(result.page, stored_notebook(result), bundle, manifest)
 
-    return derived("shown", [record, named, *code], compare).decode()
+    return int(derived_value("shown", inputs, compare))
 
 
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:

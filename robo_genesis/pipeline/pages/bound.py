@@ -12,7 +12,7 @@ Three rules, from the strongest:
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
@@ -30,8 +30,8 @@ from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.pages import printed
 from robo_genesis.pipeline.pages.book import Page
 
-PAGE = "page"
-"""The name that pages give to the result of `rg.open_page`."""
+SHOW, FINISH = "page.show", "page.finish"
+"""The calls that show a measured output; pages give this name to the result of `rg.open_page`."""
 
 AGAIN = "Do not edit executed pages: execute the page again."
 ONCE = "Call page.show once for each output, outside of loops and conditions."
@@ -69,19 +69,17 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
     Raises:
         BundleRefused: `shown`, naming page, cell and output.
     """
-    cells = [cell for cell in executed.cells if cell.cell_type == "code"]
     experiment, compared = None, 0
-    options = printed.declared(page.notebook)
-    for number, (named, values, cell) in enumerate(
-        zip(calls_of(page), options, cells, strict=True), start=1
-    ):
+    cells = (cell for cell in executed.cells if cell.cell_type == "code")
+    expected = zip(calls_of(page), printed.declared(page.notebook), cells, strict=True)
+    for number, (named, values, cell) in enumerate(expected, start=1):
         place, found = f"{page.docname}, code cell {number}", marked(cell)
         if len(found) != len(named):
             what = f"number of measured outputs is {len(found)}, expected {len(named)}"
             raise _refused(f"{place}: {what}. {ONCE}")
         for call, output in zip(named, found, strict=True):
             experiment = experiment or accepted_experiment(folder, manifest)
-            _compare(f"{place}, {call['function']}", call, output, experiment)
+            _compare(place, call, output, experiment)
             compared += 1
         if values and (reason := printed.contradiction(values, cell, folder)):
             raise BundleRefused("shown", f"{place}: {reason}. Correct the option or the cell.")
@@ -100,15 +98,11 @@ def require_printed(docname: str, executed: NotebookNode, folder: Path) -> None:
             f"{docname}: its bundle has no {bundle.PRINTED}, which only the build writes."
         )
     found, kept = printed.outputs_of(executed), bundle.read_printed(folder)
-    cells = enumerate(zip_longest(found, kept, fillvalue=()), start=1)
-    for cell, number, here, there in (
-        (cell, number, *pair)
-        for cell, outputs in cells
-        for number, pair in enumerate(zip_longest(*outputs), start=1)
-    ):
-        if here != there:
-            what = difference_of(str(here), str(there), False)
-            raise _refused(f"{docname}, code cell {cell}, output {number} of its run: {what}.")
+    for cell, outputs in enumerate(zip_longest(found, kept, fillvalue=()), start=1):
+        for number, (here, there) in enumerate(zip_longest(*outputs), start=1):
+            if here != there:
+                what = difference_of(str(here), str(there), False)
+                raise _refused(f"{docname}, code cell {cell}, output {number} of its run: {what}.")
 
 
 def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
@@ -125,67 +119,26 @@ def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
     return replace(run, accepted=metrics)
 
 
-def calls_of(page: Page) -> list[list[Shown]]:
-    """Return the calls of each code cell that show a measured output, in their order.
-
-    Raises:
-        BundleRefused: `shown` if a function is not found by its name, or if an argument is not
-            written out.
-    """
-    names: dict[str, str] = {}
+def calls_of(page: Page) -> list[list[ast.Call]]:
+    """Return the calls of each code cell that show a measured output, in their order."""
     found = []
-    for number, source in enumerate(page.code.sources, start=1):
+    for source in page.code.sources:
         try:
-            tree = ast.parse(source)
+            nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
         except SyntaxError:  # an expected error of the page
-            tree = ast.Module([], [])
-        names |= dict(_imported(tree))
-        place = f"{page.docname}, code cell {number}"
-        calls = [node for node in ast.walk(tree) if _method(node) in ("show", "finish")]
-        calls.sort(key=lambda node: (node.lineno, node.col_offset))  # type: ignore[attr-defined]
-        found.append([_call(place, node, names) for node in calls])  # type: ignore[arg-type]
+            nodes = []
+        calls = (node for node in nodes if ast.unparse(node.func) in (SHOW, FINISH))
+        found.append(sorted(calls, key=lambda node: (node.lineno, node.col_offset)))
     return found
 
 
-def _method(node: ast.AST) -> str | None:
-    """Return the method of the page that a node calls."""
-    match node:
-        case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=method)) if name == PAGE:
-            return method
-    return None
-
-
-def _call(place: str, node: ast.Call, names: Mapping[str, str]) -> Shown:
-    if _method(node) == "finish":
-        return {"function": shown.CHECKS, "arguments": []}
-    name = ast.unparse(node.args[0]) if node.args else ""
-    root, _, rest = name.partition(".")
-    function = f"{names.get(root, root)}.{rest}"
-    try:
-        shown.find(function)
-        arguments = [ast.literal_eval(argument) for argument in node.args[1:]]
-        if node.keywords:
-            raise ValueError
-    except shown.ShownError as error:
-        raise _refused(f"{place}: page.show({name}): {error}") from error
-    except ValueError as error:
-        raise _refused(
-            f"{place}: `{ast.unparse(node)}` has an argument that is not written out. Give text, "
-            "numbers or lists of them by position, or let the function choose them."
-        ) from error
-    return {"function": function, "arguments": arguments}
-
-
-def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    """Yield (name, module or object) of the imports of a cell."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom):
-            for alias in node.names:
-                yield alias.asname or alias.name, f"{node.module}.{alias.name}"
-        elif isinstance(node, ast.Import):
-            for alias in node.names:
-                if alias.asname:
-                    yield alias.asname, alias.name
+def names(call: ast.Call, says: Shown) -> bool:
+    """Return whether a call, as it is written, shows what the metadata of an output say."""
+    if ast.unparse(call.func) == FINISH:
+        return says == {"function": shown.CHECKS, "arguments": []}
+    name, *arguments = map(ast.unparse, [*call.args, *call.keywords] or [call.func])
+    written = {"function": says.get("function"), "arguments": [*map(ast.literal_eval, arguments)]}
+    return written == says and f".{says['function']}".endswith(f".{name.partition('.')[2] or name}")
 
 
 def marked(cell: NotebookNode) -> list[NotebookNode]:
@@ -193,12 +146,21 @@ def marked(cell: NotebookNode) -> list[NotebookNode]:
     return [out for out in cell.get("outputs", []) if shown.METADATA in out.get("metadata", {})]
 
 
-def _compare(place: str, call: Shown, output: NotebookNode, experiment: Experiment) -> None:
+def _compare(place: str, call: ast.Call, output: NotebookNode, experiment: Experiment) -> None:
     """Raise BundleRefused unless an output is that of its call."""
     says = output.metadata[shown.METADATA]
-    expect("shown", place, "function of the output", says, call, AGAIN)
     try:
-        valid = shown.mime_data(call["function"], experiment, call["arguments"])
+        is_its = names(call, says)
+    except (AttributeError, SyntaxError, TypeError, ValueError):
+        is_its = False
+    if not is_its:
+        raise _refused(
+            f"{place}: the output is of {quoted(says)}, expected that of `{ast.unparse(call)}`. "
+            "Write arguments out, as text, numbers or lists by position."
+        )
+    place = f"{place}, {says['function']}"
+    try:
+        valid = shown.mime_data(says["function"], experiment, says["arguments"])
     except (shown.ShownError, LookupError, ValueError, ArithmeticError, TypeError) as error:
         raise _refused(f"{place}: it cannot be called on the bundle: {error!r}") from error
     data: Mapping[str, Any] = output.get("data", {})

@@ -7,7 +7,6 @@ A cell with the option `prints: {2: baseline.drop mm}` says that the second deci
 text is this measured value, in the words of the role `{measured}`.
 """
 
-import hashlib
 import json
 import re
 from collections.abc import Mapping
@@ -16,6 +15,7 @@ from typing import Any
 
 from nbformat import NotebookNode
 
+from robo_genesis.core.files import json_digest
 from robo_genesis.core.text import DIGITS, MICRO, SCALED, SCALES, quoted
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle_files import MANIFEST
@@ -41,12 +41,8 @@ def outputs_of(executed: NotebookNode) -> list[list[Any]]:
 
 
 def _kept(output: NotebookNode) -> dict[str, Any]:
-    data = {
-        kind: value
-        if kind.endswith(TEXTS)
-        else hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
-        for kind, value in output.get("data", {}).items()
-    }
+    given = output.get("data", {}).items()
+    data = {kind: of if kind.endswith(TEXTS) else json_digest(of) for kind, of in given}
     return {**output, **({"data": data} if data else {})}
 
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.environment import BuildEnvironment
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.files import write_whole
+from robo_genesis.pipeline.pages.book import docnames
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
@@ -85,7 +85,8 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
     """Return the table of all items on the pages, in the order of the pages."""
     env, runs = app.env, all_runs(Path(app.srcdir))
     rows, anchors = [], []
-    for item in (item for name in _reading_order(env) for item in env.metadata[name][ITEMS]):
+    order = docnames(Path(app.srcdir) / "_toc.yml")
+    for item in (item for name in order for item in env.metadata[name][ITEMS]):
         place = app.builder.get_relative_uri(docname, item.docname)
         word, file = item.file.rpartition(".")[2].upper(), f"{DOWNLOADS}/{item.file}"
         if item.data is None:
@@ -123,14 +124,6 @@ def _of_run(run: PageRun) -> list[str | nodes.Node]:
 def run_anchor(key: str) -> str:
     """Return the anchor of a run's block."""
     return f"run-{key}".replace("/", "-")
-
-
-def _reading_order(env: BuildEnvironment) -> list[str]:
-    """Return all pages in the order of the table of contents."""
-    order = [env.config.root_doc]
-    for name in order:
-        order += [child for child in env.toctree_includes.get(name, []) if child not in order]
-    return order
 
 
 def _digest(value: str) -> nodes.Node:

@@ -10,7 +10,6 @@ Roles and a directive, as pages write them:
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
-| {engine-package}`some words` | its page on PyPI |
 | {lesson-status} l04 (directive) | one line with the states of a lesson's runs, details in a fold |
 """
 
@@ -51,7 +50,6 @@ REFERENCE = "amdgpu"
 READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
 """The names of backends in the line below a title."""
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
-PACKAGES = "https://pypi.org/project/genesis-world"
 
 
 def measured(lesson_page: str, name: str) -> tuple[str, str]:
@@ -203,34 +201,20 @@ def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
     return bullets(*lines, classes=["lesson-status"])
 
 
-class EngineSource(PageRole):
-    """Link to a file of the pinned engine."""
+class EngineLink(PageRole):
+    """Link to the pinned release of the engine, or with `engine-source` to one of its files."""
 
     def shown(self) -> list[nodes.Node]:
-        """Return the link, its text the path."""
-        installed = importlib.metadata.distribution("genesis-world")
-        if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():
-            raise LookupError(f"Genesis {installed.version} has no file genesis/{self.text}")
-        target = f"{REPOSITORY}/blob/v{project.engine_pin()}/genesis/{self.text}"
-        literal = nodes.literal(self.text, self.text)
-        return [nodes.reference(self.rawtext, "", literal, refuri=target)]
-
-
-class EngineRelease(PageRole):
-    """Link to the pinned release of the engine."""
-
-    address = f"{REPOSITORY}/releases/tag/v{{}}"
-
-    def shown(self) -> list[nodes.Node]:
-        """Return the link, its text as given."""
-        target = self.address.format(project.engine_pin())
-        return [nodes.reference(self.rawtext, self.text, refuri=target)]
-
-
-class EnginePackage(EngineRelease):
-    """Link to the page of the pinned release on PyPI."""
-
-    address = f"{PACKAGES}/{{}}/"
+        """Return the link; its text is as given."""
+        if self.name == "engine-release":
+            target, text = f"releases/tag/v{project.engine_pin()}", nodes.Text(self.text)
+        else:
+            installed = importlib.metadata.distribution("genesis-world")
+            if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():
+                raise LookupError(f"Genesis {installed.version} has no file genesis/{self.text}")
+            target = f"blob/v{project.engine_pin()}/genesis/{self.text}"
+            text = nodes.literal(self.text, self.text)
+        return [nodes.reference(self.rawtext, "", text, refuri=f"{REPOSITORY}/{target}")]
 
 
 def visit_measured(self: Any, node: measured_value) -> None:
@@ -242,9 +226,8 @@ def visit_measured(self: Any, node: measured_value) -> None:
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
-    app.add_role("engine-source", EngineSource())
-    app.add_role("engine-release", EngineRelease())
-    app.add_role("engine-package", EnginePackage())
+    for name in ("engine-source", "engine-release"):
+        app.add_role(name, EngineLink())
     app.add_directive("lesson-status", LessonStatus)
     app.add_node(between, html=WRITERS)
     app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

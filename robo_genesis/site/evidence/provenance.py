@@ -8,7 +8,7 @@ chosen. A picture that no run made is an illustration. A table typed in prose is
 
 import re
 import textwrap
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
@@ -19,12 +19,11 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.bound import marked
-from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
 from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, PageRun
-from robo_genesis.site.evidence.origin import INPUTS, above, cell_of, origin
+from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
+from robo_genesis.site.frame.executed import RECOMPUTED
 
 TITLE = 80
 """Longest title in the ledger, in characters."""
@@ -53,65 +52,50 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     env = app.env
     book, items = Path(env.srcdir), []
     known, page = all_runs(book), measured_pages(book).get(env.docname)
-    recomputed = recomputed_cells(book, env.docname) if page else set()
     for node in list(doctree.findall(nodes.Element)):
-        texts = printed_texts(node, recomputed)
-        if not texts and not isinstance(node, nodes.table | nodes.image):
-            continue
+        texts = printed_texts(node)
+        is_table, is_picture = isinstance(node, nodes.table), isinstance(node, nodes.image)
         last = texts[-1] if texts else node
         cell, keys = cell_of(last), origin(last, page)
-        if keys is None and isinstance(node, nodes.table):
+        if not (texts or is_picture or (is_table and keys is not None)):
             continue
-        if problem := _problem(keys, known, node):
+        if not texts and (problem := _problem(keys, is_table)):
             logger.warning(problem, location=env.docname)
             continue
-        in_figure = next(above(node, nodes.figure), node)
-        holder = in_figure if isinstance(node, nodes.image) else node
+        holder = next(above(node, nodes.figure), node) if is_picture else node
         item = describe(holder, node, env.docname, keys, book, texts)
-        by_page = page and cell is not None and cell.get("cell_index") not in recomputed
-        if by_page and item.kind != "settings":
+        if item.runs and cell is not None and not recomputed(cell):
             item = replace(item, kind="printed")
         items.append(item)
-        runs = [known[key] for key in item.runs]
-        line = ledger_data.provenance(item.kind, runs)
+        line = ledger_data.provenance(item.kind, [known[key] for key in item.runs])
         add_line(last if texts else holder, line, item.row)
     env.metadata[env.docname][ITEMS] = items
 
 
-def recomputed_cells(book: Path, docname: str) -> set[int]:
-    """Return the places of the cells of which `page.show` displayed all but texts."""
-    page = next(page for page in find_pages(book) if page.docname == docname)
-    places = [k for k, cell in enumerate(page.notebook.cells) if cell.cell_type == "code"]
-    ran = zip(places, executed_notebook(docname, page.notebook).cells, strict=True)
-    return {k for k, cell in ran if marked(cell) == [out for out in cell.outputs if "data" in out]}
+def recomputed(cell: nodes.Element) -> bool:
+    """Return whether `page.show` displayed all outputs of a cell except streams and errors."""
+    return bool(cell.get("cell_metadata", {}).get(RECOMPUTED))
 
 
-def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Element]:
-    """Return the texts among the outputs of a cell, nothing for a node that is no box of outputs.
-
-    Args:
-        box: any node.
-        recomputed: the cells whose texts are streams and errors alone.
-    """
+def printed_texts(box: nodes.Element) -> list[nodes.Element]:
+    """Return the texts that a cell printed, nothing for a node that is no box of outputs."""
     if box.get("nb_element") not in ("cell_code_output", "glued"):
         return []
-    shown = box.parent.get("cell_index") in recomputed
-    parts = (part for part in box if not (shown and part.get("nb_element") == "mime_bundle"))
+    left_out = "mime_bundle" if recomputed(box.parent) else None
+    parts = (part for part in box if part.get("nb_element", "") != left_out)
     others = lambda node: isinstance(node, nodes.table | nodes.image)  # noqa: E731
     return [part for part in parts if part.astext().strip() and not [*part.findall(others)]]
 
 
-def _problem(
-    keys: tuple[str, ...] | None, known: Mapping[str, PageRun], node: nodes.Element
-) -> str | None:
-    """Return why an item cannot be listed."""
-    if keys == () and isinstance(node, nodes.image):
+def _problem(keys: tuple[str, ...] | None, is_table: bool) -> str | None:
+    """Return why a table or picture cannot be listed."""
+    if keys == () and not is_table:
         return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."
-    if isinstance(node, nodes.table | nodes.image) and not set(keys or ()) <= known.keys():
-        what = "table" if isinstance(node, nodes.table) else "picture"
+    if keys == NO_BUNDLE:
         return (
-            f"a cell shows a {what}, but the page declares no bundle. Give its front matter "
-            f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
+            f"a cell shows a {'table' if is_table else 'picture'}, but the page declares no bundle. "
+            "Give its front matter `robo_genesis: {lesson, page}`, or tag a cell of chosen "
+            f"values `{INPUTS}`."
         )
     return None
 
@@ -125,37 +109,32 @@ def describe(
     texts: Sequence[nodes.Element],
 ) -> Item:
     """Return the ledger's item of a table, picture or texts, and give `holder` an anchor."""
-    is_table, is_picture = isinstance(node, nodes.table), isinstance(node, nodes.image)
+    is_picture = isinstance(node, nodes.image)
     section = next(above(holder, nodes.section), None)
     heading = section.next_node(nodes.title).astext() if section is not None else docname
     if not holder["ids"]:
-        _name(holder, "table" if is_table else "picture" if is_picture else "printed", section)
+        _name(holder, "printed" if texts else "picture" if is_picture else "table", section)
     anchor = holder["ids"][0]
-    kind, file = "table" if keys else "settings", f"{docname}-{anchor}".replace("/", "-")
-    if is_picture:
-        caption, path = holder.next_node(nodes.caption), book / node["uri"]
-        title = caption.astext() if caption is not None else str(node.get("alt", anchor))
-        drawn = node.get("kind") or ledger_data.picture_kind(path)
-        kind = "illustration" if keys is None else drawn
-        data, file = path.read_bytes(), node["uri"]
-    elif is_table:
-        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
-        data, file = ledger_data.csv_bytes(rows), f"{file}.csv"
-        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
-    else:  # of a result in several forms, the first is Markdown
+    file = f"{docname}-{anchor}".replace("/", "-")
+    if texts:  # of a result in several forms, the first is Markdown
         bundles = (part[0] if part.get("nb_element") == "mime_bundle" else part for part in texts)
         text = "\n".join(part.astext() for part in bundles)
-        data, file = text.encode(), f"{file}.txt"
-        title = f"{heading}: {text.split(chr(10))[-1]}"
+        kind, data, file = "printed", text.encode(), f"{file}.txt"
+        title = f"{heading}: {text.splitlines()[-1]}"
         holder["classes"].append("printed")
-        if keys == ("",):  # of a page without a bundle
-            kind, keys = "unbound", ()
-        elif keys:
-            kind = "printed"
-    digest = ledger_data.sha256(data)
-    return Item(
-        kind, _short(title), docname, anchor, keys or (), digest, file, None if is_picture else data
-    )
+    elif is_picture:
+        caption, path = holder.next_node(nodes.caption), book / node["uri"]
+        title = caption.astext() if caption is not None else str(node.get("alt", anchor))
+        kind = node.get("kind") or ledger_data.picture_kind(path)
+        data, file = path.read_bytes(), node["uri"]
+    else:
+        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
+        kind, data, file = "table", ledger_data.csv_bytes(rows), f"{file}.csv"
+        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
+    kind = {None: "illustration", (): "settings", NO_BUNDLE: "unbound"}.get(keys, kind)
+    runs = () if keys == NO_BUNDLE else keys or ()
+    digest, data = ledger_data.sha256(data), None if is_picture else data
+    return Item(kind, _short(title), docname, anchor, runs, digest, file, data)
 
 
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:

@@ -28,14 +28,16 @@ WIDE = 480
 
 DRAWING = re.compile(r"\.svg$")
 COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
-DROPPED = re.compile(r"<!--.*?-->|<(metadata|style|title)\b.*?</\1>|\s+xmlns:\w+=\"[^\"]*\"", re.S)
+DROPPED = re.compile(
+    r"<!--.*?-->|<(metadata|style|title|script|foreignObject)\b.*?</\1\s*>|\s+xmlns:\w+=\"[^\"]*\"",
+    re.S | re.I,
+)
+"""What a page gets no part of; a style sheet, for example, would apply to all of it."""
 REFERENCE = re.compile(r'(?<=url\(#)[^)]+|(?<=href="#)[^"]+')
 IDENTIFIER = re.compile(r'\s+id="([^"]*)"')
 FRACTION = re.compile(r"\b([1-9]\d*\.\d\d)\d+")
 """Digits beyond a hundredth of a coordinate; a scale is smaller than one and keeps all."""
 SIZE = re.compile(r'\s(?:width|height|version|role|style|class)="[^"]*"')
-FOREIGN = re.compile(r"<(?:\w+:)?(style|script|foreignobject)\b", re.IGNORECASE)
-"""An element that could change the rest of the page."""
 LINES = "stroke-linejoin: round; stroke-linecap: butt"
 """Matplotlib's own style sheet, which would apply to the whole page."""
 
@@ -107,15 +109,9 @@ def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
         attributes: of the element.
 
     Raises:
-        ValueError: the drawing has a colour that is not in the palette, or an element that could
-            change the page.
+        ValueError: the drawing has a colour that is not in the palette.
     """
     drawing = DROPPED.sub("", drawing[drawing.index("<svg") :]).replace("xlink:href", "href")
-    if found := FOREIGN.search(drawing):
-        raise ValueError(
-            f"A drawing has the element <{found[1]}>, which could change the page around it. "
-            "Valid are shapes, text and groups."
-        )
     used = {*REFERENCE.findall(drawing)}
     drawing = IDENTIFIER.sub(
         lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", drawing

@@ -12,8 +12,12 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 from robo_genesis.core.project import EXECUTED_PAGES
+from robo_genesis.pipeline.pages.bound import marked
 from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.pipeline.pages.folder import code_and_kernel
+
+RECOMPUTED = "recomputed"
+"""In the metadata of a cell, whether `page.show` displayed all of its outputs but streams."""
 
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
@@ -48,6 +52,8 @@ class ExecutedPage(NotebookClientBase):
             if cell.cell_type == "code":
                 source = next(executed_cells)
                 cell.outputs, cell.execution_count = source.outputs, source.execution_count
+                shown = [output for output in cell.outputs if "data" in output]
+                cell.metadata[RECOMPUTED] = shown == marked(cell)
                 if "raises-exception" in cell.metadata.get("tags", []):
                     shorten_tracebacks(cell)
         if "language_info" in executed.metadata:

@@ -215,9 +215,16 @@ def test_another_output_is_refused(executed, folder, spoil, message):
     [
         ("page.show(lesson.text.metric_table)", "measured outputs is 2, expected 1"),
         ("for k in (1, 2):\n    page.show(plots.height)", "outside of loops and conditions"),
-        ("page.show(lesson.text.absent)\npage.show(plots.height)", "cannot be shown"),
-        ("page.show(plots.height, chosen)\npage.show(plots.height)", "that is not written out"),
-        ("page.show()\npage.show(plots.height)", "cannot be shown"),
+        (
+            "page.show(lesson.text.absent)\npage.show(plots.height)",
+            "of `page.show(lesson.text.absent)`",
+        ),
+        ("page.show(lesson.text.metric_table, a)\npage.show(plots.height)", "Write arguments out"),
+        (
+            "page.show(lesson.text.metric_table, a=1)\npage.show(plots.height)",
+            "metric_table, a=1)`",
+        ),
+        ("page.show()\npage.show(plots.height)", "expected that of `page.show()`. Write"),
     ],
 )
 def test_a_call_that_the_build_cannot_repeat_is_refused(executed, folder, source, message):
