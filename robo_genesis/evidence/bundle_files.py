@@ -11,9 +11,8 @@ from robo_genesis.evidence.refusals import expect, unexpected
 
 MANIFEST = "manifest.json"
 MIB = 2**20
-SIZE_LIMITS = {
-    MANIFEST: MIB, "metrics.json": MIB, "arrays.json": MIB, "log.txt": 4 * MIB, PRINTED: 4 * MIB,
-}  # fmt: skip
+SIZE_LIMITS = dict.fromkeys((MANIFEST, "metrics.json", "arrays.json"), MIB)
+SIZE_LIMITS |= {"log.txt": 4 * MIB, PRINTED: 4 * MIB}
 OTHER_LIMIT = 16 * MIB
 """Bytes of one archive or picture. Those of a lesson have less than 0.1 MiB."""
 

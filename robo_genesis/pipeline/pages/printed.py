@@ -10,6 +10,7 @@ text is this measured value, in the words of the role `{measured}`.
 import json
 import re
 from collections.abc import Mapping
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -73,11 +74,11 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
     """
     by, kind = (":", "finding") if ":" in name else (".", "metric")
     group, _, label = name.partition(by)
-    found: Mapping[str, Mapping[str, Any]]
-    if by == ":":
-        found = {c.name: c.found for c in bundle.read_manifest(folder).predicate.checks}
-    else:
-        found = bundle.read_metrics(folder)
+    found: Mapping[str, Mapping[str, Any]] = (
+        {c.name: c.found for c in bundle.read_manifest(folder).predicate.checks}
+        if by == ":"
+        else bundle.read_metrics(folder)
+    )
     if label not in found.get(group, {}):
         known = ", ".join(f"{g}{by}{n}" for g, of in found.items() for n in of)
         raise LookupError(f"no {kind} {name!r}. Known: {known}.")
@@ -120,8 +121,8 @@ def contradiction(values: Mapping[int, str], cell: NotebookNode, folder: Path) -
             value = value_of(folder, name, unit)[0] * SCALES.get(unit, 1.0)
         except (LookupError, TypeError) as error:
             return f"its option `{OPTION}` has {asked!r}: {error}"
-        mantissa, _, exponent = numbers[place].replace("−", "-").partition("e")
-        step = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
-        if abs(float(f"{mantissa}e{exponent or 0}") - value) > step / 2 + ROUNDED * abs(value):
+        number = Decimal(numbers[place].replace("−", "-"))
+        step = 10.0 ** int(number.as_tuple().exponent)
+        if abs(float(number) - value) > step / 2 + ROUNDED * abs(value):
             return f"it prints {numbers[place]} as {asked}, which is {value:.9g}"
     return None

@@ -221,19 +221,10 @@ def compared_table(
         what: the name of the first column.
         both: the names of the runs.
     """
-    rows = [
-        {
-            what: finding.what,
-            both[0]: finding.old,
-            both[1]: finding.new,
-            "difference": finding.delta or "–",
-            "allowed": finding.allowed or "–",
-            "verdict": finding.state,
-        }
-        for section in found.sections
-        if section.title in titles
-        for finding in section.rows
-    ]
+    head = (what, *both, "difference", "allowed", "verdict")
+    shown = (row for section in found.sections if section.title in titles for row in section.rows)
+    cells = ((r.what, r.old, r.new, r.delta or "–", r.allowed or "–", r.state) for r in shown)
+    rows = [dict(zip(head, row, strict=True)) for row in cells]
     return [text_table(rows)] if rows else []
 
 

@@ -8,7 +8,7 @@ chosen. A picture that no run made is an illustration. A table typed in prose is
 
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
@@ -52,8 +52,9 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     env = app.env
     book, items = Path(env.srcdir), []
     known, page = all_runs(book), measured_pages(book).get(env.docname)
+    recomputed = RECOMPUTED.get(env.docname, set())
     for node in list(doctree.findall(nodes.Element)):
-        texts = printed_texts(node)
+        texts = printed_texts(node, recomputed)
         is_table, is_picture = isinstance(node, nodes.table), isinstance(node, nodes.image)
         last = texts[-1] if texts else node
         cell, keys = cell_of(last), origin(last, page)
@@ -64,7 +65,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
         item = describe(holder, node, env.docname, keys, book, texts)
-        if item.runs and cell is not None and not recomputed(cell):
+        if item.runs and cell is not None and cell.get("cell_index") not in recomputed:
             item = replace(item, kind="printed")
         items.append(item)
         line = ledger_data.provenance(item.kind, [known[key] for key in item.runs])
@@ -72,16 +73,11 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     env.metadata[env.docname][ITEMS] = items
 
 
-def recomputed(cell: nodes.Element) -> bool:
-    """Return whether `page.show` displayed all outputs of a cell except streams and errors."""
-    return bool(cell.get("cell_metadata", {}).get(RECOMPUTED))
-
-
-def printed_texts(box: nodes.Element) -> list[nodes.Element]:
+def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Element]:
     """Return the texts that a cell printed, nothing for a node that is no box of outputs."""
     if box.get("nb_element") not in ("cell_code_output", "glued"):
         return []
-    left_out = "mime_bundle" if recomputed(box.parent) else None
+    left_out = "mime_bundle" if box.parent.get("cell_index") in recomputed else None
     parts = (part for part in box if part.get("nb_element", "") != left_out)
     others = lambda node: isinstance(node, nodes.table | nodes.image)  # noqa: E731
     return [part for part in parts if part.astext().strip() and not [*part.findall(others)]]
@@ -92,10 +88,10 @@ def _problem(keys: tuple[str, ...] | None, is_table: bool) -> str | None:
     if keys == () and not is_table:
         return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."
     if keys == NO_BUNDLE:
+        what = "table" if is_table else "picture"
         return (
-            f"a cell shows a {'table' if is_table else 'picture'}, but the page declares no bundle. "
-            "Give its front matter `robo_genesis: {lesson, page}`, or tag a cell of chosen "
-            f"values `{INPUTS}`."
+            f"a cell shows a {what}, but the page declares no bundle. Give its front matter "
+            f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
         )
     return None
 
@@ -134,7 +130,9 @@ def describe(
     kind = {None: "illustration", (): "settings", NO_BUNDLE: "unbound"}.get(keys, kind)
     runs = () if keys == NO_BUNDLE else keys or ()
     digest, data = ledger_data.sha256(data), None if is_picture else data
-    return Item(kind, _short(title), docname, anchor, runs, digest, file, data)
+    title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
+    title = textwrap.shorten(title, TITLE, placeholder=" …")
+    return Item(kind, title, docname, anchor, runs, digest, file, data)
 
 
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
@@ -146,11 +144,6 @@ def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> No
         name = f"{base}-{number}"
     document.ids[name] = holder
     holder["ids"].append(name)
-
-
-def _short(text: str) -> str:
-    first = re.sub(r"^\d+\. ", "", text).split(". ")[0].removesuffix(".")
-    return textwrap.shorten(first, TITLE, placeholder=" …")
 
 
 def add_line(holder: nodes.Element, text: str, row: str) -> None:

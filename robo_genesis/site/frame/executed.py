@@ -16,8 +16,8 @@ from robo_genesis.pipeline.pages.bound import marked
 from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.pipeline.pages.folder import code_and_kernel
 
-RECOMPUTED = "recomputed"
-"""In the metadata of a cell, whether `page.show` displayed all of its outputs but streams."""
+RECOMPUTED: dict[str, set[int]] = {}
+"""Of each page that was read, the cells whose outputs but streams `page.show` displayed."""
 
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
@@ -52,10 +52,13 @@ class ExecutedPage(NotebookClientBase):
             if cell.cell_type == "code":
                 source = next(executed_cells)
                 cell.outputs, cell.execution_count = source.outputs, source.execution_count
-                shown = [output for output in cell.outputs if "data" in output]
-                cell.metadata[RECOMPUTED] = shown == marked(cell)
                 if "raises-exception" in cell.metadata.get("tags", []):
                     shorten_tracebacks(cell)
+        RECOMPUTED[page.as_posix()] = {
+            index
+            for index, cell in enumerate(self.notebook.cells)
+            if marked(cell) == [out for out in cell.get("outputs", []) if "data" in out]
+        }
         if "language_info" in executed.metadata:
             self.notebook.metadata["language_info"] = executed.metadata["language_info"]
 

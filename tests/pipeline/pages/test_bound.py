@@ -134,19 +134,6 @@ def move(svg: str, by: float) -> str:
     return svg.replace(path, moved, 1)
 
 
-def test_a_point_may_move_by_less_than_a_tenth_of_a_pixel(executed, folder):
-    data = output(executed, 1, 1)["data"]
-    data["image/svg+xml"] = move(data["image/svg+xml"], 0.09)
-    assert check(executed, folder) == 4
-
-
-def other_glyph(svg: str) -> str:
-    """Exchange one digit of a tick's label for another one."""
-    found = re.findall(r'xlink:href="(#DejaVuSans-1\d)"', svg)
-    one, other = found[0], next(name for name in found if name != found[0])
-    return svg.replace(f'xlink:href="{one}"', f'xlink:href="{other}"', 1)
-
-
 def other_picture(svg: str) -> str:
     """Change one letter in the middle of an embedded picture."""
     start = svg.index("base64,") + 4000
@@ -158,10 +145,8 @@ def other_picture(svg: str) -> str:
     ("cell", "number", "spoil"),
     [
         (1, 1, lambda svg: move(svg, 0.2)),
-        (1, 1, other_glyph),
-        (1, 1, lambda svg: svg.replace("stroke: #", "stroke: #1", 1)),
+        (1, 1, lambda svg: re.sub(r'(xlink:href="#DejaVuSans-)1', r"\g<1>2", svg, count=1)),
         (1, 1, lambda svg: svg.replace("</svg>", "<script>alert(1)</script></svg>")),
-        (1, 1, lambda svg: ""),
         (2, 0, other_picture),
     ],
 )
@@ -173,10 +158,12 @@ def test_another_drawing_is_refused(executed, folder, cell, number, spoil):
     assert "the page shows another image/svg+xml than the bundle" in refusal(executed, folder)
 
 
-def test_names_that_follow_from_points_may_differ(sound):
-    svg = output(sound, 1, 1)["data"]["image/svg+xml"]
+def test_points_may_move_by_less_than_a_tenth_of_a_pixel_and_have_other_names(executed, folder):
+    data = output(executed, 1, 1)["data"]
+    svg = data["image/svg+xml"] = move(data["image/svg+xml"], 0.09)
     name = re.search(r'clipPath id="(\w+)"', svg)[1]
-    assert difference_of(svg.replace(name, "another"), svg, True) is None
+    data["image/svg+xml"] = svg.replace(name, "another")
+    assert check(executed, folder) == 4
     assert difference_of(svg.replace(f'id="{name}"', 'id="another"'), svg, True)
 
 
@@ -193,16 +180,14 @@ def function(executed):
     [
         (lambda ran: table(ran).update(output_type="execute_result"), "type of the output is"),
         (lambda ran: table(ran).metadata.clear(), "measured outputs is 1, expected 2"),
+        (lambda ran: ran.cells[3].outputs.append(table(ran)), "code cell 4: number of measured ou"),
         (
-            lambda ran: ran.cells[3].outputs.append(table(ran)),
-            "code cell 4: number of measured outputs is 1, expected 0",
-        ),
-        (
-            lambda ran: table(ran)["data"].update({"text/html": "<b>0.5</b>"}),
-            "kinds of the output is text/html, text/markdown, expected text/m",
+            lambda ran: table(ran)["data"].update({"text/html": "0"}),
+            "kinds of the output is text/h",
         ),
         (lambda ran: function(ran).update(function="os.system"), "{'function': 'os.system'"),
         (lambda ran: function(ran).update(arguments=["G1"]), "'arguments': ['G1']"),
+        (lambda ran: table(ran).metadata.update(robo_genesis=7), "the output is of 7, expected"),
     ],
 )
 def test_another_output_is_refused(executed, folder, spoil, message):
@@ -215,30 +200,18 @@ def test_another_output_is_refused(executed, folder, spoil, message):
     [
         ("page.show(lesson.text.metric_table)", "measured outputs is 2, expected 1"),
         ("for k in (1, 2):\n    page.show(plots.height)", "outside of loops and conditions"),
-        (
-            "page.show(lesson.text.absent)\npage.show(plots.height)",
-            "of `page.show(lesson.text.absent)`",
-        ),
+        ("page.show(lesson.text.absent)\n1; page.show(plots.height)", "text.absent)`. Write"),
         ("page.show(lesson.text.metric_table, a)\npage.show(plots.height)", "Write arguments out"),
-        (
-            "page.show(lesson.text.metric_table, a=1)\npage.show(plots.height)",
-            "metric_table, a=1)`",
-        ),
+        ("page.show(lesson.text.metric_table, a=1)\npage.show(plots.height)", "table, a=1)`. Wr"),
         ("page.show()\npage.show(plots.height)", "expected that of `page.show()`. Write"),
+        ("page.show(lesson.text.readable)\npage.show(plots.height)", "it cannot be called on the"),
     ],
 )
 def test_a_call_that_the_build_cannot_repeat_is_refused(executed, folder, source, message):
-    sources = list(SOURCES)
-    sources[1] = source
+    sources = [SOURCES[0], source, *SOURCES[2:]]
+    if "readable" in source:  # it takes no experiment
+        function(executed).update(function="robo_genesis.lessons.l02.text.readable")
     assert message in refusal(executed, folder, *sources)
-
-
-def test_a_function_that_fails_on_the_bundle_is_refused(executed, folder):
-    sources = list(SOURCES)
-    sources[2] = "page.show(lesson.text.readable)"  # takes no experiment
-    name = "robo_genesis.lessons.l02.text.readable"
-    output(executed, 2, 0).metadata["robo_genesis"]["function"] = name
-    assert "it cannot be called on the bundle" in refusal(executed, folder, *sources)
 
 
 DROP = "baseline.drop m"
