@@ -6,6 +6,7 @@ arrays.json     the joint behind each DOF; dims, dtype, unit and long name of ev
 arrays/<case>.npz
 frames/*.png    camera frames only
 log.txt         the engine's own log
+printed.json    what the page's cells put out; none of a notebook that was run by hand
 """
 
 import hashlib
@@ -36,6 +37,7 @@ from robo_genesis.evidence.strict_json import read_json
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:robo-genesis:evidence:v2"
 SCHEMA_VERSION = 2
+PRINTED = "printed.json"
 KEYED = ("schema_version", "lesson", "page", "source", "parameters", "seed")
 KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
 
@@ -261,6 +263,11 @@ def by_full_name(metrics: Mapping[str, Mapping[str, Metric]]) -> dict[str, Metri
 def read_arrays(folder: Path) -> Arrays:
     """Return the description of the arrays of a bundle."""
     return _validated(Arrays, read_json(folder, "arrays.json"), "arrays.json")
+
+
+def read_printed(folder: Path) -> list[list[dict[str, Any]]]:
+    """Return what each code cell of the page put out."""
+    return _validated(list[list[dict[Line, Any]]], read_json(folder, PRINTED), PRINTED)
 
 
 @cache

@@ -369,6 +369,7 @@ GROUPS = {
     },
     ("files", "cases"): {"a missing file": remove(G1), "a dropped case": drop_case},
     ("files", "files"): {"no log": remove(LOG), "an extra file": write("extra.txt", "x")},
+    ("files", "bad-schema"): {"outputs of no cell": write(bundle.PRINTED, "[\n {}\n]\n")},
     ("files", "frames"): {"an extra picture": copied_to("frames/third.png")},
     # Backend, Torch, renderer, log.
     ("backend", "backend"): {

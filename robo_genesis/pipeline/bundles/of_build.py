@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value
 from robo_genesis.core.project import BACKEND, RENDER, environment_contract
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused, expect
@@ -11,6 +11,7 @@ from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown
 from robo_genesis.pipeline.pages.folder import MARK, RECORD, stored_notebook
+from robo_genesis.pipeline.pages.printed import declared
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.pipeline.pages.store import Verify
@@ -55,25 +56,24 @@ def verify_results(
     return manifests, refused
 
 
-def outputs_compared(result: PageResult, manifest: Manifest) -> str:
+def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     """Compare the outputs of a page with its bundle, and return their number.
 
-    A page is compared once: the result is kept for the record of its files with their digests, and
-    for the code that compares.
+    A page is compared once: the result is kept for the record of its files with their digests, for
+    the values that its cells name, and for the code that compares.
 
     Raises:
         BundleRefused: `shown`.
     """
     folder, bundle = result.folder, result.bundle
     assert bundle is not None
-    record = (folder / RECORD).read_bytes()
-    code = [path.read_bytes() for path in Tree().closure([shown.__name__]).values()]
+    code = [path.read_text("utf8") for path in Tree().closure([shown.__name__]).values()]
+    inputs = [(folder / RECORD).read_text("utf8"), declared(result.page.notebook), code]
 
-    def compare() -> bytes:
-        notebook = stored_notebook(result)
-        return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
+    def compare() -> int:
+        return shown.require_shown(result.page, stored_notebook(result), bundle, manifest)
 
-    return derived("shown", [record, *code], compare).decode()
+    return int(derived_value("shown", inputs, compare))
 
 
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:

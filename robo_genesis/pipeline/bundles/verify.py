@@ -172,6 +172,8 @@ def verify_bundle(
     manifest = bundle.read_manifest(folder)
     manifest_rules.check_identity(manifest, run_id, lesson, page)
     bundle_files.check_files(folder, present, manifest)
+    if bundle.PRINTED in present:
+        bundle.read_printed(folder)
     manifest_rules.check_circumstances(folder, manifest.predicate)
     manifest_rules.check_log(folder, manifest, root)
     check_current(manifest, root, book)

@@ -23,6 +23,7 @@ from robo_genesis.core.project import ENGINE, ProjectError, installed_version
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.fields import RunId, Sha256, Strict
 from robo_genesis.pipeline.pages.book import Page, code_digest, code_of
+from robo_genesis.pipeline.pages.printed import keep_outputs
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
@@ -92,6 +93,8 @@ def write_page(
         nbformat.write(NotebookNode(notebook | {"cells": code}), fresh / NOTEBOOK)
         if page.declares_bundle:
             shutil.copytree(left, fresh / OUTPUTS, symlinks=True)
+            if bundle := find_bundle(fresh / OUTPUTS, run_id):
+                keep_outputs(bundle, notebook)
         record = Record(
             docname=page.docname,
             lesson=page.lesson,

@@ -20,6 +20,11 @@ from robo_genesis.pipeline.pages.guards import contradicted
 LOG_LINES = 15
 Status = Literal["executed", "reused", "taken over", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
+KINDS = PICTURES | {"text/plain", "text/markdown"}
+"""What a cell may put out. HTML could hide or imitate what the site says about its evidence."""
+
+GLUED = "application/papermill.record/"
+"""Begins the kind of an output that is kept for another place of its page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +104,7 @@ def missing_bundle(left: Path, page: Page, run_id: str) -> Failure | None:
 
 
 def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
-    """Return the first cell that lacks its figure, or whose exception is not the expected one.
+    """Return the first cell without its figure, with another exception, or with a wrong output.
 
     Args:
         page: the page now; tags and `expects` are read here, because a stored notebook keeps those
@@ -115,6 +120,11 @@ def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
         if "figure" in metadata.get("tags", []) and not kinds & PICTURES:
             reason = "the cell is tagged figure, but shows none."
             return at_cell(page, index, "FigureMissing", reason)
+        if odd := sorted({kind.removeprefix(GLUED) for kind in kinds} - KINDS):
+            valid = f"Valid are {', '.join(sorted(KINDS))}. Display Markdown or a figure."
+            return at_cell(
+                page, index, "OutputKind", f"the cell puts out {', '.join(odd)}. {valid}"
+            )
         raised = [out for out in cell.outputs if out.output_type == "error"]
         if contradiction := _contradiction(metadata, raised):
             return at_cell(page, index, "ExpectedException", contradiction, cell)

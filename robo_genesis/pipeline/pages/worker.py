@@ -145,7 +145,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
         try:
             write_page(run.place, run.page, notebook, run.left, run.run_id, elapsed, seconds)
-        except (PageRefused, OSError) as caught:
+        except (PageRefused, OSError, ValueError) as caught:
             failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return failure
 

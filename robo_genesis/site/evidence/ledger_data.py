@@ -18,13 +18,13 @@ ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
 
 RASTERS = (".png", ".webp", ".jpg", ".jpeg")
 
-MEASURED = "Measured"
+MEASURED, PRINTED = "Measured", "Printed by this run"
 """How the line below an item begins whose runs are all accepted."""
 
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
-    "printed": "Printed by its cell, not compared with the bundle.",
+    "unbound": "Printed by its cell. The page has no bundle.",
 }
 """Kinds of items without evidence of a run, each with the line below it."""
 
@@ -63,11 +63,11 @@ class PageRun:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One figure, table or camera frame, illustration, table of settings, or printed output.
+    """One figure, table or camera frame, printed output, illustration, or table of settings.
 
-    `runs` are the keys of the runs that made it, none for the last three kinds. `file` is the
-    picture's path below the book, or of a table the name of its CSV; `data` is that CSV, None for
-    a picture.
+    `runs` are the keys of the runs that made it, none for the last two kinds. `file` is the
+    picture's path below the book, or of a table or text the name of its file; `data` is the content
+    of that file, None for a picture.
     """
 
     kind: str
@@ -86,7 +86,7 @@ class Item:
 
 
 def provenance(kind: str, runs: Sequence[PageRun]) -> str:
-    """Return the line below a figure or table, without its link.
+    """Return the line below an item, without its link.
 
     Args:
         kind: of the item.
@@ -102,7 +102,7 @@ def provenance(kind: str, runs: Sequence[PageRun]) -> str:
         for run in runs
         if (accepted := run.predicate)
     )
-    return f"{MEASURED} {' and '.join(origins)}"
+    return f"{PRINTED if kind == 'printed' else MEASURED} {' and '.join(origins)}"
 
 
 def facts(backend: str, predicate: Predicate) -> dict[str, str]:

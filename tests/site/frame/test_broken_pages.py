@@ -23,11 +23,14 @@ TEXT = {
 """What stands alone on the page, and what is said of its line."""
 
 IMPORTS = """\
-from IPython.display import HTML, SVG, Markdown
+from IPython.display import SVG, Markdown
+from myst_nb import glue
 drawn = SVG("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'/>")
 table = Markdown("| read |\\n| --- |\\n| 7 |")"""
 INPUTS = ":tags: [inputs]\n"
 LAB = """
+A sentence with {glue:text}`number`.
+
 [amdgpu-verified]{.evidence-badge .state-verified}
 
 ```{figure} ../book/evidence/l04/amdgpu/frames/final.svg
@@ -43,14 +46,16 @@ Free words.
 ```
 """
 CELLS = (
-    cell("display(HTML('<table><tr><td>7</td></tr></table>'))"),
-    cell("Markdown('<img src=\"x.png\">')"),
+    cell("Markdown('<table><tr><td>7</td></tr></table>')"),
+    cell("Markdown('a <b style=\"position: fixed\">7</b>')"),
+    cell("glue('number', 7, display=False)"),
     cell("drawn", INPUTS),
 )
 OTHERS = {
     "lab": [
         "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
-        "a cell outputs <img> as raw HTML",
+        "a cell outputs <b> as raw HTML",
+        "a cell's text 7 is glued into a sentence",
         "a cell tagged inputs shows a picture",
         "a page may not set the class evidence-badge",
         "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
