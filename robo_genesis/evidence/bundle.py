@@ -94,7 +94,7 @@ class HostRecord(Strict):
     os: Line
     machine: Line
     cpu: Line
-    cores: Index
+    cores: int = Field(ge=1, lt=2**31)
     python: Line
     packages: dict[Line, Line]
 
@@ -102,7 +102,7 @@ class HostRecord(Strict):
 class GitRecord(Strict):
     """State of the checkout."""
 
-    commit: Line
+    commit: str = Field(pattern="^([0-9a-f]{40}|[0-9a-f]{64})$")
     dirty: bool
 
 

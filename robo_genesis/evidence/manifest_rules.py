@@ -2,15 +2,17 @@
 
 import re
 from collections.abc import Iterator
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
+
+from packaging.utils import canonicalize_name
 
 from robo_genesis.core import project
 from robo_genesis.evidence.bundle import Manifest, Predicate, evidence_key
 from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.lessons import LESSONS
-from robo_genesis.sim.backends import contradictions
+from robo_genesis.sim.backends import DRIVERS, FOREIGN, PROCESSOR, TAG, contradictions
 from robo_genesis.sim.camera.frames import Renderer
 
 MANIFEST = "manifest.json"
@@ -27,9 +29,16 @@ FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 STATED = ("backend", "device", "engine version", "seed", "precision")
 """The facts that the log of the pinned version states: where it runs, and how it was started."""
 
+CLOCKS = timedelta(days=1)
+"""Allowed difference between the clocks of two machines."""
+
 BEGINNING = re.compile("^(?=(?:DEBUG|INFO|WARNING|ERROR|CRITICAL) )", re.MULTILINE)
 MESSAGE = re.compile(r"(?:WARNING|ERROR|CRITICAL) (.*?)\n?\Z", re.DOTALL)
-SOFTWARE_LINE = "Software rendering context detected"
+SOFTWARE, SOFTWARE_LINE = "software rendering", "Software rendering context detected"
+"""The fact that the engine draws in software, and the line that states it for `llvmpipe`."""
+
+STATING = re.compile(r"^.*(?:Running on \[|initialized\.).*$", re.MULTILINE)
+"""A line that may state a fact; in most of a log's lines, which may be millions, nothing does."""
 
 
 def check_identity(
@@ -50,26 +59,26 @@ def check_identity(
         expect("lesson", MANIFEST, "lesson", predicate.lesson, " or ".join(LESSONS), move)
     if page is not None:
         expect("lesson", MANIFEST, "page", predicate.page, page, move)
-    started, ended = predicate.started, predicate.ended
     try:
-        if datetime.fromisoformat(started) > datetime.fromisoformat(ended):
-            raise ValueError(f"ended is {ended}, before started, {started}")
+        started, ended = map(datetime.fromisoformat, (predicate.started, predicate.ended))
+        if not started <= ended <= datetime.now(UTC) + CLOCKS:
+            raise ValueError(f"the run is from {started} to {ended}")
     except ValueError as error:
-        text = f"{error}, expected RFC 3339 times in order"
+        text = f"{error}, expected RFC 3339 times in order, none in the future"
         raise BundleRefused("time", f"{MANIFEST}: {text}. {AGAIN}") from error
     key = evidence_key(predicate.model_dump())
     expect("key", MANIFEST, "evidence_key", predicate.evidence_key, key)
 
 
 def check_circumstances(folder: Path, predicate: Predicate) -> None:
-    """Require one backend, a matching Torch, switches that force no device, a true renderer.
+    """Require one backend, a machine and a Torch for it, true switches, a true renderer.
 
     The backend names the folder. The files of the engine are those of its wheels.
 
     Raises:
-        BundleRefused: `backend`; `torch`, also for a switch that forces a device; `environment` for
-            a variable that is not a switch of the engine, and for a value that names a home folder;
-            `render`; `engine-files`.
+        BundleRefused: `backend`, also for a machine that cannot have it; `torch`, also for a switch
+            that forces a device; `packages`; `environment` for a variable that is not a switch of
+            the engine, and for a value that names a home folder; `render`; `engine-files`.
     """
     backend, render, switches = predicate.backend, predicate.render, predicate.environment
     expect("backend", MANIFEST, "backend.actual", backend.actual, folder.name, RELABEL)
@@ -79,6 +88,10 @@ def check_circumstances(folder: Path, predicate: Predicate) -> None:
         expect("backend", MANIFEST, "actual where cpu was requested", backend.actual, "cpu")
     for what, found, expected in contradictions(backend):
         expect("torch", MANIFEST, what, found, expected, TORCH)
+    for what, found, expected in _machine(predicate):
+        expect("backend", MANIFEST, what, found, expected)
+    for what, found, expected in _packages(predicate):
+        expect("packages", MANIFEST, what, found, expected)
     forced = [name for name in FORCED if name in switches]
     expect("torch", MANIFEST, "list of set variables that must stay unset", forced, [], TORCH)
     others = sorted(switches.keys() - project.engine_switches(switches).keys())
@@ -97,6 +110,42 @@ def check_circumstances(folder: Path, predicate: Predicate) -> None:
     expect("engine-files", MANIFEST, "engine.files_match_wheel", match, True, REINSTALL)
 
 
+def _machine(predicate: Predicate) -> Iterator[tuple[str, object, object]]:
+    """Yield (name, found, expected) of what the backend requires of the machine."""
+    backend, host, actual = predicate.backend, predicate.host, predicate.backend.actual
+    if actual == "cpu":
+        arm = host.machine.lower().startswith(("arm", "aarch"))
+        yield "whether host.machine is that of an ARM processor", arm, backend.arch == "arm64"
+        yield "backend.device_name", backend.device_name, host.cpu
+    else:
+        apple = host.os.startswith(("macOS", "Darwin"))
+        yield "whether host.os is macOS", apple, actual == "metal"
+    if actual in DRIVERS:
+        words = rf"^{re.escape(host.cpu)}$|{PROCESSOR}|{FOREIGN[actual]}"
+        odd = re.findall(words, backend.device_name, re.IGNORECASE)
+        yield f"list of words in device_name that no {actual} device has", odd, []
+    yield "whether there is a driver", backend.driver is not None, actual in DRIVERS
+
+
+def _packages(predicate: Predicate) -> Iterator[tuple[str, object, object]]:
+    """Yield (name, found, expected) of the installed versions that are not those that ran.
+
+    Torch names its build; its package need not: on PyPI, `2.13.0` is 2.13.0+cu130.
+    """
+    engine, torch = predicate.engine, predicate.backend.torch_version
+    ran = {project.ENGINE: engine.version, "quadrants": engine.quadrants_version, "torch": torch}
+    packages = [(canonicalize_name(n), version) for n, version in predicate.host.packages.items()]
+    for package, version in ran.items():
+        listed = [found for name, found in packages if name == package] or ["none"]
+        others = [found for found in listed if not _same_build(found, version)]
+        yield f"list of installed versions of {package} other than {version}", others, []
+
+
+def _same_build(listed: str, ran: str) -> bool:
+    tag = TAG.search(listed)
+    return listed.partition("+")[0] == ran.partition("+")[0] and (not tag or tag[0] in ran)
+
+
 def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
     """Require that the engine's own log states what the manifest says.
 
@@ -113,12 +162,13 @@ def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
     if longest > LINE_LIMIT:
         most = f"at most {LINE_LIMIT}"
         raise unexpected("log", "log.txt", "length of the longest line", longest, most)
-    stated = set()
-    for what, found, expected in _log_facts(text, manifest.predicate):
+    predicate, stated = manifest.predicate, set()
+    for what, found, expected in _log_facts(text, predicate):
         expect("log", "log.txt", what, found, expected)
         stated.add(what)
-    if manifest.predicate.engine.version == project.engine_pin(root):
-        missing = [what for what in STATED if what not in stated]
+    if predicate.engine.version == project.engine_pin(root):
+        needed = (*STATED, SOFTWARE) if "llvmpipe" in str(predicate.render.renderer) else STATED
+        missing = [what for what in needed if what not in stated]
         expect("log", "log.txt", "list of facts that the engine does not state", missing, [])
 
 
@@ -134,7 +184,7 @@ def _log_facts(text: str, predicate: Predicate) -> Iterator[tuple[str, object, o
         "seed": str(predicate.seed),
         "precision": engine.precision,
     }
-    for line in text.split("\n"):
+    for line in STATING.findall(text):
         device, _, name = line.partition("Running on [")[2].rpartition("] with backend ")
         if word := re.match(r"(?:gs\.)?(\w+)", name):
             yield "backend", word[1], backend.actual
@@ -145,7 +195,7 @@ def _log_facts(text: str, predicate: Predicate) -> Iterator[tuple[str, object, o
             if found[1] and (value := re.match(r"[^,\s]+", found[2])):
                 yield what, value[0], expected
     if predicate.render.mode == "camera" and SOFTWARE_LINE in text:
-        yield "software rendering", True, predicate.render.software
+        yield SOFTWARE, True, predicate.render.software
 
 
 def _warnings(text: str) -> list[str]:

@@ -202,7 +202,8 @@ def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
 
 def host_record(cpu: str | None) -> dict[str, Any]:
     """Describe the machine and every installed package."""
-    packages = {d.metadata["Name"]: d.version for d in importlib.metadata.distributions()}
+    found = [*importlib.metadata.distributions()]  # of two of one name, Python imports the first
+    packages = {d.metadata["Name"]: d.version for d in reversed(found)}
     return {
         "os": platform.platform(),
         "machine": platform.machine(),

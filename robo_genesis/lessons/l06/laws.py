@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.arm.franka import per_joint
-from robo_genesis.sim.arm.laws import commanded, driven_run
+from robo_genesis.sim.arm.laws import commanded, driven_run, model_joints
 from robo_genesis.sim.laws import kept
 
 MEASURES = False
@@ -17,6 +17,7 @@ hold each other; that force, up to 0.34 N here, the rule does not know."""
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """At each sample links, forces and, without a load, velocities are those of its own robot."""
+    yield from kept("the joint map", model_joints(run.joints))
     for name, world in run.cases.items():
         trace = run.traces[name]
         what = trace, world.commanding(trace.target), run.links
