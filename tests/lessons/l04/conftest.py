@@ -50,7 +50,7 @@ def study_runs(joints, frames) -> Experiment:
     for name, run in study_spec.SECOND_RUNS.items():
         case = l04.CASES[run.case]
         traces[name] = mujoco_joints.run_case(case, LINKS, run.timestep, run.integrator)
-    traces[study_spec.ASSIGNED] = assigned(l04.BASELINE, LINKS)
+    traces[study_spec.ASSIGNED] = assigned(l04.BASELINE, LINKS, traces["baseline"])
     inertia, gravity = (float(v[l04.ENTRY]) for v in mujoco_joints.at_rest(Q_START))
     of_joint = {"passive_damping": 1.0}
     h = l04.G1.dt / l04.G1.substeps

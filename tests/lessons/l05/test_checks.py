@@ -11,6 +11,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import restarts, spec, study
 from robo_genesis.lessons.l05.laws import laws_of_motion
 from robo_genesis.lessons.l05.metrics import reach_metrics
+from robo_genesis.lessons.l05.pages import SOLUTIONS
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
@@ -75,10 +76,24 @@ def test_the_record_of_answers_has_the_dt_of_its_case():
     assert (case.start.dt, case.start.steps) == (0.5, 1)
 
 
-def test_a_link_out_of_place_breaks_a_law(reaches):
-    moved = moved_hand("unreachable", 1e-4)(reaches)
-    wrong = [finding for finding in laws_of_motion(moved) if not finding.passed]
-    assert ["link_pos" in finding.label for finding in wrong] == [True]
+def exchanged(run: Experiment) -> Experiment:
+    one, other = spec.PLANES
+    return replace(run, traces={**run.traces, one: run.traces[other], other: run.traces[one]})
+
+
+@pytest.mark.parametrize(
+    ("change", "labels"),
+    [
+        (lambda run: run, []),
+        (moved_hand("unreachable", 1e-4), ["link_pos"]),
+        (trace("many_starts", internal_force=shift(..., 1e-6)), ["internal_force"]),
+        (exchanged, ["share of answers"] * 2),
+    ],
+)
+def test_a_run_that_breaks_a_law_is_found(solved, change, labels):
+    found = laws_of_motion(change(replace(solved, page=SOLUTIONS)))
+    wrong = [finding.label for finding in found if not finding.passed]
+    assert [label in of for label, of in zip(labels, wrong, strict=True)] == [True] * len(labels)
 
 
 def test_an_answer_that_is_not_accepted_is_not_commanded():

@@ -12,7 +12,6 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import checks, spec, study
 from robo_genesis.lessons.l06.pages import LECTURE
 from robo_genesis.lessons.l06.run import Environment
-from robo_genesis.sim.mujoco.kinematics import gravity_effort
 
 ROUNDING = np.float32(1.2e-7)
 
@@ -22,13 +21,7 @@ def run_of(world: Environment) -> Trace:
     first, last = (answer(world.positions[k], world.q_start, 50).q for k in (0, -1))
     targets = np.repeat(first[None].astype(float), world.steps, axis=0)
     targets[world.switch :] = last
-
-    def weight(q):
-        if not world.load:
-            return np.zeros(len(q))
-        return gravity_effort(q, world.load) - gravity_effort(q)
-
-    return driven(world.commanding(targets), LINKS, weight)
+    return driven(world.commanding(targets), LINKS, world.load)
 
 
 @pytest.fixture(scope="session")

@@ -7,6 +7,7 @@ import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l06 import spec
+from robo_genesis.lessons.l06.laws import laws_of_motion
 from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.run import commands
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
@@ -59,6 +60,14 @@ def test_each_check_of_the_page_has_such_a_change(worlds):
     assert failed(worlds) == set()
     names = {check.__name__ for check in worlds.page.checks}
     assert names == {name for name, _ in CHANGES} | {"laws_of_motion"}
+
+
+@pytest.mark.parametrize(("name", "by"), [(LOADED, 0.0), (LOADED, 0.1), ("env_1", 0.1)])
+def test_the_law_of_each_robot_knows_its_load(worlds, name, by):
+    page = replace(worlds.page, runs={name: worlds.page.runs[name]})
+    run = trace(name, internal_force=shift((40, 1), by))(replace(worlds, page=page))
+    (found,) = laws_of_motion(run)
+    assert (found.passed, "internal_force" in found.label) == (by == 0, by > 0)
 
 
 def test_the_lab_says_which_checks_fail_if_two_rows_are_swapped(worlds):
