@@ -13,7 +13,7 @@ import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import rfc8785
 from pydantic import Field, TypeAdapter, ValidationError
@@ -32,12 +32,16 @@ from robo_genesis.evidence.fields import (
 )
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence.strict_json import read_json
+from robo_genesis.sim.camera.frames import Renderer
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:robo-genesis:evidence:v2"
 SCHEMA_VERSION = 2
 KEYED = ("schema_version", "lesson", "page", "source", "parameters", "seed")
 KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
+
+
+Value = TypeVar("Value")
 
 
 class Digest(Strict):
@@ -218,6 +222,14 @@ def evidence_key(predicate: dict[str, Any]) -> str:
     return hashlib.sha256(rfc8785.dumps(keyed)).hexdigest()
 
 
+def render_record(drawn: Renderer | None) -> dict[str, Any]:
+    """Return what a manifest says about the renderer of its frames, None without a camera."""
+    if drawn is None:
+        return {"mode": "skip", "vendor": None, "renderer": None, "software": None}
+    facts = {"vendor": drawn.vendor, "renderer": drawn.name, "software": drawn.software}
+    return {"mode": "camera"} | facts
+
+
 def read_manifest(folder: Path) -> Manifest:
     """Return the manifest of a bundle; only its form is checked.
 
@@ -253,7 +265,7 @@ def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     return _validated(dict[Line, dict[Line, Metric]], content, "metrics.json")
 
 
-def by_full_name(metrics: Mapping[str, Mapping[str, Metric]]) -> dict[str, Metric]:
+def by_full_name(metrics: Mapping[str, Mapping[str, Value]]) -> dict[str, Value]:
     """Return metrics by `group.name`."""
     return {f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()}
 
@@ -263,9 +275,7 @@ def read_arrays(folder: Path) -> Arrays:
     return _validated(Arrays, read_json(folder, "arrays.json"), "arrays.json")
 
 
-@cache
-def _adapter(form: Any) -> TypeAdapter[Any]:
-    return TypeAdapter(form)
+_adapter = cache(TypeAdapter[Any])
 
 
 def _validated(form: Any, value: Any, file: str) -> Any:
