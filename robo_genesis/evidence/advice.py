@@ -14,14 +14,6 @@ BY_CODE = {
         "The files are sound, but a check of the run itself failed. If you changed the experiment, "
         "this can be your result; otherwise, restart the kernel and run all cells in order."
     ),
-    "engine-files": (
-        "A file of your installed engine differs from the published package. "
-        "Install it again: pip install --force-reinstall -r requirements.lock."
-    ),
-    "torch": (
-        "Genesis and Torch used different devices, or a switch forced one. Unset "
-        "GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, restart the kernel and run the page again."
-    ),
     "metrics": (
         "The recorded metrics are not those of the recorded arrays. If you edited neither file, "
         "your copy of the course computes metrics in another way: use one copy for both."

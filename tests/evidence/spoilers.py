@@ -297,6 +297,7 @@ link_too_many = put(METRICS, "model", "links", value=12)
 failing = both(link_too_many, checked_again)
 """A run that fails a check of its own, as it would have been measured."""
 
+older_compiler = both(part("engine", quadrants_version="1.2.9"), packages(quadrants="1.2.9"))
 drop_case = both(remove("arrays/G3.npz"), pop(ARRAYS, "cases", "G3"))
 older_type = manifest(lambda m: m.update(predicateType="urn:robo-genesis:evidence:v1"))
 
@@ -397,7 +398,6 @@ GROUPS = {
         "no compiler installed": pop(MANIFEST, "predicate", "host", "packages", "quadrants"),
         "another Torch installed": packages(torch="2.12.0"),
         "another build of Torch installed": both(on("cuda"), packages(torch="2.13.0+cpu")),
-        "two engines installed": packages(genesis_world="1.3.2"),
     },
     ("torch", "torch"): {
         "amdgpu without HIP": on("amdgpu", hip_version=None),

@@ -32,6 +32,8 @@ from robo_genesis.sim import session
 DECIDING = ("book", "robo_genesis", "pyproject.toml", "requirements.lock")
 """The files of a commit that decide `question`."""
 
+SQUASHED = "Merge the branch that recorded it without squashing, or record the bundle again."
+
 
 def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
     """Return the fields that `bundle.evidence_key` covers, with the values of a checkout.
@@ -162,13 +164,11 @@ def check_commit(manifest: Manifest, root: Path) -> None:
     if made is None:
         shallow = git_or_none(root, "rev-parse", "--is-shallow-repository")
         if shallow == "false\n" and predicate.backend.actual != "cpu":
-            remedy = "Merge the branch that recorded it without squashing, or record it again."
             known = "one in the history of this repository"
-            raise unexpected("commit", MANIFEST, "git.commit", commit, known, remedy)
+            raise unexpected("commit", MANIFEST, "git.commit", commit, known, SQUASHED)
         return
     if datetime.fromisoformat(predicate.ended) < datetime.fromisoformat(made.strip()) - CLOCKS:
-        after = f"after its commit, {made.strip()}"
-        raise unexpected("time", MANIFEST, "ended", predicate.ended, after)
+        raise unexpected("time", MANIFEST, "ended", predicate.ended, f"after its commit, {made}")
     if not recorded.dirty:
         inputs = [commit, predicate.evidence_key]
         found = derived_value("commit", inputs, lambda: _changed_since(commit, manifest, root))

@@ -25,7 +25,7 @@ import numpy as np
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import per_joint
+from robo_genesis.sim.arm.franka import JOINT_TYPES, per_joint
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.laws import ZERO, apart, broken, mean_speed, times, unit_quaternions
@@ -129,8 +129,6 @@ def poses(trace: Trace, links: Sequence[str]) -> Iterator[Finding]:
 
 def model_joints(joints: JointMap) -> Iterator[Finding]:
     """Yield an index, a limit or a type that the joint of the model does not have."""
-    import mujoco
-
     from robo_genesis.sim.mujoco.kinematics import bare_robot
 
     model, _, q_at, dof_at = bare_robot()
@@ -139,10 +137,8 @@ def model_joints(joints: JointMap) -> Iterator[Finding]:
     expected = {"dofs_idx_local": dof_at, "qs_idx_local": q_at, "lower": lower, "upper": upper}
     for name, values in expected.items():
         yield from apart("labels", name, getattr(joints, name), np.array(values), LIMIT_TOLERANCE)
-    slides = [int(kind) == mujoco.mjtJoint.mjJNT_SLIDE for kind in model.jnt_type[own]]
-    types = ["PRISMATIC" if slide else "REVOLUTE" for slide in slides]
-    if [*joints.types] != types:
-        yield broken("labels", "list of types", [*joints.types], types)
+    if joints.types != JOINT_TYPES:
+        yield broken("labels", "list of types", joints.types, JOINT_TYPES)
 
 
 def dynamics(

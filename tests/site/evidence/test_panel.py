@@ -156,7 +156,8 @@ def test_the_comparison_names_both_runs_and_all_else_the_recorded_one(
 def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared(
     folder, tmp_path, record, engine, experiment, monkeypatch, actual, facts, axis
 ):
-    monkeypatch.setattr(recorder, "driver_version", lambda name: f"the driver of {name}")
+    drivers = {"amdgpu": "the driver of amdgpu", "cuda": "the driver of cuda"}
+    monkeypatch.setattr(recorder, "driver_version", drivers.get)
     there = engine_on(engine, actual)
     left = written(there, tmp_path / "outputs", "l04", "lab", experiment)
     place = tmp_path / "book" / "evidence" / "l04" / left.name
