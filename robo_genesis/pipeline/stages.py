@@ -76,8 +76,7 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
-        ProjectError: pages that were executed elsewhere are refused, or the checkout or SITE_URL is
-            not fit for a build; nothing was published.
+        ProjectError: pages from elsewhere, checkout or SITE_URL are refused; nothing was published.
     """
     with (
         build.sphinx or SphinxProcess(build.book, build.cache / LOG) as sphinx,
@@ -94,7 +93,7 @@ def run_build(build: Build) -> list[str]:
         if build.executed:
             progress("execute", f"no page: all are taken from {build.executed}")
             results = handed_over(build.executed, pages, into)
-            manifests |= _accepted(build, verify, results, progress)
+            manifests = _accepted(build, verify, results, progress)
         else:
             results = _execute(build, pages, into, environment, progress, verify)
 
