@@ -111,7 +111,7 @@ class GitRecord(Strict):
 
 
 class SourceRecord(Strict):
-    """Digests of the syntax of what computed: code cells of the page, modules of the package."""
+    """Digests of the syntax of what computed: code cells and modules; and of data files."""
 
     page: Sha256 | None
     modules: dict[Line, Sha256]

@@ -160,8 +160,8 @@ def _unkeyed(run: PageRun) -> Failure | None:
         return None
     return Failure(
         "FileNotKeyed",
-        f"the page read {', '.join(names)}. It would not be executed again if that changed. Valid "
-        "are files of its lesson's folder, of imported modules and of packages, and its own. "
+        f"the page read {', '.join(names[:20])}. It would not be executed again if they changed. "
+        "Valid are files of its lesson's folder, of imported modules and packages, and its own. "
         f"Move them into {PACKAGE}/lessons/{run.page.lesson or '…'}.",
     )
 
