@@ -32,9 +32,7 @@ ROUNDING = "The alteration is no larger than what float32 resolves of a position
 
 ACCEPTED = {
     **{("l03", "link_ang", how): f"{NOISE} {SCHEME}" for how in ("× 1.02", "× 0.98", "sample")},
-    ("l03", "link_pos", "sample"): ON_EDGE,
-    ("l03", "link_vel", "sample"): ON_EDGE,
-    ("l03", "contacts", "sample"): ON_EDGE,
+    **{("l03", name, "sample"): ON_EDGE for name in ("link_pos", "link_vel", "contacts")},
     **{("l03", "penetration", how): ROUNDING for how in ("× 1.02", "× 0.98", "sample")},
 }
 """By lesson, array and alteration, why a try may be accepted. No other may."""

@@ -162,7 +162,7 @@ def test_a_study_case_with_a_second_factor_fails(study_runs, monkeypatch):
     ("name", "spoil"),
     [
         ("assigned", trace("assigned", qd=put((3, 1), 0.1))),
-        ("assigned", trace("assigned", internal_force=shift(..., 1e-6))),
+        ("assigned", trace("assigned", internal_force=put(..., 1e-6))),
         (MOTION, trace(MOTION, qd=put((9, 1), 0.1))),
         ("MuJoCo_implicitfast_G2_substeps_2", copied("MuJoCo_implicitfast_G2_substeps_2", "G2")),
     ],
