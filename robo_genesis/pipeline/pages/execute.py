@@ -152,8 +152,9 @@ def execute_pages(
     report, environment = report or Lines(), environment or {}
     results = _reused(pages, places, report) if reuse else {}
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
-    failed = [page.docname for page in pages if failed_mark(places[page.docname]).exists()]
-    waiting = in_order((page for page in pages if page.docname not in results), last, failed)
+    waiting = [page for page in pages if page.docname not in results]
+    failed = [page.docname for page in waiting if failed_mark(places[page.docname]).exists()]
+    waiting = in_order(waiting, last, failed)
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
