@@ -123,7 +123,8 @@ def execute_pages(
     """Execute the pages that the store does not have yet; try all of them.
 
     Those whose last run with this engine failed start first, then the longest. A page that declares
-    `alone` runs when no other page does.
+    `alone` runs when no other page does. While the engine's cache is empty, the first page runs
+    alone until it has saved kernels: others would compile the same ones.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -162,7 +163,10 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running:
-                while waiting and _may_start(waiting[0], running, jobs):
+                cold = not (results or _has_kernels(environment))
+                while waiting and len(running) < (
+                    1 if cold or _alone(waiting[0], running) else jobs
+                ):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -187,6 +191,12 @@ def execute_pages(
         finally:
             kill_with_descendants(process.pid for process, *_ in running.values())
     return [results[page.docname] for page in pages]
+
+
+def _has_kernels(environment: Mapping[str, str]) -> bool:
+    """Return whether the engine's cache has a kernel; true if the pages use no such cache."""
+    folder = environment.get(project.COMPILED_KERNELS)
+    return folder is None or any(Path(folder).rglob("*.qdc"))
 
 
 def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -> dict[str, str]:
@@ -225,10 +235,9 @@ def in_order(
     return sorted(pages, key=sooner)
 
 
-def _may_start(page: Page, running: Running, jobs: int) -> bool:
-    """Return whether a page may start beside those that run."""
-    alone = page.alone or any(run.page.alone for _, run, _ in running.values())
-    return len(running) < (1 if alone else jobs)
+def _alone(page: Page, running: Running) -> bool:
+    """Return whether a page, or one of those that run, must have no other beside it."""
+    return page.alone or any(run.page.alone for _, run, _ in running.values())
 
 
 def _reused(
