@@ -227,7 +227,7 @@ def _execute(
     )
     failed = [failure_report(results)] if any(result.failure for result in results) else []
     if failed or refused:
-        accept(*(result for result in results if result.status == "reused"))
+        accept(*(result for result in results if result.status == "reused"))  # to report them all
         raise BuildError("\n\n".join([*failed, *refused]))
     return results
 

@@ -133,8 +133,9 @@ def execute_pages(
     report, environment = report or Lines(), environment or {}
     results = _reused(pages, places, report) if reuse else {}
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
-    failed = [page.docname for page in pages if failed_mark(places[page.docname]).exists()]
-    waiting = in_order((page for page in pages if page.docname not in results), last, failed)
+    waiting = [page for page in pages if page.docname not in results]
+    failed = [page.docname for page in waiting if failed_mark(places[page.docname]).exists()]
+    waiting = in_order(waiting, last, failed)
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
@@ -143,7 +144,9 @@ def execute_pages(
         try:
             while waiting or running:
                 cold = not (results or _has_kernels(environment))
-                while waiting and _may_start(waiting[0], running, 1 if cold else jobs):
+                while waiting and len(running) < (
+                    1 if cold or _alone(waiting[0], running) else jobs
+                ):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -212,10 +215,9 @@ def in_order(
     return sorted(pages, key=sooner)
 
 
-def _may_start(page: Page, running: Running, jobs: int) -> bool:
-    """Return whether a page may start beside those that run."""
-    alone = page.alone or any(run.page.alone for _, run, _ in running.values())
-    return len(running) < (1 if alone else jobs)
+def _alone(page: Page, running: Running) -> bool:
+    """Return whether a page, or one of those that run, must have no other beside it."""
+    return page.alone or any(run.page.alone for _, run, _ in running.values())
 
 
 def _reused(
