@@ -28,10 +28,11 @@ ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 # one that is registered right after them runs right before them, after the engine's, and ends it.
 END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)"
 # Pages import the engine before the course, which would only spare the searches that are left then.
-SPARE_SEARCHES = (
-    "__import__('robo_genesis.sim.session', fromlist=['spare_searches']).spare_searches()"
-)
-ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in (END_BEFORE_IPYKERNEL, SPARE_SEARCHES)]
+COMPILER = "__import__('robo_genesis.sim.compiler', fromlist=['compiler'])"
+SPARE_SEARCHES = f"{COMPILER}.spare_searches()"
+SAVE_KERNELS = f"get_ipython().events.register('post_run_cell', {COMPILER}.save_kernels)"
+LINES = (END_BEFORE_IPYKERNEL, SPARE_SEARCHES, SAVE_KERNELS)
+ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in LINES]
 
 
 class CleanKernelManager(AsyncKernelManager):
