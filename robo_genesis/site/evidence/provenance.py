@@ -30,6 +30,11 @@ TITLE = 80
 ITEMS = "robo_genesis_items"
 """The name of a page's items in its metadata."""
 
+WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
+    None: "illustration", (): "settings", NO_BUNDLE: "unbound",
+}  # fmt: skip
+"""The kind of an item that belongs to no run, by its origin."""
+
 logger = logging.getLogger(__name__)
 
 
@@ -127,12 +132,11 @@ def describe(
         rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
         kind, data, file = "table", ledger_data.csv_bytes(rows), f"{file}.csv"
         title = f"{heading}: {', '.join(filter(None, rows[0]))}"
-    kind = {None: "illustration", (): "settings", NO_BUNDLE: "unbound"}.get(keys, kind)
-    runs = () if keys == NO_BUNDLE else keys or ()
-    digest, data = ledger_data.sha256(data), None if is_picture else data
+    kind, runs = WITHOUT_RUN.get(keys, kind), () if keys in WITHOUT_RUN else keys or ()
+    digest, kept = ledger_data.sha256(data), None if is_picture else data
     title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
     title = textwrap.shorten(title, TITLE, placeholder=" …")
-    return Item(kind, title, docname, anchor, runs, digest, file, data)
+    return Item(kind, title, docname, anchor, runs, digest, file, kept)
 
 
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
