@@ -78,7 +78,12 @@ def commands(host: Host) -> list[list[str]]:
                 f"book/evidence of this checkout. Leave {name} out, or record without the "
                 f"container: {WITHOUT}"
             )
-    engine = _engine(host)
+    engine = next(filter(host.find, ENGINES), None)
+    if engine is None:
+        raise ContainerError(
+            f"PATH has neither {' nor '.join(ENGINES)}. Install one of them, or record without it: "
+            f"{WITHOUT}"
+        )
     for device in host.devices:
         if not device.exists():
             raise ContainerError(
@@ -101,16 +106,6 @@ def commands(host: Host) -> list[list[str]]:
     if lesson := host.environment.get("LESSON"):
         run += ["--env", f"LESSON={lesson}"]
     return [build, [*run, IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]]
-
-
-def _engine(host: Host) -> str:
-    for name in ENGINES:
-        if host.find(name):
-            return name
-    raise ContainerError(
-        f"PATH has neither {' nor '.join(ENGINES)}. Install one of them, or record without it: "
-        f"{WITHOUT}"
-    )
 
 
 def _groups(devices: Iterable[Path]) -> list[int]:
