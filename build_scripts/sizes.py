@@ -1,21 +1,19 @@
-"""Print the size of each executed page, and find typed measurements: a part of `make lint`.
+"""Print the size of each executed page and compare it with the limits: a part of `make lint`.
 
-Exit status: 0 all pages keep their limits and type only chosen decimal numbers; 1 otherwise.
+Exit status: 0 all pages keep their limits; 1 otherwise.
 """
 
 import sys
 
-from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.core.project import BOOK
 from robo_genesis.pipeline.command import run
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.course.sizes import report
-from robo_genesis.site.text.prose_numbers import typed_numbers
 
 
 def main() -> int:
     """Print the lines and return the exit status."""
     lines, problems = report(find_pages(BOOK))
-    problems += typed_numbers(BOOK, ROOT)
     print(*lines, sep="\n")
     print(*problems, sep="\n", end="\n" * bool(problems), file=sys.stderr)
     return 1 if problems else 0

@@ -185,14 +185,6 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path], dict[str, 
     return engine, pages, into, environment
 
 
-def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
-    """Return the folder of the lab's bundle of this build, by lesson of the book."""
-    labs: dict[str, Path | None] = {
-        str(result.page.lesson): None for result in results if result.page.declares_bundle
-    }
-    return labs | {str(r.page.lesson): r.bundle for r in results if r.page.page == "lab"}
-
-
 def _execute(
     build: Build,
     pages: Sequence[Page],
@@ -240,7 +232,9 @@ def _accepted(
     Raises:
         BuildError: a bundle of this build or a recorded one is refused, or a release lacks one.
     """
-    labs = _labs(results)
+    measuring = [result for result in results if result.page.declares_bundle]
+    labs: dict[str, Path | None] = dict.fromkeys(str(result.page.lesson) for result in measuring)
+    labs |= {str(r.page.lesson): r.bundle for r in measuring if r.page.page == "lab"}
     manifests, refused = verify_results(verify, results, progress)
     if refused := refused + refused_records(build.book, labs):
         raise BuildError("\n".join(refused))
