@@ -16,9 +16,6 @@ from robo_genesis.sim.laws import ZERO, apart, kept
 
 MEASURES = False
 
-FEWEST = 0.25
-"""Share of the answers of a reach map that are accepted at least; the maps have 0.54 and 0.62."""
-
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """At each sample links, forces and velocities are those of the driven or assigned robot."""

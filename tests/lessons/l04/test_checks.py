@@ -11,7 +11,6 @@ from lessons.changed_runs import (
     metric,
     put,
     reading,
-    shift,
     trace,
     with_fields,
 )
