@@ -24,10 +24,10 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
         trace = run.traces[name]
         if isinstance(case, SolveCase):
             assigned = assigned_postures(trace, case.start, run.links, run.traces.values())
-            laws = chain(assigned, own_targets(trace, case))
+            yield from kept(name, chain(assigned, own_targets(trace, case)))
         else:
-            laws = driven_run(trace, case.commanding(trace.target[0]), run.links)
-        yield from kept(name, laws)
+            driven = driven_run(trace, case.commanding(trace.target[0]), run.links)
+            yield from kept(name, driven)
 
 
 def own_targets(trace: Trace, case: SolveCase) -> Iterator[Finding]:
