@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_views import PLANE, closed_view, looking
+from closed_views import PLANE, closed_view
 from lessons.changed_runs import reading
 from lessons.lesson_bundles import accepted_then_refused, in_archive, metric
 from spoilers import coords
@@ -15,6 +15,7 @@ from robo_genesis.lessons.l05 import checks, plots, spec, text
 from robo_genesis.lessons.l05.pages import LAB
 from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.checks import Marker
+from robo_genesis.sim.camera.geometry import looking
 
 SPHERE = Marker(13, spec.TARGET, spec.MARKER_RADIUS)
 
