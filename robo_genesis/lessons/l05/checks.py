@@ -138,9 +138,8 @@ def marker(run: Experiment) -> Marker:
 
 def camera_matrix(run: Experiment) -> Iterator[Finding]:
     """Matrix, pose and limits of each camera are those that it was given."""
-    for name, given in spec.VIEWS.items():
-        if f"view_{name}" in run.readings:
-            yield from camera_checks.camera_matrix(name, view_of(run, name), given)
+    for name in (view for view in spec.VIEWS if f"view_{view}" in run.readings):
+        yield from camera_checks.camera_matrix(name, view_of(run, name), spec.VIEWS[name])
 
 
 def projection(run: Experiment) -> Iterator[Finding]:

@@ -83,6 +83,7 @@ SPOILED = {
         "baseline", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))),
     "a residual that was written": ("checks", metric("ik", "residual_m", 1.0)),
     "a camera that was moved": ("checks", metric("view_world", "transform_03", 1.6)),
+    "a far limit that was written": ("checks", metric("view_world", "far", 21.0)),
     "another hand": ("pose", coords(
         link=lambda links: [*links[:8], "flange", *links[9:]])),
 }  # fmt: skip
