@@ -64,7 +64,7 @@ def start_table(run: Experiment) -> str:
     first, second = (sum(of) for of in zip(*rows.values(), strict=True))
     ratio = {"first divided by second": (f"{first / second:.1f}", "")}
     heads = {f"{start} start [s]": 3 for start in machine.STARTS}
-    return tables.number_table("part", heads, {**rows, "together": (first, second), **ratio})
+    return tables.timed_table("part", heads, {**rows, "together": (first, second), **ratio})
 
 
 def metric_table(run: Experiment) -> str:

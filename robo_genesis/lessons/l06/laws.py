@@ -10,9 +10,10 @@ from robo_genesis.sim.laws import kept
 
 MEASURES = False
 
+# A hand that turns sideways pushes its fingers, which hold each other. That force, up to 0.34 N
+# here, is not in the law.
 NET_FORCE = per_joint(*(1e-2,) * 7, 0.6, 0.6)
-"""Tolerance of an internal force [N·m or N]. A hand that turns sideways pushes its fingers, which
-hold each other; that force, up to 0.34 N here, the rule does not know."""
+"""Tolerance of an internal force [N·m or N]."""
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:

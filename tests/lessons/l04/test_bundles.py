@@ -24,8 +24,8 @@ def as_other(folder):
         ("lecture", without_run("assigned"), "cases: .*assigned"),
         ("integrator", case("MuJoCo_Euler_G2_substeps_2", note=""),
          "cases: .*note of the case MuJoCo"),
-        ("integrator", pop(METRICS, "readings", "inertia_MuJoCo"), "metrics: .*inertia_Mu"),
-        ("lecture", metric("readings", "gravity_G2", 30.0), "checks: .*gravity_support"),
+        ("integrator", pop(METRICS, "readings", "inertia_Genesis"), "metrics: .*inertia_G"),
+        ("lecture", metric("readings", "gravity_G2", 30.0), "checks: .*same_model"),
         ("integrator", altered("one_limit"), "checks: "),
     ],
 )  # fmt: skip
