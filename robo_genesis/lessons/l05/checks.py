@@ -46,9 +46,9 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
     for name in ("baseline", "kp_doubled"):
         trace, m = run.traces[name], run.metrics[name]
         yield equal(f"{name}.command_not_finite", int((~np.isfinite(trace.target)).sum()), 0)
-        most = np.add(limits, spec.SAME_POSE)
-        yield at_most(f"{name}.command_distance_m", m.command_distance, most[0])
-        yield at_most(f"{name}.command_angle_rad", m.command_angle, most[1])
+        farthest, widest = np.add(limits, spec.SAME_POSE)
+        yield at_most(f"{name}.command_distance_m", m.command_distance, farthest)
+        yield at_most(f"{name}.command_angle_rad", m.command_angle, widest)
 
 
 def forward_kinematics(run: Experiment) -> Iterator[Finding]:
