@@ -16,8 +16,6 @@ from robo_genesis.pipeline.bundles.status import Status
 ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
 """The oldest time that a zip can hold: the same bundle always gives the same bytes."""
 
-RASTERS = (".png", ".webp", ".jpg", ".jpeg")
-
 MEASURED, PRINTED = "Measured", "Printed by this run"
 """How the line below an item begins whose runs are all accepted."""
 
@@ -121,7 +119,7 @@ def facts(backend: str, predicate: Predicate) -> dict[str, str]:
 
 def picture_kind(path: Path) -> str:
     """Return the kind of a measured picture: a camera frame has pixels, a figure has lines."""
-    is_raster = path.suffix in RASTERS or b"<image" in path.read_bytes()
+    is_raster = path.suffix != ".svg" or b"<image" in path.read_bytes()
     return "camera frame" if is_raster else "figure"
 
 

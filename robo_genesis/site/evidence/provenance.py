@@ -79,7 +79,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
 
 
 def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Element]:
-    """Return the texts that a cell printed, nothing for a node that is no box of outputs."""
+    """Return the texts that a cell printed, an empty list for any other node."""
     if box.get("nb_element") not in ("cell_code_output", "glued"):
         return []
     left_out = "mime_bundle" if box.parent.get("cell_index") in recomputed else None

@@ -261,25 +261,25 @@ def unnoticed_edits(places: Iterable[Path]) -> list[str]:
         record, ran = read_record(place), nbformat.read(place / NOTEBOOK, as_version=4)
         folder = find_bundle(place / OUTPUTS, record.run_id)
         require_printed(record.docname, ran, folder)
-        for number, cell_ in enumerate(ran.cells, start=1):
-            for index, sound in enumerate(cell_.outputs):
-                kept, text = outputs_of(only(sound)), json.dumps(sound)
+        for number, ran_cell in enumerate(ran.cells, start=1):
+            for index, sound in enumerate(ran_cell.outputs):
+                text, kept = json.dumps(sound), outputs_of(only(sound))
                 digits = [found.start() for found in re.finditer(r"\d", text)]
-                pictures = "image/" in text
-                for at in digits[:: max(1, len(digits) // 20) if pictures else 1]:
-                    other = str(min(int(text[at]) + 1, 8 + (text[at] == "8")))
-                    edited = nbformat.from_dict(json.loads(text[:at] + other + text[at + 1 :]))
-                    if outputs_of(only(edited)) == kept:
-                        unnoticed.append(
-                            f"{record.docname}, code cell {number}: {text[at - 9 : at + 9]}"
-                        )
-                if digits:
-                    cell_.outputs[index] = edited
-                    said = f"{record.docname}, code cell {number}, output {index + 1} of its run"
-                    with pytest.raises(BundleRefused, match=re.escape(said)):
+                step = max(1, len(digits) // 20) if "image/" in text else 1
+                edits = [with_other_digit(text, at) for at in digits[::step]]
+                where = f"{record.docname}, code cell {number}, output {index + 1} of its run"
+                unnoticed += [where for edited in edits if outputs_of(only(edited)) == kept]
+                for ran_cell.outputs[index] in edits[:1]:
+                    with pytest.raises(BundleRefused, match=re.escape(where)):
                         require_printed(record.docname, ran, folder)
-                    cell_.outputs[index] = sound
+                ran_cell.outputs[index] = sound
     return unnoticed
+
+
+def with_other_digit(text: str, at: int):
+    """An output, from its JSON, with another digit at one place."""
+    other = "1234567898"[int(text[at])]
+    return nbformat.from_dict(json.loads(text[:at] + other + text[at + 1 :]))
 
 
 def only(output):
@@ -295,12 +295,8 @@ SVG("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'/>")"""
 
 
 def test_each_digit_that_a_page_puts_out_is_compared_with_its_bundle(tmp_path):
-    cells = (
-        cell(WRITE_BUNDLE),
-        cell(PRINTS, ":prints: {1: a.b mm}\n"),
-        raising("1 / 0 + 25", "ZeroDivisionError: division"),
-    )
-    book = make_book(tmp_path, lab=notebook(*cells, front=LAB_FRONT))
+    cells = cell(PRINTS, ":prints: {1: a.b mm}\n"), raising("1 / 0 + 25", "ZeroDivisionError: div")
+    book = make_book(tmp_path, lab=notebook(cell(WRITE_BUNDLE), *cells, front=LAB_FRONT))
     (result,) = execute_pages(find_pages(book), places(find_pages(book), tmp_path / "store"))
     found = exported_folders(tmp_path / "store")
     assert unnoticed_edits(found) == []
