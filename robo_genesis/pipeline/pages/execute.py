@@ -144,9 +144,7 @@ def execute_pages(
         try:
             while waiting or running:
                 cold = not (results or _has_kernels(environment))
-                while waiting and len(running) < (
-                    1 if cold or _alone(waiting[0], running) else jobs
-                ):
+                while waiting and len(running) < (1 if cold or _alone(waiting, running) else jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -215,9 +213,9 @@ def in_order(
     return sorted(pages, key=sooner)
 
 
-def _alone(page: Page, running: Running) -> bool:
-    """Return whether a page, or one of those that run, must have no other beside it."""
-    return page.alone or any(run.page.alone for _, run, _ in running.values())
+def _alone(waiting: Sequence[Page], running: Running) -> bool:
+    """Return whether the next page, or one that runs, must have no other beside it."""
+    return waiting[0].alone or any(run.page.alone for _, run, _ in running.values())
 
 
 def _reused(

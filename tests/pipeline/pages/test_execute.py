@@ -192,8 +192,7 @@ def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
     make_book(
         tmp_path, a=notebook(cell(WRITE_BUNDLE), front=alone), b=notebook(pause), c=notebook(pause)
     )
-    said = []
-    report = Lines(lambda name, event: event and said.append((name, event[:7])))
+    said, report = [], Lines(lambda name, event: event and said.append((name, event[:7])))
     settings = {"jobs": 2, "report": report}
     results = execute(tmp_path, **settings, accept=lambda result: result.bundle is None)
     assert {result.status for result in results.values()} == {"executed"}
