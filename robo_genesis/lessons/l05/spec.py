@@ -67,7 +67,7 @@ HAND_FOV = 60.0
 ON_HAND = ((0.0, -1, 0, 0.05), (-1, 0, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
 """The camera in the frame of the hand, z backwards: it looks along the fingers [m]."""
 
-VIEWS = {
+VIEWS: dict[str, dict[str, Any]] = {
     VIEWED: VIEW,
     "cut": VIEW | {"near": CUT[0], "far": CUT[1]},
     "hand": {"fov": HAND_FOV, "near": 0.1, "far": 20.0},
