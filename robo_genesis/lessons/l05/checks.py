@@ -40,8 +40,8 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
     found, limits = run.readings[study.GROUP], spec.IK.tolerances
     m = run.metrics["baseline"]
     by_fk = {"residual_m": m.command_distance, "residual_rad": m.command_angle}
-    for (name, expected), limit in zip(by_fk.items(), limits, strict=True):
-        yield at_most(name, found[name], limit)
+    for (name, expected), most in zip(by_fk.items(), limits, strict=True):
+        yield at_most(name, found[name], most)
         yield within(f"{name}_by_forward_kinematics", found[name], expected, spec.SAME_RESIDUAL)
     for name in ("baseline", "kp_doubled"):
         trace, m = run.traces[name], run.metrics[name]
