@@ -181,8 +181,7 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path], dict[str, 
     project.remove_stale_kernel_lock(build.cache)
     engine = project.require_pinned_engine(build.root)
     pages = find_pages(build.book)
-    into = places(pages, build.cache / project.STORE, build.root)
-    return engine, pages, into, environment
+    return engine, pages, places(pages, build.cache / project.STORE, build.root), environment
 
 
 def _execute(

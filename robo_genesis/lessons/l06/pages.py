@@ -58,12 +58,7 @@ THROUGHPUT = timed(MISTAKES, throughput.DEEPER)
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, WorldMetrics),
-    pages={
-        "lab": LAB,
-        "lecture": LECTURE,
-        "mistakes": MISTAKES,
-        "throughput": THROUGHPUT,
-    },
+    pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES, "throughput": THROUGHPUT},
     replays={
         "batch": Replay(
             tuple(spec.WORLDS),

@@ -66,10 +66,7 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
         },
         "seed": SEED,
         "parameters": json.loads(json.dumps(measuring.parameters())),
-        "source": {
-            "page": digest,
-            "modules": sources.measuring_modules(lesson, imports, root),
-        },
+        "source": {"page": digest, "modules": sources.measuring_modules(lesson, imports, root)},
     }
 
 
