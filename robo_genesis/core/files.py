@@ -171,6 +171,20 @@ def files_below(
         yield from (Path(here, name) for name in files if name not in gone)
 
 
+def files_digest(base: Path, files: Iterable[Path]) -> str:
+    """Return the digest of names and contents of files; an absent one counts as such.
+
+    Args:
+        base: the names begin below it.
+        files: their order does not matter.
+    """
+    found = hashlib.sha256()
+    for path in sorted(files):
+        content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "absent"
+        found.update(os.fsencode(path.relative_to(base)) + f"\0{content}\n".encode())
+    return found.hexdigest()
+
+
 def json_digest(value: Any) -> str:
     """Return the SHA-256 of a JSON value."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

@@ -34,10 +34,10 @@ def from_bundle(
         page=page,
         traces={name: trace_files.read_run(folder, arrays, name, page.kind) for name in page.runs},
         links=arrays.coords["link"],
-        readings=readings(metrics, page, rendered),
         frames=read_frames(folder, predicate, page.frames),
         rendered=rendered,
         joints=trace_files.read_joints(arrays) if page.joints else None,
+        readings=readings(metrics, page, rendered),
     )
 
 

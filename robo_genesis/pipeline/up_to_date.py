@@ -4,16 +4,15 @@ Inputs and site are read whole, which takes a tenth of a second. Packages count 
 time of installation: an edited file inside one is not noticed.
 """
 
-import hashlib
 import json
 import os
 import platform
 import sys
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
-from robo_genesis.core.files import files_below, json_digest
-from robo_genesis.core.git import git_or_none
+from robo_genesis.core.files import files_below, files_digest, json_digest
+from robo_genesis.core.git import history
 from robo_genesis.core.project import (
     PUBLISHED,
     ProjectError,
@@ -72,28 +71,6 @@ def other_inputs(
         "python": [platform.python_version(), sys.executable],
         "installed": installed(sys.path),
     }
-
-
-def files_digest(base: Path, files: Iterable[Path]) -> str:
-    """Return the digest of names and contents of files; an absent one counts as such.
-
-    Args:
-        base: the names begin below it.
-        files: their order does not matter.
-    """
-    found = hashlib.sha256()
-    for path in sorted(files):
-        content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "absent"
-        found.update(os.fsencode(path.relative_to(base)) + f"\0{content}\n".encode())
-    return found.hexdigest()
-
-
-def history(book: Path) -> list[str | None]:
-    """Return what decides the pages' histories: the commit, and the uncommitted changes."""
-    return [
-        git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository"),
-        git_or_none(book, "status", "--porcelain", "-z", "--", "."),
-    ]
 
 
 def site_digest(published: Path) -> str:
