@@ -32,8 +32,8 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.nodes import clean_astext
 
+from robo_genesis.core.git import history
 from robo_genesis.pipeline.html.kept import UNFIT
-from robo_genesis.pipeline.up_to_date import history
 from robo_genesis.site.text.glossary import glossary_terms
 
 REPLAYS, TAKEAWAYS = "replay", "takeaways"
