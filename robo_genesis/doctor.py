@@ -193,8 +193,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{count} steps; the first start of the engine takes minutes", file=sys.stderr)
         report = examine()
     results = [StepResult(**step) for step in report["steps"]]
-    text = json.dumps(report, indent=2, ensure_ascii=False) if options.json else table(results)
-    print(text)
+    print(json.dumps(report, indent=2, ensure_ascii=False) if options.json else table(results))
     if recorded is not None:
         print("", *differences(report["machine"], recorded, head), sep="\n")
     return 0 if all(one.state == "ok" for one in results) else 1

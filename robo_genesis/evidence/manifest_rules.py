@@ -91,8 +91,8 @@ def check_circumstances(folder: Path, predicate: Predicate) -> None:
         expect("backend", MANIFEST, "actual where cpu was requested", backend.actual, "cpu")
     for what, found, expected in contradictions(backend):
         expect("torch", MANIFEST, what, found, expected, TORCH)
-    for code, what, found, expected in (*_machine(predicate), *_packages(predicate)):
-        expect(code, MANIFEST, what, found, expected)
+    _check_machine(predicate)
+    _check_packages(predicate)
     forced = [name for name in FORCED if name in switches]
     expect("torch", MANIFEST, "list of set variables that must stay unset", forced, [], TORCH)
     others = sorted(switches.keys() - project.engine_switches(switches).keys())
@@ -106,21 +106,21 @@ def check_circumstances(folder: Path, predicate: Predicate) -> None:
     expect("engine-files", MANIFEST, "engine.files_match_wheel", match, True, REINSTALL)
 
 
-def _machine(predicate: Predicate) -> Iterator[tuple[str, str, object, object]]:
-    """Yield (code, name, found, expected) of what the backend requires of the machine."""
+def _check_machine(predicate: Predicate) -> None:
+    """Require a device and, for an accelerator, a driver of the backend."""
     backend, cpu, actual = predicate.backend, predicate.host.cpu, predicate.backend.actual
+    device, has_driver = backend.device_name, backend.driver is not None
     if actual == "cpu":
-        yield "backend", "backend.device_name", backend.device_name, cpu
+        expect("backend", MANIFEST, "backend.device_name", device, cpu)
     if actual in DRIVERS:
         words = rf"^{re.escape(cpu)}$|{PROCESSOR}|{FOREIGN[actual]}"
-        odd = re.findall(words, backend.device_name, re.IGNORECASE)
-        yield "backend", f"list of words in device_name that no {actual} device has", odd, []
-    driver = backend.driver is not None
-    yield "backend", "whether there is a driver", driver, actual in DRIVERS
+        what = f"list of words in device_name that no {actual} device has"
+        expect("backend", MANIFEST, what, re.findall(words, device, re.IGNORECASE), [])
+    expect("backend", MANIFEST, "whether there is a driver", has_driver, actual in DRIVERS)
 
 
-def _packages(predicate: Predicate) -> Iterator[tuple[str, str, object, object]]:
-    """Yield (code, name, found, expected) of the installed versions that are not those that ran.
+def _check_packages(predicate: Predicate) -> None:
+    """Require that the installed versions are those that ran.
 
     Torch names its build; its package need not: on PyPI, `2.13.0` is 2.13.0+cu130.
     """
@@ -129,7 +129,7 @@ def _packages(predicate: Predicate) -> Iterator[tuple[str, str, object, object]]
     for package, version in ran.items():
         listed = predicate.host.packages.get(package, "none")
         valid = listed if _same_build(listed, version) else version
-        yield "packages", f"version of {package} in host.packages", listed, valid
+        expect("packages", MANIFEST, f"version of {package} in host.packages", listed, valid)
 
 
 def _same_build(listed: str, ran: str) -> bool:

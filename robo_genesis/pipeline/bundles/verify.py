@@ -157,14 +157,14 @@ def check_commit(manifest: Manifest, root: Path) -> None:
     if recorded is None:
         return
     commit = recorded.commit
-    made = git_or_none(root, "show", "--no-patch", "--format=%cI", f"{commit}^{{commit}}", "--")
+    made = git_or_none(root, "show", "--no-patch", "--format=format:%cI", f"{commit}^{{commit}}", "--")
     if made is None:
         shallow = git_or_none(root, "rev-parse", "--is-shallow-repository")
         if shallow == "false\n" and predicate.backend.actual != "cpu":
             known = "one in the history of this repository"
             raise unexpected("commit", MANIFEST, "git.commit", commit, known, SQUASHED)
         return
-    if datetime.fromisoformat(predicate.ended) < datetime.fromisoformat(made.strip()) - CLOCKS:
+    if datetime.fromisoformat(predicate.ended) < datetime.fromisoformat(made) - CLOCKS:
         raise unexpected("time", MANIFEST, "ended", predicate.ended, f"after its commit, {made}")
     if not recorded.dirty:
         inputs = [commit, predicate.evidence_key]

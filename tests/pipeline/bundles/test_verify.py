@@ -30,7 +30,8 @@ def codes():
         for call in ast.walk(tree)
         if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Name)
-        and call.func.id in ("BundleRefused", "expect", "unexpected", "broken", "apart")
+        and call.func.id
+        in ("BundleRefused", "expect", "expect_equal", "unexpected", "broken", "apart")
         and isinstance(call.args[0], ast.Constant)
     }
 
