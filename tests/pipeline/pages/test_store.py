@@ -121,7 +121,7 @@ def test_a_page_is_one_folder_in_the_store_and_between_machines(elsewhere):
     assert (record["docname"], record["lesson"], record["page"]) == (LAB, "l04", "lab")
     assert record["fingerprint"] == kept.name
     assert len(record["cell_seconds"]) == 2
-    assert set(record["files"]) == {"executed.ipynb", BUNDLE, SHAPE}
+    assert set(record["files"]) == {"executed.ipynb", BUNDLE, SHAPE, "outputs/cpu/printed.json"}
     assert "measured" in (place / "executed.ipynb").read_text()
 
 

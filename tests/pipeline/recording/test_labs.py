@@ -47,7 +47,11 @@ def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_pa
     for _ in range(2):
         status, said = run(tmp_path, lab("cuda"))
         assert status == 0
-        assert sorted(path.name for path in place.iterdir()) == ["log.txt", "manifest.json"]
+        assert {path.name for path in place.iterdir()} == {
+            "log.txt",
+            "manifest.json",
+            "printed.json",
+        }
         assert old.read_text() == "new"
         run_ids.append(json.loads((place / "manifest.json").read_text())["predicate"]["run_id"])
     assert run_ids[0] != run_ids[1]
