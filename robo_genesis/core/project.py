@@ -147,11 +147,12 @@ def require_pinned_engine(root: Path = ROOT) -> str:
     """
     pin, installed = engine_pin(root), installed_version(ENGINE)
     if installed != pin:
-        fix = f"Run pip install {ENGINE}=={pin}."
-        if in_checkout():
-            fix = "Run pip install -r requirements.lock, or change pin and lock together."
+        found = f"Installed is {ENGINE} {installed or '(none)'}, pinned in pyproject.toml is {pin}."
+        if not in_checkout():
+            raise ProjectError(f"{found} Run pip install {ENGINE}=={pin}.")
         raise ProjectError(
-            f"Installed is {ENGINE} {installed or '(none)'}, pinned here is {pin}. {fix}"
+            f"{found} Install the lock (pip install -r requirements.lock), or change pin and lock "
+            "together."
         )
     return pin
 
