@@ -157,7 +157,8 @@ def check_commit(manifest: Manifest, root: Path) -> None:
     if recorded is None:
         return
     commit = recorded.commit
-    made = git_or_none(root, "show", "--no-patch", "--format=format:%cI", f"{commit}^{{commit}}", "--")
+    shown = "--no-patch", "--format=format:%cI"
+    made = git_or_none(root, "show", *shown, f"{commit}^{{commit}}", "--")
     if made is None:
         shallow = git_or_none(root, "rev-parse", "--is-shallow-repository")
         if shallow == "false\n" and predicate.backend.actual != "cpu":
