@@ -226,7 +226,7 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
         folders of libraries those that are set; the folders of compiled code are not included.
     """
     given = os.environ if environment is None else environment
-    # The engine appends to LD_LIBRARY_PATH, so it is no switch of a manifest.
+    # Not a switch in a manifest: the engine appends to LD_LIBRARY_PATH.
     names = (BACKEND, RENDER, "LD_LIBRARY_PATH")
     requested = {name: given[name] for name in names if given.get(name)}
     return {BACKEND: BUILD_BACKEND, RENDER: "1"} | requested | engine_switches(given)
