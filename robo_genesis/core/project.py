@@ -52,9 +52,8 @@ ENGINE_PREFIXES = (
     "NVIDIA_TF32_",
 )  # fmt: skip
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
-COMPILED_KERNELS = "QD_OFFLINE_CACHE_FILE_PATH"
 CACHE_FOLDERS = {
-    COMPILED_KERNELS: "kernels",
+    "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
     "GS_CACHE_FILE_PATH": "geometry",  # by default below the user's home, for all versions
     "NUMBA_CACHE_DIR": "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",

@@ -103,8 +103,7 @@ def execute_pages(
     """Execute the pages that the store does not have yet; try all of them.
 
     Those whose last run with this engine failed start first, then the longest. A page that declares
-    `alone` runs when no other page does. While the engine's cache is empty, the first page runs
-    alone until it has saved kernels: others would compile the same ones.
+    `alone` runs when no other page does.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -143,8 +142,7 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running:
-                cold = not (results or _has_kernels(environment))
-                while waiting and len(running) < (1 if cold or _alone(waiting, running) else jobs):
+                while waiting and len(running) < (1 if _alone(waiting, running) else jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -169,12 +167,6 @@ def execute_pages(
         finally:
             kill_with_descendants(process.pid for process, *_ in running.values())
     return [results[page.docname] for page in pages]
-
-
-def _has_kernels(environment: Mapping[str, str]) -> bool:
-    """Return whether the engine's cache has a kernel; true if the pages use no such cache."""
-    folder = environment.get(project.COMPILED_KERNELS)
-    return folder is None or any(Path(folder).rglob("*.qdc"))
 
 
 def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -> dict[str, str]:

@@ -8,10 +8,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from IPython import get_ipython
-
 from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
-from robo_genesis.sim.compiler import save_kernels, spare_searches
+from robo_genesis.sim.session import spare_searches
 
 SYSTEM = (
     "/bin", "/dev", "/etc", "/lib", "/lib64", "/opt", "/proc", "/run", "/sys", "/usr", "/var",
@@ -38,7 +36,6 @@ def start() -> None:
     # ends it.
     atexit.register(os._exit, 0)
     spare_searches()  # here, because pages import the engine before the course
-    get_ipython().events.register("post_run_cell", save_kernels)
     notes, seen = os.open(_notes(), os.O_WRONLY | os.O_CREAT), set()
 
     def note(event: str, arguments: tuple[Any, ...]) -> None:

@@ -11,7 +11,6 @@ import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
 from robo_genesis.core.project import (
-    COMPILED_KERNELS,
     ROOT,
     engine_cache_environment,
     engine_cache_folder,
@@ -167,23 +166,10 @@ def test_pages_run_at_the_same_time_and_save_what_they_compiled_even_where_they_
     make_book(tmp_path, good=notebook(good), bad=notebook(bad, cell("1 / 0")))
     caches = engine_cache_environment(cache=tmp_path / "cache")
     folder = engine_cache_folder(cache=tmp_path / "cache") / "kernels"
-    (folder / "any.qdc").touch()
     results = execute(tmp_path, jobs=2, timeout=20, environment=caches)
     assert [result.status for result in results.values()] == ["executed", "failed"]
     assert "ZeroDivisionError" in results["bad"].failure.error
-    assert sorted(path.name for path in folder.iterdir()) == ["any.qdc", "bad", "good"]
-
-
-def test_without_kernels_the_second_page_starts_when_the_first_has_saved_some(tmp_path):
-    """The first page ends only after the second one has started."""
-    begin = f"from pathlib import Path; from os import environ; names = {COMPILED_KERNELS!r}\n"
-    begin += "kernel, started = (Path(environ[names], name) for name in ('a.qdc', 'started'))\n"
-    waits = "import time\nwhile not started.exists(): time.sleep(0.05)"
-    second = notebook(cell(f"{begin}assert kernel.exists()\nstarted.touch()"))
-    make_book(tmp_path, a=second, b=notebook(cell(f"{begin}kernel.touch()"), cell(waits)))
-    caches = engine_cache_environment(cache=tmp_path / "cache")
-    results = execute(tmp_path, jobs=2, timeout=60, environment=caches)
-    assert {result.status for result in results.values()} == {"executed"}
+    assert sorted(path.name for path in folder.iterdir()) == ["bad", "good"]
 
 
 def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
