@@ -10,6 +10,7 @@ computes it anew from every sample, so that no difference can grow.
 | `SETTLED`, start after settling | 6e-5 m | 1e-3 m |
 | `DEPTH`, penetration | 1e-7 m | 5e-7 m |
 | angular velocity before the first contact | 0 rad/s | 0 rad/s |
+| `FALL`, velocity before the first contact | 8e-5 m/s | 8e-4 m/s |
 | `ROLL`, angular velocity of a ball, which nothing pushes sideways | 0 rad/s | 5e-4 rad/s |
 | `NO_TURN`, rotation that is left out in a solver step | 1.2e-7 rad | 2.5e-7 rad |
 | `TURN`, share of a rotation | 8e-7 | 1e-4 |
@@ -73,7 +74,7 @@ such a step, the impulse is judged."""
 TOUCHED = 5
 """Number of states with contacts in which the rounding of a cube's angular velocity must show."""
 
-ROLL, SLIDING, PATH, UPRIGHT, IMPULSE = 5e-4, 1.2e-2, 2e-3, 3e-3, 5e-5
+ROLL, FALL, SLIDING, PATH, UPRIGHT, IMPULSE = 5e-4, 8e-4, 1.2e-2, 2e-3, 3e-3, 5e-5
 
 NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
 FLIGHT = {"link_pos": 5e-6, "link_quat": 1e-6, "link_vel": 3e-5, "link_ang": 3e-6}
@@ -110,6 +111,10 @@ def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
         room = np.where(untouched, 0.0, ROLL if case.shape == "ball" else np.inf)
         what = "link_ang without torque [rad/s]"
         yield from apart("motion", what, trace.link_ang[:, 0], ZERO, room)
+        fall = np.outer(trace.t, [0, 0, -case.gravity]) + np.array([case.speed, 0, 0])
+        room = np.where(untouched, FALL, np.inf)
+        what = "link_vel before any contact [m/s]"
+        yield from apart("motion", what, trace.link_vel[:, 0], fall, room)
     far = fastest * (case.duration + 1)
     yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], about, far)
 
