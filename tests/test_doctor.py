@@ -167,7 +167,7 @@ def test_the_report_has_stable_fields_and_names_no_user(steps_run, capsys, monke
     for name, value in (
         ("HOME", "/home/alice"),
         ("USER", "alice"),
-        ("GS_CACHE_FILE_PATH", "/home/alice/cache"),
+        ("GS_FOLDER", "/home/alice/cache"),
         ("QD_FOLDER", "/srv/people/alice/data"),
         ("ROBO_GENESIS_OUTPUTS_DIR", "/dev/null/alice/out"),
     ):
@@ -180,7 +180,7 @@ def test_the_report_has_stable_fields_and_names_no_user(steps_run, capsys, monke
     assert list(found) == fields.split()
     assert found["format"] == doctor.REPORT_FORMAT == 3
     assert found["versions"]["genesis-world"] == "0.0.1"
-    assert found["environment"]["GS_CACHE_FILE_PATH"] == "~/cache"
+    assert found["environment"]["GS_FOLDER"] == "~/cache"
     assert set(found["platform"]) == {"system", "release", "machine", "cpus"}
     main([])
     results = [StepResult(**step) for step in found["steps"]]

@@ -1,7 +1,8 @@
 """Measured outputs of a page: named functions of the experiment, and their results as MIME data.
 
 A page shows such an output with `page.show`. The build calls the same function on the experiment
-that it reads from the page's bundle, and refuses a page with another result.
+that it reads from the page's bundle, and refuses a page with another result. Any other output of a
+cell is only compared with the copy in the bundle.
 """
 
 import io
@@ -110,13 +111,14 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
         if isinstance(result, str):
             return {TEXT: result}
         if isinstance(result, Figure):
-            return {DRAWING: _svg(result)}
+            return {DRAWING: svg(result)}
     raise ShownError(
         f"{name} returned {type(result).__name__}. Return Markdown (str) or a Matplotlib Figure."
     )
 
 
-def _svg(figure: "Figure") -> str:
+def svg(figure: "Figure") -> str:
+    """Return a figure as SVG without a date: equal figures give equal text."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return stream.getvalue()

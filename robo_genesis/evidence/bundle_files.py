@@ -6,19 +6,20 @@ import stat
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.evidence.bundle import Manifest, sha256
+from robo_genesis.evidence.bundle import PRINTED, Manifest, sha256
 from robo_genesis.evidence.refusals import expect, unexpected
 
 MANIFEST = "manifest.json"
 MIB = 2**20
-SIZE_LIMITS = {MANIFEST: MIB, "metrics.json": MIB, "arrays.json": MIB, "log.txt": 4 * MIB}
+SIZE_LIMITS = dict.fromkeys((MANIFEST, "metrics.json", "arrays.json"), MIB)
+SIZE_LIMITS |= {"log.txt": 4 * MIB, PRINTED: 4 * MIB}
 OTHER_LIMIT = 16 * MIB
 """Bytes of one archive or picture. Those of a lesson have less than 0.1 MiB."""
 
 ENTRIES_LIMIT = 200
 REQUIRED = {"metrics.json", "arrays.json", "log.txt"}
 NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]*(/[A-Za-z0-9_-][A-Za-z0-9_.-]*)*")
-KNOWN = re.compile(r"metrics\.json|arrays\.json|log\.txt|arrays/\w+\.npz|frames/\w+\.png")
+KNOWN = re.compile(r"(metrics|arrays|printed)\.json|log\.txt|arrays/\w+\.npz|frames/\w+\.png")
 
 
 def scan(folder: Path) -> set[str]:

@@ -35,7 +35,7 @@ class EngineLog(logging.Handler):
 
 
 def remove_private_paths(record: logging.LogRecord) -> bool:
-    """Remove the folders of packages, checkout and user from a line of the log; keep every record."""
+    """Remove the folders of packages, checkout and home from a log line; keep every record."""
     installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
     plain = str(record.msg).replace(str(installed), "site-packages").replace(f"{ROOT}/", "")
     record.msg = without_home(plain)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import study_spec
-from robo_genesis.sim.arm.laws import assigned_path, driven_in_mujoco, driven_run
+from robo_genesis.sim.arm.laws import assigned_path, driven_in_mujoco, driven_run, model_joints
 from robo_genesis.sim.laws import copied, kept
 
 MEASURES = False
@@ -13,6 +13,7 @@ MEASURES = False
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """At each sample links, forces and velocities are those of the robot, also in MuJoCo."""
+    yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
         if name in study_spec.SECOND_RUNS:
             broken = in_mujoco(run, name)

@@ -1,30 +1,35 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value
 from robo_genesis.core.project import BACKEND, RENDER, environment_contract
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown
-from robo_genesis.pipeline.pages.folder import RECORD, stored_notebook
+from robo_genesis.pipeline.pages.folder import MARK, RECORD, stored_notebook
+from robo_genesis.pipeline.pages.printed import declared
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.pipeline.pages.store import Verify
 
 
 def verify_results(
-    verify: Verify, results: Sequence[PageResult], progress: Progress
+    verify: Verify, results: Iterable[PageResult], progress: Progress, stage: str = "verify"
 ) -> tuple[dict[str, Any], list[str]]:
-    """Verify the bundles of a build, and compare what the pages show with them.
+    """Verify the bundles of pages, and compare what the pages show with them.
+
+    A refused page of the store is marked, so that it is executed again. One that was executed now
+    is verified once more by the next build, because the rule may be wrong.
 
     Args:
         verify: verifies one bundle.
-        results: of all executed pages, of which none failed.
-        progress: prints a line for each accepted bundle.
+        results: of pages that did not fail.
+        progress: prints a line for each bundle.
+        stage: the stage that the lines name.
 
     Returns:
         The accepted manifests by page name, and a line for each refused bundle.
@@ -40,31 +45,35 @@ def verify_results(
             require_contract(manifest.predicate, contract)
             compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
-            progress("verify", result.page.docname, f"accepted, {compared} outputs compared")
+            progress(stage, result.page.docname, f"accepted, {compared} outputs compared")
         except BundleRefused as error:
-            refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
+            progress(stage, result.page.docname, f"refused: {error}")
+            line = f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
+            if result.status == "reused":
+                (result.folder / MARK).write_text(line, "utf8")
+                line += " The next build executes the page again."
+            refused.append(line)
     return manifests, refused
 
 
-def outputs_compared(result: PageResult, manifest: Manifest) -> str:
+def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     """Compare the outputs of a page with its bundle, and return their number.
 
-    A page is compared once: the result is kept for the record of its files with their digests, and
-    for the code that compares.
+    A page is compared once: the result is kept for the record of its files with their digests, for
+    the values that its cells name, and for the code that compares.
 
     Raises:
         BundleRefused: `shown`.
     """
     folder, bundle = result.folder, result.bundle
     assert bundle is not None
-    record = (folder / RECORD).read_bytes()
-    code = [path.read_bytes() for path in Tree().closure([shown.__name__]).values()]
+    code = [path.read_text("utf8") for path in Tree().closure([shown.__name__]).values()]
+    inputs = [(folder / RECORD).read_text("utf8"), declared(result.page.notebook), code]
 
-    def compare() -> bytes:
-        notebook = stored_notebook(result)
-        return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
+    def compare() -> int:
+        return shown.require_shown(result.page, stored_notebook(result), bundle, manifest)
 
-    return derived("shown", [record, *code], compare).decode()
+    return int(derived_value("shown", inputs, compare))
 
 
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:

@@ -173,7 +173,7 @@ def bundle_status(
 
 
 def not_shown(folder: Path, manifest: Manifest) -> list[str]:
-    """Return a line for each claimed ordering that the metrics of an accepted bundle do not show."""
+    """Return a line for each claimed ordering that an accepted bundle does not show."""
     numbers, lines = bundle.by_full_name(bundle.read_metrics(folder)), []
     for claimed in specification(manifest.predicate.lesson, manifest.predicate.page).relations:
         (first, second), metric, claim, _ = claimed

@@ -1,14 +1,20 @@
-"""What a page shows is what was measured: its measured outputs follow again from its bundle.
+"""What a page shows is what its run put out: all of its outputs are compared with its bundle.
 
-Each `page.show(function, ...)` leaves one output, and the metadata of the output name the function.
-The same function, called on the experiment of the bundle with the accepted metrics, must give the
-same output. Other outputs are not compared, and the site says so below them.
+Three rules, from the strongest:
+
+1. Each `page.show(function, ...)` leaves one output, and the metadata of the output name the
+   function. The same function, called on the experiment of the bundle with the accepted metrics,
+   must give the same output.
+2. A number that a cell prints, and names with the option `prints`, is that value of the bundle.
+3. Every output, also of these two kinds, is the one in the bundle's `printed.json`. Nothing else
+   confirms other outputs, and the site says below them that the run printed them.
 """
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +27,11 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import BundleRefused, expect
+from robo_genesis.pipeline.pages import printed
 from robo_genesis.pipeline.pages.book import Page
 
-PAGE = "page"
-"""The name that pages give to the result of `rg.open_page`."""
+SHOW, FINISH = "page.show", "page.finish"
+"""The calls that show a measured output; pages give this name to the result of `rg.open_page`."""
 
 AGAIN = "Do not edit executed pages: execute the page again."
 ONCE = "Call page.show once for each output, outside of loops and conditions."
@@ -48,7 +55,7 @@ metadata of the output."""
 
 
 def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Manifest) -> int:
-    """Require that each measured output of an executed page follows from its bundle.
+    """Require that all outputs of an executed page are those of its bundle.
 
     Args:
         page: the page as it is now.
@@ -57,24 +64,45 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
         manifest: of that bundle.
 
     Returns:
-        The number of outputs compared.
+        The number of outputs that were computed again.
 
     Raises:
-        BundleRefused: `shown`, naming page, cell and function.
+        BundleRefused: `shown`, naming page, cell and output.
     """
-    calls = calls_of(page)
-    outputs = [marked(cell) for cell in executed.cells if cell.cell_type == "code"]
     experiment, compared = None, 0
-    for number, (named, found) in enumerate(zip(calls, outputs, strict=True), start=1):
-        place = f"{page.docname}, code cell {number}"
+    cells = (cell for cell in executed.cells if cell.cell_type == "code")
+    expected = zip(calls_of(page), printed.declared(page.notebook), cells, strict=True)
+    for number, (named, values, cell) in enumerate(expected, start=1):
+        place, found = f"{page.docname}, code cell {number}", marked(cell)
         if len(found) != len(named):
             what = f"number of measured outputs is {len(found)}, expected {len(named)}"
             raise _refused(f"{place}: {what}. {ONCE}")
         for call, output in zip(named, found, strict=True):
             experiment = experiment or accepted_experiment(folder, manifest)
-            _compare(f"{place}, {call['function']}", call, output, experiment)
+            _compare(place, call, output, experiment)
             compared += 1
+        if values and (reason := printed.contradiction(values, cell, folder)):
+            raise BundleRefused("shown", f"{place}: {reason}. Correct the option or the cell.")
+    require_printed(page.docname, executed, folder)
     return compared
+
+
+def require_printed(docname: str, executed: NotebookNode, folder: Path) -> None:
+    """Require that the outputs of an executed page are those that its bundle has kept.
+
+    Raises:
+        BundleRefused: `shown`, naming page, cell, output and place of the first difference.
+    """
+    if not (folder / bundle.PRINTED).is_file():
+        raise _refused(
+            f"{docname}: its bundle has no {bundle.PRINTED}, which only the build writes."
+        )
+    found, kept = printed.outputs_of(executed), bundle.read_printed(folder)
+    for cell, outputs in enumerate(zip_longest(found, kept, fillvalue=()), start=1):
+        for number, (here, there) in enumerate(zip_longest(*outputs), start=1):
+            if here != there:
+                what = difference_of(str(here), str(there), False)
+                raise _refused(f"{docname}, code cell {cell}, output {number} of its run: {what}.")
 
 
 def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
@@ -91,67 +119,26 @@ def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
     return replace(run, accepted=metrics)
 
 
-def calls_of(page: Page) -> list[list[Shown]]:
-    """Return the calls of each code cell that show a measured output, in their order.
-
-    Raises:
-        BundleRefused: `shown` if a function is not found by its name, or if an argument is not
-            written out.
-    """
-    names: dict[str, str] = {}
+def calls_of(page: Page) -> list[list[ast.Call]]:
+    """Return the calls of each code cell that show a measured output, in their order."""
     found = []
-    for number, source in enumerate(page.code.sources, start=1):
+    for source in page.code.sources:
         try:
-            tree = ast.parse(source)
+            nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
         except SyntaxError:  # an expected error of the page
-            tree = ast.Module([], [])
-        names |= dict(_imported(tree))
-        place = f"{page.docname}, code cell {number}"
-        calls = [node for node in ast.walk(tree) if _method(node) in ("show", "finish")]
-        calls.sort(key=lambda node: (node.lineno, node.col_offset))  # type: ignore[attr-defined]
-        found.append([_call(place, node, names) for node in calls])  # type: ignore[arg-type]
+            nodes = []
+        calls = (node for node in nodes if ast.unparse(node.func) in (SHOW, FINISH))
+        found.append(sorted(calls, key=lambda node: (node.lineno, node.col_offset)))
     return found
 
 
-def _method(node: ast.AST) -> str | None:
-    """Return the method of the page that a node calls."""
-    match node:
-        case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=method)) if name == PAGE:
-            return method
-    return None
-
-
-def _call(place: str, node: ast.Call, names: Mapping[str, str]) -> Shown:
-    if _method(node) == "finish":
-        return {"function": shown.CHECKS, "arguments": []}
-    name = ast.unparse(node.args[0]) if node.args else ""
-    root, _, rest = name.partition(".")
-    function = f"{names.get(root, root)}.{rest}"
-    try:
-        shown.find(function)
-        arguments = [ast.literal_eval(argument) for argument in node.args[1:]]
-        if node.keywords:
-            raise ValueError
-    except shown.ShownError as error:
-        raise _refused(f"{place}: page.show({name}): {error}") from error
-    except ValueError as error:
-        raise _refused(
-            f"{place}: `{ast.unparse(node)}` has an argument that is not written out. Give text, "
-            "numbers or lists of them by position, or let the function choose them."
-        ) from error
-    return {"function": function, "arguments": arguments}
-
-
-def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    """Yield (name, module or object) of the imports of a cell."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom):
-            for alias in node.names:
-                yield alias.asname or alias.name, f"{node.module}.{alias.name}"
-        elif isinstance(node, ast.Import):
-            for alias in node.names:
-                if alias.asname:
-                    yield alias.asname, alias.name
+def names(call: ast.Call, says: Shown) -> bool:
+    """Return whether a call, as it is written, shows what the metadata of an output say."""
+    if ast.unparse(call.func) == FINISH:
+        return says == {"function": shown.CHECKS, "arguments": []}
+    name, *arguments = map(ast.unparse, [*call.args, *call.keywords] or [call.func])
+    written = {"function": says.get("function"), "arguments": [*map(ast.literal_eval, arguments)]}
+    return written == says and f".{says['function']}".endswith(f".{name.partition('.')[2] or name}")
 
 
 def marked(cell: NotebookNode) -> list[NotebookNode]:
@@ -159,12 +146,21 @@ def marked(cell: NotebookNode) -> list[NotebookNode]:
     return [out for out in cell.get("outputs", []) if shown.METADATA in out.get("metadata", {})]
 
 
-def _compare(place: str, call: Shown, output: NotebookNode, experiment: Experiment) -> None:
+def _compare(place: str, call: ast.Call, output: NotebookNode, experiment: Experiment) -> None:
     """Raise BundleRefused unless an output is that of its call."""
     says = output.metadata[shown.METADATA]
-    expect("shown", place, "function of the output", says, call, AGAIN)
     try:
-        valid = shown.mime_data(call["function"], experiment, call["arguments"])
+        is_its = names(call, says)
+    except (AttributeError, SyntaxError, TypeError, ValueError):
+        is_its = False
+    if not is_its:
+        raise _refused(
+            f"{place}: the output is of {quoted(says)}, expected that of `{ast.unparse(call)}`. "
+            "Write arguments out, as text, numbers or lists by position."
+        )
+    place = f"{place}, {says['function']}"
+    try:
+        valid = shown.mime_data(says["function"], experiment, says["arguments"])
     except (shown.ShownError, LookupError, ValueError, ArithmeticError, TypeError) as error:
         raise _refused(f"{place}: it cannot be called on the bundle: {error!r}") from error
     data: Mapping[str, Any] = output.get("data", {})

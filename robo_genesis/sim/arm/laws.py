@@ -25,8 +25,9 @@ import numpy as np
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import per_joint
+from robo_genesis.sim.arm.franka import JOINT_TYPES, per_joint
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
+from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.laws import ZERO, apart, broken, mean_speed, times, unit_quaternions
 
 MEASURES = False
@@ -124,6 +125,20 @@ def poses(trace: Trace, links: Sequence[str]) -> Iterator[Finding]:
     position, orientation = mujoco_kinematics.link_poses(trace.q, links)
     yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
     yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
+
+
+def model_joints(joints: JointMap) -> Iterator[Finding]:
+    """Yield an index, a limit or a type that the joint of the model does not have."""
+    from robo_genesis.sim.mujoco.kinematics import bare_robot
+
+    model, _, q_at, dof_at = bare_robot()
+    own = [model.joint(name).id for name in joints.names]
+    lower, upper = model.jnt_range[own].T
+    expected = {"dofs_idx_local": dof_at, "qs_idx_local": q_at, "lower": lower, "upper": upper}
+    for name, values in expected.items():
+        yield from apart("labels", name, getattr(joints, name), np.array(values), LIMIT_TOLERANCE)
+    if joints.types != JOINT_TYPES:
+        yield broken("labels", "list of types", joints.types, JOINT_TYPES)
 
 
 def dynamics(

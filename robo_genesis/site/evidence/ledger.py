@@ -1,4 +1,4 @@
-"""The ledger: every run, and every figure and measured table, with digests and downloads.
+"""The ledger: every run, figure, measured table and printed text, with digests and downloads.
 
 A page writes ```` ```{ledger} runs ```` and ```` ```{ledger} items ````. Both are filled in after
 all pages are read.
@@ -11,10 +11,10 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.environment import BuildEnvironment
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.files import write_whole
+from robo_genesis.pipeline.pages.book import docnames
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
@@ -35,7 +35,7 @@ class ledger_part(nodes.General, nodes.Element):  # noqa: N801 - docutils names 
 
 
 class Ledger(PageDirective):
-    """List all runs, or all figures and tables of the site."""
+    """List all runs, or all figures, tables and printed texts of the site."""
 
     required_arguments = 1
 
@@ -82,13 +82,15 @@ def run_block(docname: str, run: PageRun) -> nodes.Node:
 
 
 def item_table(app: Sphinx, docname: str) -> nodes.Node:
-    """Return the table of all figures and tables on the pages, in the order of the pages."""
+    """Return the table of all items on the pages, in the order of the pages."""
     env, runs = app.env, all_runs(Path(app.srcdir))
     rows, anchors = [], []
-    for item in (item for name in _reading_order(env) for item in env.metadata[name][ITEMS]):
+    order = docnames(Path(app.srcdir) / "_toc.yml")
+    for item in (item for name in order for item in env.metadata[name][ITEMS]):
         place = app.builder.get_relative_uri(docname, item.docname)
-        is_table = item.data is not None
-        file = f"{DOWNLOADS}/{item.file}" if is_table else f"_images/{env.images[item.file][1]}"
+        word, file = item.file.rpartition(".")[2].upper(), f"{DOWNLOADS}/{item.file}"
+        if item.data is None:
+            word, file = "picture", f"_images/{env.images[item.file][1]}"
         page = measured_pages(Path(app.srcdir)).get(item.docname, item.docname)
         rows.append(
             [
@@ -97,7 +99,7 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
                 page,
                 *_of_runs([runs[key] for key in item.runs]),
                 _digest(item.sha256),
-                _link("CSV" if is_table else "picture", relative_uri(f"{docname}.html", file)),
+                _link(word, relative_uri(f"{docname}.html", file)),
             ]
         )
         anchors.append(item.row)
@@ -124,14 +126,6 @@ def run_anchor(key: str) -> str:
     return f"run-{key}".replace("/", "-")
 
 
-def _reading_order(env: BuildEnvironment) -> list[str]:
-    """Return all pages in the order of the table of contents."""
-    order = [env.config.root_doc]
-    for name in order:
-        order += [child for child in env.toctree_includes.get(name, []) if child not in order]
-    return order
-
-
 def _digest(value: str) -> nodes.Node:
     """Return a sha256 whose first digits are visible, and all of them on hover or focus."""
     return html(f'<code class="digest" tabindex="0">{value}</code>')
@@ -148,7 +142,7 @@ def scroll_box(label: str, *inside: nodes.Node) -> between:
 
 
 def write_downloads(app: Sphinx, exception: Exception | None) -> None:
-    """Write the tables and bundles that the ledger links to."""
+    """Write the tables, texts and bundles that the ledger links to."""
     if exception is not None or LEDGER not in app.env.found_docs:
         return
     folder = Path(app.outdir) / DOWNLOADS

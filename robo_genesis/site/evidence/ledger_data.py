@@ -16,15 +16,13 @@ from robo_genesis.pipeline.bundles.status import Status
 ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
 """The oldest time that a zip can hold: the same bundle always gives the same bytes."""
 
-RASTERS = (".png", ".webp", ".jpg", ".jpeg")
-
-MEASURED = "Measured"
+MEASURED, PRINTED = "Measured", "Printed by this run"
 """How the line below an item begins whose runs are all accepted."""
 
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
-    "printed": "Printed by its cell, not compared with the bundle.",
+    "unbound": "Printed by its cell. The page has no bundle.",
 }
 """Kinds of items without evidence of a run, each with the line below it."""
 
@@ -63,11 +61,11 @@ class PageRun:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One figure, table or camera frame, illustration, table of settings, or printed output.
+    """One figure, table or camera frame, printed output, illustration, or table of settings.
 
-    `runs` are the keys of the runs that made it, none for the last three kinds. `file` is the
-    picture's path below the book, or of a table the name of its CSV; `data` is that CSV, None for
-    a picture.
+    `runs` are the keys of the runs that made it, none for the last two kinds. `file` is the
+    picture's path below the book, or of a table or text the name of its file; `data` is the content
+    of that file, None for a picture.
     """
 
     kind: str
@@ -86,7 +84,7 @@ class Item:
 
 
 def provenance(kind: str, runs: Sequence[PageRun]) -> str:
-    """Return the line below a figure or table, without its link.
+    """Return the line below an item, without its link.
 
     Args:
         kind: of the item.
@@ -102,7 +100,7 @@ def provenance(kind: str, runs: Sequence[PageRun]) -> str:
         for run in runs
         if (accepted := run.predicate)
     )
-    return f"{MEASURED} {' and '.join(origins)}"
+    return f"{PRINTED if kind == 'printed' else MEASURED} {' and '.join(origins)}"
 
 
 def facts(backend: str, predicate: Predicate) -> dict[str, str]:
@@ -121,7 +119,7 @@ def facts(backend: str, predicate: Predicate) -> dict[str, str]:
 
 def picture_kind(path: Path) -> str:
     """Return the kind of a measured picture: a camera frame has pixels, a figure has lines."""
-    is_raster = path.suffix in RASTERS or b"<image" in path.read_bytes()
+    is_raster = path.suffix != ".svg" or b"<image" in path.read_bytes()
     return "camera frame" if is_raster else "figure"
 
 

@@ -10,13 +10,12 @@ Roles and a directive, as pages write them:
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
-| {engine-package}`some words` | its page on PyPI |
 | {lesson-status} l04 (directive) | one line with the states of a lesson's runs, details in a fold |
 """
 
 import importlib.metadata
 import pickle
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from hashlib import sha256
@@ -30,7 +29,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.text import MICRO, SCALED, format_value, listed, quoted, scaled_value
+from robo_genesis.core.text import format_value, listed, quoted, scaled_value
 from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
@@ -40,6 +39,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_status,
 )
 from robo_genesis.pipeline.pages.built import built_pages, page_outputs
+from robo_genesis.pipeline.pages.printed import value_of
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.plain_nodes import WRITERS, between, bullets
 from robo_genesis.site.pages import PageRole
@@ -50,7 +50,6 @@ REFERENCE = "amdgpu"
 READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
 """The names of backends in the line below a title."""
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
-PACKAGES = "https://pypi.org/project/genesis-world"
 
 
 def measured(lesson_page: str, name: str) -> tuple[str, str]:
@@ -73,43 +72,17 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     if name == "engine":
         return predicate.engine.version, origin
     name, _, unit = name.partition(" ")
-    if ":" in name:
-        check, _, label = name.partition(":")
-        findings = {c.name: c.found for c in predicate.checks}
-        value = _chosen(lesson_page, check, label, findings, ":")
-        if unit and not isinstance(value, int | float):
-            raise LookupError(f"{lesson_page} has {name} = {quoted(value)}, which has no unit.")
-        text = scaled_value(value, unit) if unit else listed(quoted(value).split(", "))
-        return text, f"{origin}, found by the check {check}"
-    group, _, metric = name.partition(".")
-    record = _chosen(lesson_page, group, metric, bundle.read_metrics(folder), ".")
-    value, given = record.value, record.unit
-    if not unit:
-        text = str(value) if group == "model" else format_value(value, given)
-    elif value is None or unit not in (SCALED.get(given), MICRO.get(given), given):
-        raise LookupError(
-            f"{lesson_page} has {name} = {value} in {given}, which cannot be shown in {unit!r}. "
-            f"Valid is {SCALED.get(given, 'no other unit')}, for a value that was measured."
-        )
-    else:
+    try:
+        value, given, source = value_of(folder, name, unit)
+    except LookupError as error:
+        raise LookupError(f"{lesson_page} has {error}") from error
+    if unit:
         text = format_value(value, unit) if unit == given else scaled_value(value, unit)
-    return text, f"{origin}, from {', '.join(record.source)}"
-
-
-def _chosen(
-    page: str, group: str, name: str, all_: Mapping[str, Mapping[str, Any]], by: str
-) -> Any:
-    """Return a value by group and name.
-
-    Raises:
-        LookupError: the page has no such value; the message lists those that it has.
-    """
-    if name not in all_.get(group, {}):
-        known = ", ".join(f"{g}{by}{n}" for g, of in all_.items() for n in of)
-        kind = "metric" if by == "." else "finding"
-        asked = f"{group}{by}{name}" if name else group
-        raise LookupError(f"{page} has no {kind} {asked!r}. Known: {known}.")
-    return all_[group][name]
+    elif given is None:
+        text = listed(quoted(value).split(", "))
+    else:
+        text = str(value) if name.startswith("model.") else format_value(value, given)
+    return text, f"{origin}, {source}"
 
 
 class measured_value(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
@@ -228,34 +201,20 @@ def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
     return bullets(*lines, classes=["lesson-status"])
 
 
-class EngineSource(PageRole):
-    """Link to a file of the pinned engine."""
+class EngineLink(PageRole):
+    """Link to the pinned release of the engine, or with `engine-source` to one of its files."""
 
     def shown(self) -> list[nodes.Node]:
-        """Return the link, its text the path."""
-        installed = importlib.metadata.distribution("genesis-world")
-        if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():
-            raise LookupError(f"Genesis {installed.version} has no file genesis/{self.text}")
-        target = f"{REPOSITORY}/blob/v{project.engine_pin()}/genesis/{self.text}"
-        literal = nodes.literal(self.text, self.text)
-        return [nodes.reference(self.rawtext, "", literal, refuri=target)]
-
-
-class EngineRelease(PageRole):
-    """Link to the pinned release of the engine."""
-
-    address = f"{REPOSITORY}/releases/tag/v{{}}"
-
-    def shown(self) -> list[nodes.Node]:
-        """Return the link, its text as given."""
-        target = self.address.format(project.engine_pin())
-        return [nodes.reference(self.rawtext, self.text, refuri=target)]
-
-
-class EnginePackage(EngineRelease):
-    """Link to the page of the pinned release on PyPI."""
-
-    address = f"{PACKAGES}/{{}}/"
+        """Return the link; its text is as given."""
+        if self.name == "engine-release":
+            target, text = f"releases/tag/v{project.engine_pin()}", nodes.Text(self.text)
+        else:
+            installed = importlib.metadata.distribution("genesis-world")
+            if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():
+                raise LookupError(f"Genesis {installed.version} has no file genesis/{self.text}")
+            target = f"blob/v{project.engine_pin()}/genesis/{self.text}"
+            text = nodes.literal(self.text, self.text)
+        return [nodes.reference(self.rawtext, "", text, refuri=f"{REPOSITORY}/{target}")]
 
 
 def visit_measured(self: Any, node: measured_value) -> None:
@@ -267,9 +226,8 @@ def visit_measured(self: Any, node: measured_value) -> None:
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
-    app.add_role("engine-source", EngineSource())
-    app.add_role("engine-release", EngineRelease())
-    app.add_role("engine-package", EnginePackage())
+    for name in ("engine-source", "engine-release"):
+        app.add_role(name, EngineLink())
     app.add_directive("lesson-status", LessonStatus)
     app.add_node(between, html=WRITERS)
     app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

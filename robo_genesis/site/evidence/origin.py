@@ -13,6 +13,7 @@ INPUTS = "inputs"
 """The tag of a cell whose tables contain only chosen values, no measured ones."""
 
 
+NO_BUNDLE = ("",)
 MADE_BY_CELL = {"cell_code", "mime_bundle", "glued"}
 """What MyST-NB and `Glued` call the parts of a page that are the output of a cell."""
 
@@ -37,7 +38,7 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
 
     Returns:
         () where a cell shows chosen values, None where neither a cell nor a bundle made the node,
-        ("",) where a cell made it and the page declares no bundle.
+        `NO_BUNDLE` where a cell made it and the page declares no bundle.
     """
     for element in above(node):
         if "evidence_runs" in element:
@@ -47,7 +48,7 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
         return None
     if INPUTS in cell.get("cell_metadata", {}).get("tags", []):
         return ()
-    return (f"{page}/{BACKEND}" if page else "",)
+    return (f"{page}/{BACKEND}",) if page else NO_BUNDLE
 
 
 def cell_of(node: nodes.Node) -> nodes.Element | None:

@@ -5,7 +5,6 @@ alone. The panel shows only a verified bundle of `book/evidence/<lesson>/<backen
 gives the state, the reason and the command that records a new one.
 """
 
-import io
 from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from pathlib import Path
@@ -16,7 +15,7 @@ from docutils.parsers.rst.directives import flag
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
-from robo_genesis.core import project
+from robo_genesis.core import project, shown
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.text import listed
 from robo_genesis.evidence.bundle import Predicate
@@ -65,9 +64,9 @@ class Evidence(PageDirective):
         panel += introduction(status.sentence)
         if "table" not in self.options:
             panel += backend_facts(run.predicate)
-            shown = f"{lesson}-{status.backend}", folder, find_replay(lesson), status.backend
-            panel += response(self.env, *shown)
-            panel += frames(self.env, *shown)
+            run_shown = f"{lesson}-{status.backend}", folder, find_replay(lesson), status.backend
+            panel += response(self.env, *run_shown)
+            panel += frames(self.env, *run_shown)
             panel += replay_block(self, run.key, folder)
         here = measured.page_run(Path(self.env.srcdir), lesson)
         found = comparison(here.folder, folder)
@@ -80,8 +79,8 @@ def figure(
     env: BuildEnvironment, anchor: str, suffix: str, content: bytes, alt: str, caption: str
 ) -> nodes.figure:
     """Return a figure; its picture is in a file that is named after its anchor."""
-    shown = image(env, f"{anchor}{suffix}", content, alt)
-    return nodes.figure("", shown, nodes.caption("", caption), ids=[anchor])
+    picture = image(env, f"{anchor}{suffix}", content, alt)
+    return nodes.figure("", picture, nodes.caption("", caption), ids=[anchor])
 
 
 def not_recorded(run: PageRun) -> nodes.Node:
@@ -157,12 +156,11 @@ def drawn_figure(
     """Return a drawing of a height [in] in the course's style as a figure."""
     from robo_genesis.core import plotting  # it loads slowly
 
-    stream = io.BytesIO()
     with plotting.course_style():
         drawing = plotting.figure(height)
         draw(drawing)
-        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    return figure(env, f"{prefix}-response", ".svg", stream.getvalue(), alt, caption)
+        content = shown.svg(drawing).encode()
+    return figure(env, f"{prefix}-response", ".svg", content, alt, caption)
 
 
 def frames(
@@ -223,19 +221,10 @@ def compared_table(
         what: the name of the first column.
         both: the names of the runs.
     """
-    rows = [
-        {
-            what: finding.what,
-            both[0]: finding.old,
-            both[1]: finding.new,
-            "difference": finding.delta or "–",
-            "allowed": finding.allowed or "–",
-            "verdict": finding.state,
-        }
-        for section in found.sections
-        if section.title in titles
-        for finding in section.rows
-    ]
+    head = (what, *both, "difference", "allowed", "verdict")
+    shown = (row for section in found.sections if section.title in titles for row in section.rows)
+    cells = ((r.what, r.old, r.new, r.delta or "–", r.allowed or "–", r.state) for r in shown)
+    rows = [dict(zip(head, row, strict=True)) for row in cells]
     return [text_table(rows)] if rows else []
 
 

@@ -1,14 +1,14 @@
-"""Finds each figure and measured table of a page, and writes its origin below it.
+"""Finds what cells and runs show on a page, and writes its origin below it.
 
-A picture or table is measured if it is an output of a code cell, shown there or glued elsewhere, or
-was read from a bundle. The tables of a cell that is tagged `inputs` were chosen. Outputs of a page
-that `page.show` did not display are printed: the build does not compare them with the bundle. A
-picture that no run made is an illustration. A table typed in prose is not listed.
+A picture or table is measured if `page.show` displayed it, on the page or glued elsewhere, or if it
+was read from a bundle. Other outputs of cells are printed, also texts: the build compares them with
+the bundle, but does not compute them again. The outputs of a cell that is tagged `inputs` were
+chosen. A picture that no run made is an illustration. A table typed in prose is not listed.
 """
 
 import re
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Sequence, Set
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
@@ -19,17 +19,21 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.bound import marked
-from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
-from robo_genesis.site.evidence.ledger_data import MEASURED, Item, PageRun
-from robo_genesis.site.evidence.origin import INPUTS, above, cell_of, origin
+from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, PageRun
+from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
+from robo_genesis.site.frame.executed import RECOMPUTED
 
 TITLE = 80
 """Longest title in the ledger, in characters."""
 ITEMS = "robo_genesis_items"
 """The name of a page's items in its metadata."""
+
+WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
+    None: "illustration", (): "settings", NO_BUNDLE: "unbound",
+}  # fmt: skip
+"""The kind of an item that belongs to no run, by its origin."""
 
 logger = logging.getLogger(__name__)
 
@@ -49,55 +53,46 @@ def all_runs(book: Path) -> dict[str, PageRun]:
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:
-    """List the figures and tables of a page, and write its origin below each of them."""
+    """List the outputs and pictures of a page, and write its origin below each of them."""
     env = app.env
     book, items = Path(env.srcdir), []
-    known, compared = all_runs(book), compared_cells(book, env.docname)
-    for node in list(doctree.findall(lambda n: isinstance(n, nodes.table | nodes.image))):
-        keys = origin(node, measured_pages(book).get(env.docname))
-        is_table = isinstance(node, nodes.table)
-        if keys is None and is_table:
+    known, page = all_runs(book), measured_pages(book).get(env.docname)
+    recomputed = RECOMPUTED.get(env.docname, set())
+    for node in list(doctree.findall(nodes.Element)):
+        texts = printed_texts(node, recomputed)
+        is_table, is_picture = isinstance(node, nodes.table), isinstance(node, nodes.image)
+        last = texts[-1] if texts else node
+        cell, keys = cell_of(last), origin(last, page)
+        if not (texts or is_picture or (is_table and keys is not None)):
             continue
-        if problem := _problem(keys, known, is_table):
+        if not texts and (problem := _problem(keys, is_table)):
             logger.warning(problem, location=env.docname)
             continue
-        holder = node if is_table else next(above(node, nodes.figure), node)
-        item = describe(holder, node, env.docname, keys, book)
-        cell = cell_of(node)
-        not_compared = cell is not None and cell.get("cell_index") not in (compared or ())
-        if compared is not None and not_compared and item.kind != "settings":
-            item = replace(item, kind="printed", runs=())
+        holder = next(above(node, nodes.figure), node) if is_picture else node
+        item = describe(holder, node, env.docname, keys, book, texts)
+        if item.runs and cell is not None and cell.get("cell_index") not in recomputed:
+            item = replace(item, kind="printed")
         items.append(item)
-        runs = [known[key] for key in item.runs]
-        add_line(holder, ledger_data.provenance(item.kind, runs), item.row)
+        line = ledger_data.provenance(item.kind, [known[key] for key in item.runs])
+        add_line(last if texts else holder, line, item.row)
     env.metadata[env.docname][ITEMS] = items
 
 
-def compared_cells(book: Path, docname: str) -> set[int] | None:
-    """Return the places of the cells all of whose outputs the build compared with the bundle.
-
-    Returns:
-        None for a page that declares no bundle.
-    """
-    if docname not in measured_pages(book):
-        return None
-    page = next(page for page in find_pages(book) if page.docname == docname)
-    places = [k for k, cell in enumerate(page.notebook.cells) if cell.cell_type == "code"]
-    ran = executed_notebook(docname, page.notebook).cells
-    found = {}
-    for place, cell in zip(places, ran, strict=True):
-        shown = [output for output in cell.outputs if "data" in output]
-        found[place] = (len(shown), len(marked(cell)))
-    return {place for place, (shown, count) in found.items() if shown == count}
+def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Element]:
+    """Return the texts that a cell printed, an empty list for any other node."""
+    if box.get("nb_element") not in ("cell_code_output", "glued"):
+        return []
+    left_out = "mime_bundle" if box.parent.get("cell_index") in recomputed else None
+    parts = (part for part in box if part.get("nb_element", "") != left_out)
+    others = lambda node: isinstance(node, nodes.table | nodes.image)  # noqa: E731
+    return [part for part in parts if part.astext().strip() and not [*part.findall(others)]]
 
 
-def _problem(
-    keys: tuple[str, ...] | None, known: Mapping[str, PageRun], is_table: bool
-) -> str | None:
-    """Return why an item cannot be listed."""
+def _problem(keys: tuple[str, ...] | None, is_table: bool) -> str | None:
+    """Return why a table or picture cannot be listed."""
     if keys == () and not is_table:
         return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."
-    if not set(keys or ()) <= known.keys():
+    if keys == NO_BUNDLE:
         what = "table" if is_table else "picture"
         return (
             f"a cell shows a {what}, but the page declares no bundle. Give its front matter "
@@ -112,29 +107,36 @@ def describe(
     docname: str,
     keys: tuple[str, ...] | None,
     book: Path,
+    texts: Sequence[nodes.Element],
 ) -> Item:
-    """Return the ledger's item of a table or picture, and give `holder` an anchor."""
-    is_table = isinstance(node, nodes.table)
+    """Return the ledger's item of a table, picture or texts, and give `holder` an anchor."""
+    is_picture = isinstance(node, nodes.image)
     section = next(above(holder, nodes.section), None)
+    heading = section.next_node(nodes.title).astext() if section is not None else docname
     if not holder["ids"]:
-        _name(holder, "table" if is_table else "picture", section)
+        _name(holder, "printed" if texts else "picture" if is_picture else "table", section)
     anchor = holder["ids"][0]
-    if is_table:
-        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
-        data = ledger_data.csv_bytes(rows)
-        heading = section.next_node(nodes.title).astext() if section is not None else docname
-        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
-        kind, file = "table" if keys else "settings", f"{docname}-{anchor}.csv".replace("/", "-")
-    else:
+    file = f"{docname}-{anchor}".replace("/", "-")
+    if texts:  # of a result in several forms, the first is Markdown
+        bundles = (part[0] if part.get("nb_element") == "mime_bundle" else part for part in texts)
+        text = "\n".join(part.astext() for part in bundles)
+        kind, data, file = "printed", text.encode(), f"{file}.txt"
+        title = f"{heading}: {text.splitlines()[-1]}"
+        holder["classes"].append("printed")
+    elif is_picture:
         caption, path = holder.next_node(nodes.caption), book / node["uri"]
         title = caption.astext() if caption is not None else str(node.get("alt", anchor))
-        drawn = node.get("kind") or ledger_data.picture_kind(path)
-        kind = "illustration" if keys is None else drawn
+        kind = node.get("kind") or ledger_data.picture_kind(path)
         data, file = path.read_bytes(), node["uri"]
-    digest = ledger_data.sha256(data)
-    return Item(
-        kind, _short(title), docname, anchor, keys or (), digest, file, data if is_table else None
-    )
+    else:
+        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
+        kind, data, file = "table", ledger_data.csv_bytes(rows), f"{file}.csv"
+        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
+    kind, runs = WITHOUT_RUN.get(keys, kind), () if keys in WITHOUT_RUN else keys or ()
+    digest, kept = ledger_data.sha256(data), None if is_picture else data
+    title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
+    title = textwrap.shorten(title, TITLE, placeholder=" …")
+    return Item(kind, title, docname, anchor, runs, digest, file, kept)
 
 
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
@@ -148,22 +150,17 @@ def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> No
     holder["ids"].append(name)
 
 
-def _short(text: str) -> str:
-    first = re.sub(r"^\d+\. ", "", text).split(". ")[0].removesuffix(".")
-    return textwrap.shorten(first, TITLE, placeholder=" …")
-
-
 def add_line(holder: nodes.Element, text: str, row: str) -> None:
     """Insert the line of provenance at the end of the caption, or below an item without one.
 
-    What was measured has an icon, and the words appear under the mouse or the focus. What was not
-    measured says so in words.
+    What a run measured or printed has an icon, and the words appear under the mouse or the focus.
+    Anything else says so in words.
     """
     link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
     caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
     joint = nodes.inline("", " · " if text[-1] != "." else " ", classes=["provenance-joint"])
     parts = [nodes.inline("", text, classes=["provenance-text"]), joint, link]
-    classes = ["provenance", *(["as-icon"] if text.startswith(MEASURED) else [])]
+    classes = ["provenance", *(["as-icon"] if text.startswith((MEASURED, PRINTED)) else [])]
     if caption is not None:
         caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=classes)]
     else:

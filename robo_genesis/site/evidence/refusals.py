@@ -10,8 +10,9 @@ from myst_nb.ext.glue.utils import PendingGlueReference
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
+from robo_genesis.core.text import quoted
 from robo_genesis.site.evidence.measured import evidence_badge, measured_value
-from robo_genesis.site.evidence.origin import above, origin
+from robo_genesis.site.evidence.origin import above, cell_of
 
 OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "evidence-badge": (evidence_badge, "Use {lesson-status}."),
@@ -22,9 +23,8 @@ OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
 }
 """Class → the nodes that may have it while a page is read, and the alternative for a page."""
 
-PICTURES: tuple[str, ...] = ("img", "picture")
-SHOWN = (*PICTURES, "table", "svg", "canvas", "video", "object", "embed", "iframe")
-"""Elements with content; as raw HTML they would have no provenance line and no ledger row."""
+PICTURES = ("img", "picture")
+"""Elements that, as raw HTML, would have no line of provenance and no row in the ledger."""
 
 logger = logging.getLogger(__name__)
 
@@ -72,14 +72,24 @@ def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
             f"{node.key} is glued from the page {node.refdoc}, and its origin would not be shown. "
             "Paste it on that page, or insert a metric of its bundle with {measured}."
         )
+    in_text = node.get("nb_element") == "mime_bundle" and isinstance(node.parent, nodes.TextElement)
+    pasted = any(name.startswith("pasted-") for name in node.get("classes", ()))
+    if pasted or (in_text and node.next_node(nodes.image) is None):
+        yield (
+            f"a cell's text {quoted(node.astext())} is glued into a sentence, where it has no line "
+            "of provenance. Use {measured}, or the directive {glue:md}."
+        )
 
 
 def _raw(node: nodes.Element, html: BeautifulSoup) -> Iterator[str]:
-    where, names, instead = "the page has", PICTURES, "Use the {figure} directive."
-    if origin(node, None) is not None:
-        where, names = "a cell outputs", SHOWN
-        instead = "Display Markdown (robo_genesis.core.tables) or a figure."
-    for name in sorted({tag.name for tag in html.find_all(names)}):
+    made, of_page = cell_of(node) is not None, html.find_all(PICTURES)
+    where, instead = "the page has", "Use the {figure} directive."
+    if made:
+        where, instead = (
+            "a cell outputs",
+            "Display Markdown (robo_genesis.core.tables) or a figure.",
+        )
+    for name in sorted({tag.name for tag in (html.find_all() if made else of_page)}):
         yield f"{where} <{name}> as raw HTML, which would have no line in the ledger. {instead}"
 
 

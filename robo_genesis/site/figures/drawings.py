@@ -28,12 +28,16 @@ WIDE = 480
 
 DRAWING = re.compile(r"\.svg$")
 COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
-DROPPED = re.compile(r"<!--.*?-->|<(metadata|style|title)\b.*?</\1>|\s+xmlns:\w+=\"[^\"]*\"", re.S)
+DROPPED = re.compile(
+    r"<!--.*?-->|<(metadata|style|title|script|foreignObject)\b.*?</\1\s*>|\s+xmlns:\w+=\"[^\"]*\"",
+    re.S | re.I,
+)
+"""What a page gets no part of; a style sheet, for example, would apply to all of it."""
 REFERENCE = re.compile(r'(?<=url\(#)[^)]+|(?<=href="#)[^"]+')
 IDENTIFIER = re.compile(r'\s+id="([^"]*)"')
 FRACTION = re.compile(r"\b([1-9]\d*\.\d\d)\d+")
 """Digits beyond a hundredth of a coordinate; a scale is smaller than one and keeps all."""
-SIZE = re.compile(r'\s(?:width|height|version|role)="[^"]*"')
+SIZE = re.compile(r'\s(?:width|height|version|role|style|class)="[^"]*"')
 LINES = "stroke-linejoin: round; stroke-linecap: butt"
 """Matplotlib's own style sheet, which would apply to the whole page."""
 

@@ -12,8 +12,12 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 from robo_genesis.core.project import EXECUTED_PAGES
+from robo_genesis.pipeline.pages.bound import marked
 from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.pipeline.pages.folder import code_and_kernel
+
+RECOMPUTED: dict[str, set[int]] = {}
+"""Of each page that was read, the cells whose outputs but streams `page.show` displayed."""
 
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
@@ -50,6 +54,11 @@ class ExecutedPage(NotebookClientBase):
                 cell.outputs, cell.execution_count = source.outputs, source.execution_count
                 if "raises-exception" in cell.metadata.get("tags", []):
                     shorten_tracebacks(cell)
+        RECOMPUTED[page.as_posix()] = {
+            index
+            for index, cell in enumerate(self.notebook.cells)
+            if marked(cell) == [out for out in cell.get("outputs", []) if "data" in out]
+        }
         if "language_info" in executed.metadata:
             self.notebook.metadata["language_info"] = executed.metadata["language_info"]
 

@@ -36,14 +36,14 @@ def worlds(joints) -> Experiment:
     for name, world in spec.COPIES.items():
         runs[name] = beginning(runs[f"env_{name[-1]}"], world.steps)
     masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}
-    residuals = [2.3 if (t == spec.BEYOND_REACH).all() else 1e-4 for t in spec.MIXED]
+    residuals = [study.residual(position, joints) for position in spec.MIXED]
     return Experiment(
         page=replace(LECTURE, checks=checks.WITHOUT_CAMERA),
         traces={name: runs[name] for name in LECTURE.runs},
         links=LINKS,
         readings={
             "model": spec.EXPECTED_MODEL,
-            "mixed": dict(zip(study.MIXED, residuals, strict=True)),
+            "mixed": dict(zip(study.READINGS["mixed"].units, residuals, strict=True)),
             "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
             "hand_mass": masses,
         },

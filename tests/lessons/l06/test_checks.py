@@ -32,6 +32,7 @@ CHANGES = [
     ("mapping", reading("model", "dofs", 8)),
     ("stamps", trace("env_3", t=lambda t: 2 * t)),
     ("acceptance_per_row", reading("mixed_accepted", "env_2", 1)),
+    ("acceptance_per_row", reading("mixed", "row_2_m", 2.4)),
     # an answer that was commanded beyond its tolerance
     ("acceptance_per_row", trace(LOADED, target=shift(..., 1e-2))),
     ("arrived", moved_hand("alone_1", 0.05, slice(-1, None))),

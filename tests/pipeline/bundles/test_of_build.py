@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from unittest.mock import Mock
 
 import pytest
+from nbformat.v4 import new_notebook
 
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
@@ -18,19 +19,20 @@ def result(tmp_path, monkeypatch):
     """A page in a store, whose notebook is not read."""
     folder = tmp_path / "cache" / "pages" / "page" / "fingerprint"
     folder.mkdir(parents=True)
-    (folder / RECORD).write_bytes(os.urandom(16))
+    (folder / RECORD).write_text(os.urandom(16).hex())
     monkeypatch.setattr(
         "robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda result: None
     )
-    return PageResult(None, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder)
+    page = SimpleNamespace(notebook=new_notebook())
+    return PageResult(page, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder)
 
 
 def test_an_accepted_page_is_compared_again_when_its_record_changed(result, monkeypatch):
     calls = []
     monkeypatch.setattr(shown, "require_shown", lambda *given: calls.append(given) or 7)
-    assert [outputs_compared(result, None) for _ in range(2)] == ["7", "7"]
+    assert [outputs_compared(result, None) for _ in range(2)] == [7, 7]
     assert len(calls) == 1
-    (result.folder / RECORD).write_bytes(os.urandom(16))
+    (result.folder / RECORD).write_text(os.urandom(16).hex())
     monkeypatch.setattr(shown, "require_shown", Mock(side_effect=BundleRefused("shown", "other")))
     for _ in range(2):  # a refusal is not kept
         with pytest.raises(BundleRefused, match="other"):

@@ -1,5 +1,6 @@
 """Checks of executed cells; whole pages are executed in test_execute."""
 
+import re
 from pathlib import Path
 
 import nbformat
@@ -10,7 +11,7 @@ from tiny_book import cell, make_book, notebook, raising
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import stored_notebook
-from robo_genesis.pipeline.pages.results import at_cell, unexpected_outcome
+from robo_genesis.pipeline.pages.results import GLUED, at_cell, unexpected_outcome
 from robo_genesis.pipeline.pages.store import places
 
 RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}
@@ -29,6 +30,12 @@ def raised(name, message):
     [
         ({"tags": ["figure"]}, [picture("text/plain")], "FigureMissing tagged figure, but shows"),
         ({"tags": ["figure"]}, [picture("image/svg+xml")], None),
+        (
+            {},
+            [picture("text/html")],
+            "OutputKind the cell puts out text/html. Valid are image/jpeg",
+        ),
+        ({}, [picture(f"{GLUED}text/html")], "OutputKind the cell puts out text/html. Valid are"),
         ({}, [], None),
         ({}, [raised("KeyError", "kp")], "raised KeyError: kp, but is not tagged raises-exception"),
         (RAISES, [raised("ValueError", "no way")], None),
@@ -53,9 +60,9 @@ def test_a_cell_has_its_figure_and_its_expected_exception_or_fails_its_page(
         assert failure is None
     else:
         assert (failure.cell, failure.line, failure.source) == (1, 4, "draw()")
-        assert said.removeprefix("FigureMissing ") in failure.message
-        figure = said.startswith("FigureMissing")
-        assert failure.error == ("FigureMissing" if figure else "ExpectedException")
+        error = re.match("FigureMissing |OutputKind |", said)[0]
+        assert said.removeprefix(error) in failure.message
+        assert failure.error == (error.strip() or "ExpectedException")
 
 
 HELPER = "def helper():\n    raise ValueError('in another cell')"

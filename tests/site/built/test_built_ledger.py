@@ -16,8 +16,11 @@ pytestmark = pytest.mark.engine
 LEDGER = "evidence/ledger.html"
 SHOWN = (
     "article :is(img, svg.drawing), .cell_output table, .glued table, figure table, "
-    ".evidence-panel table, .replay-block table"
+    ".evidence-panel table, .replay-block table, .printed"
 )
+
+
+BEGINNINGS = UNMEASURED | {"printed": "Printed by this run on "}
 
 
 def place(link: str) -> tuple[str, str]:
@@ -32,7 +35,7 @@ def pages(parsed_pages) -> dict[str, BeautifulSoup]:
     return {f"{name}.html": page for name, page in parsed_pages.items()}
 
 
-def test_each_figure_and_measured_table_has_one_row_and_each_row_its_place(pages):
+def test_each_figure_table_and_printed_text_has_one_row_and_each_row_its_place(pages):
     rows = [
         place(row.select_one("td a")["href"])
         for row in pages[LEDGER].select("#figures-and-tables tbody tr")
@@ -57,7 +60,7 @@ def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
             runs = [link.text for link in row.select("td")[3].select("a")]
             assert (runs == []) == (run == "no run") == (kind in UNMEASURED)
             assert all(f"run {run}" in line.get_text() for run in runs)
-            assert line.get_text().startswith(UNMEASURED.get(kind, "Measured on "))
+            assert line.get_text().startswith(BEGINNINGS.get(kind, "Measured on "))
             holder = line.find_parent("figure")
             assert holder is None or holder["id"] == anchor
     assert sum(len(page.select(".provenance")) for page in pages.values()) == len(rows)

@@ -6,7 +6,7 @@ from docutils import nodes
 from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
 from small_book import draft_of, executed
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.book import find_pages
@@ -53,7 +53,6 @@ Here it stands in a sentence, {glue}`inline`.
 | 7 |
 """
 REMOVED, INPUTS = ":tags: [remove-cell]\n", ":tags: [inputs]\n"
-PRINTED = "Printed by its cell, not compared with the bundle. ledger"
 OF_RUN = "No accepted evidence: cpu-refused. ledger"
 CHOSEN = "Chosen, not measured. ledger"
 
@@ -71,6 +70,7 @@ AS_MEASURED = (
     cell(SHOW), cell("glue('md table', table('md'), display=False)", REMOVED),
     cell("table('chosen')", INPUTS), cell("show('measured')"), cell("table('printed')"),
     cell("show('one')\ntable('of both')"), cell("drawn('printed, too')"),
+    raising("print('2.5 mm')\n1 / 0", "ZeroDivisionError: division"),
     cell("show_drawn('measured, too')"), "\n```{glue:md} md table\n:format: gfm\n```\n",
 )  # fmt: skip
 AS_PRINTED = (
@@ -108,20 +108,24 @@ def kinds(rows):
 
 
 def test_an_output_without_the_name_of_its_function_is_not_called_measured(html):
-    _, lines, rows = lines_and_rows(html, "lab")
-    assert lines == [CHOSEN, OF_RUN, *[PRINTED] * 4, OF_RUN, PRINTED]
-    assert kinds(rows) == ["settings", "table", *["printed"] * 4, "figure", "printed"]
+    page, lines, rows = lines_and_rows(html, "lab")
+    assert lines == [OF_RUN, CHOSEN, *[OF_RUN] * 8]
+    assert kinds(rows) == ["printed", "settings", "table", *["printed"] * 5, "figure", "printed"]
+    text = page.select_one("[id^=printed]:has(.traceback)")
+    assert [line.get_text() for line in text.select(".stream ~ .provenance")] == [OF_RUN]
+    (row,) = (row for row in rows if row.a["href"].endswith(f"#{text['id']}"))
+    assert "2.5 mm" in (html / "evidence" / row.select("td")[-1].a["href"]).read_text()
 
 
 def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
     page, lines, rows = lines_and_rows(html, "lecture")
-    assert lines == [CHOSEN] + [PRINTED] * 7
+    assert lines == [OF_RUN, CHOSEN] + [OF_RUN] * 7
     assert "Its caption." in page.select_one("figcaption:has(.provenance)").get_text()
-    assert kinds(rows) == ["settings", *["printed"] * 7]
-    assert {row.select("td")[3].get_text() for row in rows} == {"no run"}
+    assert kinds(rows) == ["printed", "settings", *["printed"] * 7]
+    assert [row.select("td")[3].get_text() for row in rows][:2] == ["–", "no run"]
     anchors = [row.a["href"].split("#")[1] for row in rows]
     assert [page.find(id=anchor).name for anchor in anchors] == [
-        "table", "table", "svg", "figure", "svg", "svg", "table", "table",
+        "div", "table", "table", "svg", "figure", "svg", "svg", "table", "table",
     ]  # fmt: skip
 
 

@@ -4,7 +4,7 @@ import re
 
 import pytest
 import yaml
-from small_book import as_executed, draft_of, executed
+from small_book import draft_of, executed
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.core.project import ProjectError
@@ -18,16 +18,19 @@ TEXT = {
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
     "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
     "```{course-map}\n```": "the book has no page gone",
-    "```{cell-times}\n```": "timed has 2 code cells and 1 recorded times",
+    "```{cell-times}\n```": "timed has no cell with code",
 }
 """What stands alone on the page, and what is said of its line."""
 
 IMPORTS = """\
-from IPython.display import HTML, SVG, Markdown
+from IPython.display import SVG, Markdown
+from myst_nb import glue
 drawn = SVG("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'/>")
 table = Markdown("| read |\\n| --- |\\n| 7 |")"""
 INPUTS = ":tags: [inputs]\n"
 LAB = """
+A sentence with {glue:text}`number`.
+
 [amdgpu-verified]{.evidence-badge .state-verified}
 
 ```{figure} ../book/evidence/l04/amdgpu/frames/final.svg
@@ -43,14 +46,16 @@ Free words.
 ```
 """
 CELLS = (
-    cell("display(HTML('<table><tr><td>7</td></tr></table>'))"),
-    cell("Markdown('<img src=\"x.png\">')"),
+    cell("Markdown('<table><tr><td>7</td></tr></table>')"),
+    cell("Markdown('a <b style=\"position: fixed\">7</b>')"),
+    cell("glue('number', 7, display=False)"),
     cell("drawn", INPUTS),
 )
 OTHERS = {
     "lab": [
         "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
-        "a cell outputs <img> as raw HTML",
+        "a cell outputs <b> as raw HTML",
+        "a cell's text 7 is glued into a sentence",
         "a cell tagged inputs shows a picture",
         "a page may not set the class evidence-badge",
         "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
@@ -80,7 +85,7 @@ def report(tmp_path_factory):
         "glue": "# Glue\n\n{glue}`lab.md::bare`\n",
         "free": notebook(imports, cell("table", INPUTS), cell("table")),
         "glossary": "# Glossary\n\n```{glossary}\nDOF\n  One axis of motion.\n```\n",
-        "timed": notebook(cell("1"), cell("2")),
+        "timed": notebook(cell("")),
     }
     book = make_book(folder, **pages)
     (book / glossary.FORMS).write_text("forms: {gain: [gains]}\nunlinked: [force]")
@@ -90,8 +95,7 @@ def report(tmp_path_factory):
     frame = book / "evidence/l04/amdgpu/frames/final.svg"
     frame.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     (book / "innocent.svg").symlink_to(frame)
-    *others, timed = find_pages(book)
-    results = [*executed(others, folder), as_executed(timed, folder, [1.5])]
+    results = executed(find_pages(book), folder)
     with pytest.raises(ProjectError) as caught:
         draft_of(book, folder, results)
     assert str(folder / "render.log") in str(caught.value)

@@ -1,0 +1,128 @@
+"""Every output of a page's cells as its bundle keeps it, and the measured numbers among them.
+
+`printed.json` has the outputs of each code cell in their order: text as it is, the digest of
+anything else. The build writes it when the run ends, so a notebook that was run by hand has none.
+
+A cell with the option `prints: {2: baseline.drop mm}` says that the second decimal number in its
+text is this measured value, in the words of the role `{measured}`.
+"""
+
+import json
+import re
+from collections.abc import Mapping
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from nbformat import NotebookNode
+
+from robo_genesis.core.files import json_digest
+from robo_genesis.core.text import DIGITS, MICRO, SCALED, SCALES, quoted
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle_files import MANIFEST
+from robo_genesis.evidence.strict_json import write_json
+
+TEXTS = ("text/plain", "text/markdown")
+OPTION = "prints"
+"""The option of a cell that names the measured values which it prints."""
+
+DECIMAL = re.compile(r"(?<![\w.])[-+−]?\d+\.\d+(?:e[-+]?\d+)?(?!\.?\d)")
+LOG = re.compile(r"^\[Genesis\].*", re.MULTILINE)
+ROUNDED = 1e-7
+"""Relative difference of a printed value from the recorded one: a float32 has seven digits."""
+
+
+def outputs_of(executed: NotebookNode) -> list[list[Any]]:
+    """Return the outputs of each code cell in the form in which a bundle keeps them.
+
+    Texts are kept whole; pictures, also drawings, as SHA-256.
+    """
+    cells = (cell for cell in executed.cells if cell.cell_type == "code")
+    return [[_kept(output) for output in cell.get("outputs", [])] for cell in cells]
+
+
+def _kept(output: NotebookNode) -> dict[str, Any]:
+    given = output.get("data", {}).items()
+    data = {kind: of if kind.endswith(TEXTS) else json_digest(of) for kind, of in given}
+    return {**output, **({"data": data} if data else {})}
+
+
+def keep_outputs(folder: Path, executed: NotebookNode) -> None:
+    """Add the outputs of a run to its bundle and to the list of files in the manifest.
+
+    The digests that the run itself stated are left as they are.
+    """
+    write_json(folder / bundle.PRINTED, outputs_of(executed))
+    statement = json.loads((folder / MANIFEST).read_text("utf8"))
+    entry = {"name": bundle.PRINTED, "digest": {"sha256": bundle.sha256(folder / bundle.PRINTED)}}
+    statement["subject"] = [*statement.get("subject", []), entry]
+    write_json(folder / MANIFEST, statement)
+
+
+def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, str]:
+    """Return a measured value of a bundle, its unit, None for a finding, and words on its origin.
+
+    Args:
+        folder: of the bundle.
+        name: `group.metric` of its metrics, or `check:label` of what a check found.
+        unit: in which it will be shown, such as mm or %; without one, its own.
+
+    Raises:
+        LookupError: there is no such value, and the message lists those that there are; or it has
+            no such unit.
+        BundleRefused: the bundle cannot be read.
+    """
+    by, kind = (":", "finding") if ":" in name else (".", "metric")
+    group, _, label = name.partition(by)
+    found: Mapping[str, Mapping[str, Any]] = (
+        {c.name: c.found for c in bundle.read_manifest(folder).predicate.checks}
+        if by == ":"
+        else bundle.read_metrics(folder)
+    )
+    if label not in found.get(group, {}):
+        known = ", ".join(f"{g}{by}{n}" for g, of in found.items() for n in of)
+        raise LookupError(f"no {kind} {name!r}. Known: {known}.")
+    value, given, origin = found[group][label], None, f"found by the check {group}"
+    valid = SCALES.keys() | DIGITS.keys()
+    if by == ".":
+        value, given, origin = value.value, value.unit, f"from {', '.join(value.source)}"
+        valid = {given, SCALED.get(given), MICRO.get(given)} - {None}
+    if unit and not (isinstance(value, int | float) and unit in valid):
+        raise LookupError(
+            f"{name} = {quoted(value)} in {given or 'no unit'}, which cannot be shown in {unit!r}. "
+            f"Valid for a number is {' or '.join(sorted(valid))}."
+        )
+    return value, given, origin
+
+
+def declared(page: NotebookNode) -> list[dict[int, str]]:
+    """Return the option `prints` of each code cell of a page, an empty one if it has none."""
+    return [cell.metadata.get(OPTION, {}) for cell in page.cells if cell.cell_type == "code"]
+
+
+def contradiction(values: Mapping[int, str], cell: NotebookNode, folder: Path) -> str | None:
+    """Return which number that a cell printed is not the value that its option names, or None.
+
+    Args:
+        values: the option, value by the place of the number, counted from 1.
+        cell: with its outputs.
+        folder: the bundle of its page.
+    """
+    text = "".join(out.text for out in cell.outputs if out.output_type == "stream")
+    numbers = dict(enumerate(DECIMAL.findall(LOG.sub("", text)), start=1))
+    if not isinstance(values, dict) or not values.keys() <= numbers.keys():
+        return (
+            f"it has `{OPTION}: {values}`, and prints the numbers {', '.join(numbers.values())}. "
+            f"Valid is `{OPTION}: {{1: baseline.drop mm}}` for the first number"
+        )
+    for place, asked in values.items():
+        name, _, unit = str(asked).partition(" ")
+        try:
+            value = value_of(folder, name, unit)[0] * SCALES.get(unit, 1.0)
+        except (LookupError, TypeError) as error:
+            return f"its option `{OPTION}` has {asked!r}: {error}"
+        number = Decimal(numbers[place].replace("−", "-"))
+        step = 10.0 ** int(number.as_tuple().exponent)
+        if abs(float(number) - value) > step / 2 + ROUNDED * abs(value):
+            return f"it prints {numbers[place]} as {asked}, which is {value:.9g}"
+    return None
