@@ -32,8 +32,8 @@ from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK
 from robo_genesis.pipeline.pages.store import folders
 
+# The limit of the ratio of medians, by the name of the row.
 LIMITS = {"unchanged": 1.5, "prose": 1.5, "live": 0.7, "lab": 1.2}
-"""The limit of the ratio of medians, by the name of the row."""
 
 FOLDER, STORE = project.CACHE / "bench", project.CACHE / project.STORE
 TREE = FOLDER / CHECKOUT

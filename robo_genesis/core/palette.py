@@ -35,6 +35,9 @@ MARKS = {
 """`other` is compared with a case: a mistake, another getter, another engine. `further` is any
 additional run, such as a point of a grid."""
 
+# What a figure has besides its marks. `line`: axes, and thin lines at zero or at a target. `band`:
+# the area around a target. No two colours of the light theme are equal, here and in `MARKS`: a page
+# finds by them what each element of a drawing is.
 PARTS = {
     "text": Mark("#1b1f24", "#e6e9ed"),
     "line": Mark("#7a7a7a", "#8c96a3"),
@@ -42,9 +45,6 @@ PARTS = {
     "band": Mark("#e9e4d4", "#37331f"),
     "ground": Mark("#ffffff", "#14181e"),
 }
-"""What a figure has besides its marks. `line`: axes, and thin lines at zero or at a target. `band`:
-the area around a target. No two colours of the light theme are equal, here and in `MARKS`: a page
-finds by them what each element of a drawing is."""
 
 CASE_CLASSES = {
     "baseline": "case-baseline", "first": "case-g1", "second": "case-g2", "third": "case-g3",

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import re
+import sysconfig
 import tomllib
 from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, requires, version
@@ -19,10 +20,10 @@ PUBLISHED = "_build"
 
 CACHE = ROOT / ".cache"
 STORE, COMPILED, RECORDING, LOGS = "pages", "engine", "recording", "logs"
+# Below the cache folder: executed pages, what the engine compiles, the lab that is being recorded,
+# what each page wrote when it was last executed; what Sphinx keeps for the next build, and how the
+# names of the folders begin in which builds make their sites.
 KEPT, STAGING = "render", "staging"
-"""Below the cache folder: executed pages, what the engine compiles, the lab that is being recorded,
-what each page wrote when it was last executed; what Sphinx keeps for the next build, and how the
-names of the folders begin in which builds make their sites."""
 
 ENGINE = "genesis-world"
 COURSE = "robo-genesis"
@@ -241,6 +242,12 @@ def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
     # Genesis itself sets the last one at its import; it decides only how messages print.
     switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | {"QD_ENABLE_PYBUF"}
     return {name: environment[name] for name in sorted(switches)}
+
+
+def without_folders(text: str) -> str:
+    """Return a text without the folders of packages, checkout and homes, which are private."""
+    text = text.replace(sysconfig.get_path("purelib"), "site-packages")
+    return without_home(text.replace(f"{ROOT}/", ""))
 
 
 def without_home(text: str) -> str:

@@ -17,6 +17,9 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
 
 MISSING = "missing"
 
+# State and verdict of a claimed ordering by its outcomes in the two runs.
+#
+# Two runs that both break an ordering agree, but the claim of the lesson fails.
 VERDICTS = {
     frozenset({HELD}): (EQUAL, "held in both"),
     frozenset({WITHIN_MARGIN}): (INCONCLUSIVE, "inconclusive"),
@@ -25,10 +28,6 @@ VERDICTS = {
     frozenset({HELD, BROKEN}): (DIFFERS, "flipped"),
     frozenset({BROKEN, WITHIN_MARGIN}): (DIFFERS, "broken in one, undecided in the other"),
 }
-"""State and verdict of a claimed ordering by its outcomes in the two runs.
-
-Two runs that both break an ordering agree, but the claim of the lesson fails.
-"""
 
 
 @dataclass(frozen=True, slots=True)

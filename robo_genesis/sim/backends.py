@@ -24,7 +24,7 @@ TAG = re.compile(r"\+(cpu|rocm|cu(?=\d))(\d*)\.?(\d*)")
 """The tag in Torch's version: `+cpu`, `+rocm7.2.1`, `+cu130`. PyPI's packages name none, and nor do
 builds from source."""
 
-PROCESSOR = r"intel|xeon|epyc|ryzen|threadripper|opteron|processor|\bcpu\b|apple|pipe\b|swrast"
+PROCESSOR = r"intel|xeon|epyc|threadripper|opteron|processor|\bcpu\b|apple|pipe\b|swrast"
 FOREIGN = {"amdgpu": "nvidia|geforce|tesla|quadro", "cuda": r"\bamd\b|radeon|instinct"}
 """Words that the name of an accelerator's device never has: of processors and of software that
 draws, and by backend those of other makers."""

@@ -2,6 +2,7 @@
 
 import inspect
 import sys
+from contextlib import suppress
 
 MEASURES = False
 
@@ -22,7 +23,5 @@ def save_kernels(*_: object) -> None:
 
     The engine saves them only when it ends. IPython calls this after each cell.
     """
-    if (compiler := sys.modules.get("quadrants")) and (
-        program := compiler.lang.impl.pyquadrants._prog
-    ):
-        program.dump_cache_data_to_disk()
+    with suppress(KeyError, AttributeError):  # no engine yet, or one with another interface
+        sys.modules["quadrants"].lang.impl.pyquadrants._prog.dump_cache_data_to_disk()

@@ -1,11 +1,9 @@
 """The engine's log: what it keeps, and what is left out of it."""
 
-import importlib
 import logging
 import re
-from pathlib import Path
 
-from robo_genesis.core.project import ROOT, without_home
+from robo_genesis.core.project import without_folders
 from robo_genesis.core.text import LINE_LIMIT, clean_message
 
 
@@ -36,7 +34,5 @@ class EngineLog(logging.Handler):
 
 def remove_private_paths(record: logging.LogRecord) -> bool:
     """Remove the folders of packages, checkout and home from a log line; keep every record."""
-    installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
-    plain = str(record.msg).replace(str(installed), "site-packages").replace(f"{ROOT}/", "")
-    record.msg = without_home(plain)
+    record.msg = without_folders(str(record.msg))
     return True

@@ -1,7 +1,7 @@
 """What is kept of the engine's log, and which paths it must not name."""
 
 import logging
-import sys
+import sysconfig
 from types import SimpleNamespace
 
 import pytest
@@ -29,11 +29,9 @@ def test_the_log_drops_marks_and_keeps_everything_else_in_order(log):
 
 
 def test_the_log_names_neither_the_environment_nor_the_user(monkeypatch, tmp_path):
-    engine = SimpleNamespace(__file__=str(tmp_path / "packages" / "genesis" / "__init__.py"))
-    monkeypatch.setitem(sys.modules, "genesis", engine)
     monkeypatch.setenv("HOME", str(tmp_path / "someone"))
-    text = f"Read {tmp_path}/packages/genesis/a.xml, wrote ~<{tmp_path}/someone/.cache/b.gsd>~, "
-    text += f"{ROOT}/robo_genesis/lessons/l07/door.xml."
+    text = f"Read {sysconfig.get_path('purelib')}/genesis/a.xml, "
+    text += f"wrote ~<{tmp_path}/someone/.cache/b.gsd>~, {ROOT}/robo_genesis/lessons/l07/door.xml."
     record = logging.LogRecord("genesis", logging.INFO, "", 0, text, None, None)
     assert remove_private_paths(record)
     said = "Read site-packages/genesis/a.xml, wrote ~<~/.cache/b.gsd>~, "

@@ -92,10 +92,10 @@ SAME_SLIDE = 1e-4
 COULOMB_SHARE = 0.20
 """Relative tolerance of a stopping distance against Coulomb's: these cubes hop."""
 
+# Tolerance of the conserved energy in a flight, as a share of the energy at the start: float32
+# rounds in each of up to some thousand solver steps. The bounded error of the total energy is at
+# least ten times as large.
 LEVEL_SHARE = 1e-4
-"""Tolerance of the conserved energy in a flight, as a share of the energy at the start: float32
-rounds in each of up to some thousand solver steps. The bounded error of the total energy is at
-least ten times as large."""
 
 FINE_SHARE = 0.3
 """Tolerance of the share kept at the first bounce with the finest step, against a spring [%]."""
@@ -114,17 +114,17 @@ RESOLUTION = {
 }  # fmt: skip
 """By unit, the difference below which two values count as equal."""
 
+# By unit, metric or array, (atol, rtol) of one value between engine versions or backends.
+#
+# After a hop, the contact points at the landing decide the further motion, and no engine is right.
+# The metrics of that motion have wide tolerances; those of times and spin compare little more than
+# the order of magnitude. Genesis and MuJoCo with equal settings differ by as much.
 TOLERANCES = {
     "m": (2e-5, 0.0), "m/s": (1e-3, 0.0), "s": (0.0, 0.0), "kg": (1e-6, 0.0), "J": (5e-6, 0.0),
     "%": (0.2, 0.0), "stop_distance": (0.01, 0.0), "final_distance": (0.01, 0.0),
     "stop_time": (0.08, 0.0), "airborne": (0.05, 0.0), "hop": (0.005, 0.0), "rad/s": (12.0, 0.0),
     "link_quat_wxyz": (1e-5, 0.0),
 }  # fmt: skip
-"""By unit, metric or array, (atol, rtol) of one value between engine versions or backends.
-
-After a hop, the contact points at the landing decide the further motion, and no engine is right.
-The metrics of that motion have wide tolerances; those of times and spin compare little more than
-the order of magnitude. Genesis and MuJoCo with equal settings differ by as much."""
 
 RELATIONS = (
     (("low_on_050", "high_on_050"), "stop_distance", "lower", 0.05),

@@ -24,7 +24,7 @@ RAISED = 0.1
 NEAR = RAISED / 5
 """Largest distance of an arm joint from its commanded angle at the end [rad], sag included."""
 
-STEP, BUILD, MEMORY = (1e-4, 10.0), (0.1, 300.0), (0.0, 2.0**14)
+STEP, BUILD, MEMORY = (1e-4, 10.0), (0.1, 300.0), (-(2.0**14), 2.0**14)
 """Limits, with hardware of today, of the time of a step and a build [s], and of memory [MiB]."""
 
 Build = Callable[[int], tuple[Any, ...]]

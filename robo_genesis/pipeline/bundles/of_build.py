@@ -14,7 +14,7 @@ from robo_genesis.pipeline.pages.folder import MARK, RECORD, stored_notebook
 from robo_genesis.pipeline.pages.printed import declared
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
-from robo_genesis.pipeline.pages.store import Verify
+from robo_genesis.pipeline.pages.store import Verify, failed_mark
 
 
 def verify_results(
@@ -51,6 +51,7 @@ def verify_results(
             line = f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
             if result.status == "reused":
                 (result.folder / MARK).write_text(line, "utf8")
+                failed_mark(result.folder).touch()
                 line += " The next build executes the page again."
             refused.append(line)
     return manifests, refused

@@ -138,7 +138,7 @@ def names(call: ast.Call, says: Shown) -> bool:
         return says == {"function": shown.CHECKS, "arguments": []}
     name, *arguments = map(ast.unparse, [*call.args, *call.keywords] or [call.func])
     written = {"function": says.get("function"), "arguments": [*map(ast.literal_eval, arguments)]}
-    return written == says and f".{says['function']}".endswith(f".{name.partition('.')[2] or name}")
+    return written == says and f".{says['function']}".endswith(f".{name}")
 
 
 def marked(cell: NotebookNode) -> list[NotebookNode]:

@@ -13,8 +13,13 @@ from IPython import get_ipython
 from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
 from robo_genesis.sim.compiler import save_kernels, spare_searches
 
-SYSTEM = ("/dev", "/etc", "/lib", "/nix", "/opt", "/proc", "/run", "/sys", "/usr")
+SYSTEM = (
+    "/bin", "/dev", "/etc", "/lib", "/lib64", "/opt", "/proc", "/run", "/sys", "/usr", "/var",
+)  # fmt: skip
 """Folders of the operating system."""
+
+FONTS = (".ttf", ".otf", ".ttc", ".afm")
+"""Matplotlib lists all fonts of the machine; the figures use its own."""
 
 RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")
@@ -70,5 +75,6 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
         return places[max((each for each in places if path.startswith(f"{each}/")), key=len)]
 
     names = os.fsdecode(_notes().read_bytes()).split("\0")
-    found = {BYTECODE.sub(r"\1.py", name) for name in names} - set(map(str, keyed))
+    names = (BYTECODE.sub(r"\1.py", name) for name in names if not name.endswith(FONTS))
+    found = {*names} - set(map(str, keyed))
     return sorted(name for name in found if os.path.isfile(name) and not is_accepted(name))

@@ -17,6 +17,7 @@ from typing import Any
 from nbformat import NotebookNode
 
 from robo_genesis.core.files import json_digest
+from robo_genesis.core.project import without_folders
 from robo_genesis.core.text import DIGITS, MICRO, SCALED, SCALES, quoted
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle_files import MANIFEST
@@ -44,7 +45,8 @@ def outputs_of(executed: NotebookNode) -> list[list[Any]]:
 def _kept(output: NotebookNode) -> dict[str, Any]:
     given = output.get("data", {}).items()
     data = {kind: of if kind.endswith(TEXTS) else json_digest(of) for kind, of in given}
-    return {**output, **({"data": data} if data else {})}
+    kept = {**output, **({"data": data} if data else {})}
+    return json.loads(without_folders(json.dumps(kept, ensure_ascii=False)))
 
 
 def keep_outputs(folder: Path, executed: NotebookNode) -> None:

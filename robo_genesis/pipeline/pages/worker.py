@@ -140,14 +140,16 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
             error = caught
     elapsed = time.monotonic() - begin
-    failure = _failure(run, error, list(begins)) or _unkeyed(run)
-    if failure is None:
-        notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
-        try:
-            write_page(run.place, run.page, notebook, run.left, run.run_id, elapsed, seconds)
-        except (PageRefused, OSError, ValueError) as caught:
-            failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
-    return failure
+    if failure := _failure(run, error, list(begins)):
+        return failure
+    notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
+    try:
+        if failure := _unkeyed(run):
+            return failure
+        write_page(run.place, run.page, notebook, run.left, run.run_id, elapsed, seconds)
+    except (PageRefused, OSError, RuntimeError, ValueError) as caught:
+        return Failure("NotStored", f"the executed page cannot be stored: {caught}")
+    return None
 
 
 def _unkeyed(run: PageRun) -> Failure | None:

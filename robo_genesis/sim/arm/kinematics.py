@@ -15,6 +15,10 @@ from robo_genesis.sim.arm.franka import LINK_PARENTS
 
 HALF = np.sqrt(0.5)
 
+# Name of each link, its position [m] and orientation in its parent, as in the model file.
+#
+# The parent of the first is the base. Then each of the seven arm links turns by its joint's angle
+# about its own z axis. The hand is fixed to the last of them.
 CHAIN = (
     ("link1", (0.0, 0.0, 0.333), (1.0, 0.0, 0.0, 0.0)),
     ("link2", (0.0, 0.0, 0.0), (HALF, -HALF, 0.0, 0.0)),
@@ -25,11 +29,6 @@ CHAIN = (
     ("link7", (0.088, 0.0, 0.0), (HALF, HALF, 0.0, 0.0)),
     ("hand", (0.0, 0.0, 0.107), (0.9238795, 0.0, 0.0, -0.3826834)),
 )
-"""Name of each link, its position [m] and orientation in its parent, as in the model file.
-
-The parent of the first is the base. Then each of the seven arm links turns by its joint's angle
-about its own z axis. The hand is fixed to the last of them.
-"""
 
 ARM = len(CHAIN) - 1
 """Number of joints of the arm."""

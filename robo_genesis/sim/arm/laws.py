@@ -93,6 +93,7 @@ def assigned_postures(
     yield from apart("law", "control_force [N·m or N]", trace.control_force, ZERO, 0.0)
     yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, ZERO, 0.0)
     ends = [of.internal_force[-1] for of in runs if np.ptp(of.internal_force, axis=0).any()]
+    ends = ends or [trace.internal_force[0]]
     force = min(ends, key=lambda end: float(np.abs(trace.internal_force - end).max()))
     yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, force, 0.0)
     yield from poses(trace, links)

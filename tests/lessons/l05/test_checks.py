@@ -82,7 +82,7 @@ def test_the_record_of_answers_has_the_dt_of_its_case():
     [
         (moved_hand("unreachable", 1e-4), "link_pos"),
         (trace("many_starts", internal_force=shift(..., 1e-6)), "internal_force"),
-        (copied("vertical", "horizontal"), "share of answers"),
+        (copied("vertical", "horizontal"), "distance of the hand"),
     ],
 )
 def test_a_run_that_breaks_a_law_is_found(solved, change, label):

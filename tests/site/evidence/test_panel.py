@@ -166,7 +166,7 @@ def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared
     assert (status.badge, place.name) == (f"{actual}-verified", actual)
     panel = Panel(tmp_path / "book").panel(PageRun("l04/lab", place, status, recorded=True))
     shown = dict(row for row in rows_of([panel]) if len(row) == 2)
-    facts |= {"device": there.backend.device_name, "driver": f"the driver of {actual}"}
+    facts |= {"device": there.backend.device_name, "driver": drivers.get(actual, "–")}
     facts["backend requested, actual"] = f"{there.backend.requested}, {actual}"
     assert shown | facts == shown
     assert "Compared with this build's run on cpu: equal." in panel.astext()
