@@ -22,7 +22,7 @@ from robo_genesis.evidence.refusals import BundleRefused
 pytestmark = pytest.mark.engine  # the bundles of the built site
 
 LAWS = ("laws_of_motion", "free_fall")
-REQUIRED = 0.96
+REQUIRED = 0.97
 """Share of the tries that must be refused."""
 
 NOISE = "A landed cube turns by less than float32 resolves in a step, so nothing follows from it."
@@ -32,8 +32,8 @@ ROUNDING = "The alteration is no larger than what float32 resolves of a position
 
 ACCEPTED = {
     **{("l03", "link_ang", how): f"{NOISE} {SCHEME}" for how in ("× 1.02", "× 0.98", "sample")},
-    **{("l03", name, "sample"): ON_EDGE for name in ("link_pos", "link_vel", "contacts")},
-    **{("l03", "penetration", how): ROUNDING for how in ("× 1.02", "× 0.98", "sample")},
+    **{("l03", name, "sample"): ON_EDGE for name in ("link_vel", "contacts")},
+    ("l03", "penetration", "sample"): ROUNDING,
 }
 """By lesson, array and alteration, why a try may be accepted. No other may."""
 

@@ -8,8 +8,8 @@ used: a page measures without it.
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
 | `LIMIT_TOLERANCE` of a start | 5e-8 rad | 1e-6 rad |
-| `LAW`, control force: float32 in KP times a position error | 4e-4 N·m | 5e-3 N·m |
-| `POSE`, link positions and quaternions | 3e-7 m, 2e-7 | 5e-6 |
+| `LAW`, control force: float32 in KP times a position error | 4e-4 N·m | 4e-3 N·m |
+| `POSE`, link positions and quaternions | 2.3e-7 m, 2.2e-7 | 2.5e-6 |
 | `NET_FORCE`, internal force of the arm | 9e-4 N·m | 1e-2 N·m |
 | `NET_FORCE`, of the fingers | 6e-3 N | 6e-2 N |
 | `STEPPED`, velocity before the last solver step | 2e-4 rad/s | 2e-3 rad/s |
@@ -32,7 +32,7 @@ from robo_genesis.sim.laws import ZERO, apart, broken, mean_speed, times, unit_q
 
 MEASURES = False
 
-LAW, POSE, STEPPED, MEAN, NEXT = 5e-3, 5e-6, 2e-3, 0.7, (2e-6, 6e-4)
+LAW, POSE, STEPPED, MEAN, NEXT = 4e-3, 2.5e-6, 2e-3, 0.7, (2e-6, 6e-4)
 
 NET_FORCE = per_joint(*(1e-2,) * 7, *(6e-2,) * 2)
 """Tolerance of the internal force [N·m or N]. The fingers also have a force between them, which the
