@@ -164,9 +164,9 @@ def require_complete(run: Experiment) -> None:
         )
     values = {name: of["value"] for name, of in bundle.by_full_name(run.records()).items()}
     odd = [name for name, value in values.items() if not math.isfinite(value or 0)]
-    for group, declared in run.page.groups(run.rendered).items():
-        found = run.readings[group].items()
-        odd += [f"{group}.{name}" for name, value in found if not declared.possible(name, value)]
+    for group, of in run.page.groups(run.rendered).items():
+        given = run.readings[group].items()
+        odd += [f"{group}.{name}" for name, value in given if not of.possible(name, value)]
     if odd:
         raise RecordError(
             f"Not finite or beyond limits: {', '.join(dict.fromkeys(odd))}. A bundle needs others. "

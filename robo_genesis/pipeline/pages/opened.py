@@ -72,6 +72,6 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
         return places[max((each for each in places if path.startswith(f"{each}/")), key=len)]
 
     names = os.fsdecode(_notes().read_bytes()).split("\0")
-    names = (BYTECODE.sub(r"\1.py", name) for name in names if not name.endswith(FONTS))
-    found = {*names} - set(map(str, keyed))
+    found = {BYTECODE.sub(r"\1.py", name) for name in names if not name.endswith(FONTS)}
+    found -= set(map(str, keyed))
     return sorted(name for name in found if os.path.isfile(name) and not is_accepted(name))
