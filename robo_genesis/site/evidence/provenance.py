@@ -11,7 +11,7 @@ import textwrap
 from collections.abc import Sequence, Set
 from dataclasses import replace
 from functools import lru_cache
-from itertools import chain
+from itertools import chain, count
 from pathlib import Path
 
 from docutils import nodes
@@ -142,11 +142,9 @@ def describe(
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
     """Derive an anchor from the section's: it stays the same when other sections change."""
     base = f"{word}-{section['ids'][0]}" if section is not None else word
-    document, name, number = holder.document, base, 1
-    while name in document.ids:
-        number += 1
-        name = f"{base}-{number}"
-    document.ids[name] = holder
+    names, used = chain([base], (f"{base}-{number}" for number in count(2))), holder.document.ids
+    name = next(name for name in names if name not in used)
+    used[name] = holder
     holder["ids"].append(name)
 
 

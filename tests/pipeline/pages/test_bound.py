@@ -302,7 +302,7 @@ def test_each_digit_that_a_page_puts_out_is_compared_with_its_bundle(tmp_path):
     assert unnoticed_edits(found) == []
     assert found == [result.folder]
     (result.bundle / bundle.PRINTED).unlink()
-    with pytest.raises(BundleRefused, match=r"has no printed\.json, which only the build writes"):
+    with pytest.raises(BundleRefused, match=r"^missing-file: printed\.json is not in cpu"):
         unnoticed_edits(found)
 
 
