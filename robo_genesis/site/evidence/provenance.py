@@ -25,6 +25,7 @@ from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, Page
 from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
 from robo_genesis.site.frame.executed import RECOMPUTED
 
+LOG = "the engine's log"
 TITLE = 80
 """Longest title in the ledger, in characters."""
 ITEMS = "robo_genesis_items"
@@ -121,7 +122,8 @@ def describe(
         bundles = (part[0] if part.get("nb_element") == "mime_bundle" else part for part in texts)
         text = "\n".join(part.astext() for part in bundles)
         kind, data, file = "printed", text.encode(), f"{file}.txt"
-        title = f"{heading}: {text.splitlines()[-1]}"
+        lines = (line for line in text.splitlines() if line[:1] not in "[ ")  # not of a log
+        title = f"{heading}: {[LOG, *lines][-1]}"
         holder["classes"].append("printed")
     elif is_picture:
         caption, path = holder.next_node(nodes.caption), book / node["uri"]

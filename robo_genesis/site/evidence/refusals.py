@@ -12,7 +12,7 @@ from sphinx.util import logging
 
 from robo_genesis.core.text import quoted
 from robo_genesis.site.evidence.measured import evidence_badge, measured_value
-from robo_genesis.site.evidence.origin import above, origin
+from robo_genesis.site.evidence.origin import above, cell_of
 
 OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "evidence-badge": (evidence_badge, "Use {lesson-status}."),
@@ -82,7 +82,7 @@ def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
 
 
 def _raw(node: nodes.Element, html: BeautifulSoup) -> Iterator[str]:
-    made, of_page = origin(node, None) is not None, html.find_all(PICTURES)
+    made, of_page = cell_of(node) is not None, html.find_all(PICTURES)
     where, instead = "the page has", "Use the {figure} directive."
     if made:
         where, instead = (
