@@ -99,7 +99,7 @@ WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt
 PROSE := book robo_genesis build_scripts *.md LICENSE pyproject.toml .ci/* .github/* .rocm/*
 
 .PHONY: lint
-lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schemas of .github
+lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes and typed numbers of pages, schemas of .github
 	@"$(PY)" -m ruff check .
 	@"$(PY)" -m ruff format --check .
 	@"$(PY)" -m mypy
@@ -107,6 +107,7 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages 
 	@"$(PY)" -m codespell_lib
 	@"$(PY)" -m codespell_lib --dictionary .words.txt --regex "$(WORDS)" $(PROSE)
 	@"$(PY)" build_scripts/sizes.py
+	@"$(PY)" -m pytest -q -p no:cacheprovider tests/lessons/test_prose.py
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.dependabot .github/dependabot.yml

@@ -14,33 +14,20 @@ import os
 import sys
 
 from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT, SOLUTIONS
-from robo_genesis.pipeline.command import (
-    absolute,
-    choice,
-    collect_rarely,
-    parser,
-    path,
-    positive,
-    run,
-    set_contract,
-)
+from robo_genesis.pipeline import command
 from robo_genesis.pipeline.html.sphinx_process import LOG, SphinxProcess
 from robo_genesis.pipeline.up_to_date import nothing_changed
 
 
 def main() -> int:
     """Run the build and return its exit status, or end the process with it."""
-    arguments = parser(__doc__)
-    arguments.add_argument(
-        "--to",
-        type=absolute,
-        help="a release: book folder that gets the site; RELEASE=1 sets it in a fresh checkout",
-    )
+    arguments = command.parser(__doc__)
+    arguments.add_argument("--to", type=command.absolute, help="book that gets a release's site")
     args = arguments.parse_args()
-    set_contract()
-    release = choice("RELEASE", "0", ("0", "1")) == "1"
-    choice(SOLUTIONS, "1", ("0", "1"))
-    executed, jobs = path("EXECUTED"), positive("JOBS", os.cpu_count() or 1)
+    command.set_contract()
+    release = command.choice("RELEASE", "0", ("0", "1")) == "1"
+    command.choice(SOLUTIONS, "1", ("0", "1"))
+    executed, jobs = command.path("EXECUTED"), command.positive("JOBS", os.cpu_count() or 1)
     if release and os.environ[RENDER] == "0":
         sys.exit("RENDER='0' is not valid with RELEASE=1, which needs camera frames. Unset one.")
     if release and args.book != BOOK:
@@ -49,19 +36,19 @@ def main() -> int:
         from robo_genesis.pipeline.fresh_checkout import release as build_fresh
 
         options = ["--to", str(args.book), "--timeout", str(args.timeout)]
-        return run(lambda: build_fresh(options, args.cache, executed=executed), "published")
+        return command.run(lambda: build_fresh(options, args.cache, executed=executed), "published")
     published = args.book / PUBLISHED
     with SphinxProcess(args.book, args.cache / LOG) as sphinx:  # it loads Sphinx from here on
         if not (release or executed) and (lines := nothing_changed(ROOT, args.book, published)):
             print("\n".join(lines))
             return 0
-        collect_rarely()
+        command.collect_rarely()
         # Jupyter's packages are loaded only now, beside those of Sphinx.
         from robo_genesis.pipeline.stages import Build, run_build
 
         settings = {"jobs": jobs, "release": release, "executed": executed}
         build = Build(**vars(args), **settings, sphinx=sphinx)
-        status = run(lambda: run_build(build), "published")
+        status = command.run(lambda: run_build(build), "published")
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)  # freeing all modules and pages takes more than a tenth of a second

@@ -49,8 +49,7 @@ def main() -> int:
         written = report.document(comparison).write(folder)
     except OSError as error:
         return refused(f"REPORT={folder} cannot be written: {error}. Give another folder.")
-    print(report.summary(comparison))
-    print("\n".join(f"Report: {path}" for path in written))
+    print(report.summary(comparison), *(f"Report: {path}" for path in written), sep="\n")
     return STATUS.get(comparison.state, 0)
 
 

@@ -17,10 +17,6 @@ if __name__ == "__main__":
     args = parser(__doc__).parse_args()
     for name in ("RENDER", RENDER):
         choice(name, "1", ("1",), " for a recording, which always has camera frames. Unset it")
-    recording = Recording(
-        lesson=os.environ.get("LESSON") or "",
-        expected=os.environ.get("BACKEND") or None,
-        to=path("TO"),
-        **vars(args),
-    )
+    lesson, expected = os.environ.get("LESSON") or "", os.environ.get("BACKEND") or None
+    recording = Recording(lesson, expected, path("TO"), **vars(args))
     sys.exit(run(lambda: record(recording), "recorded"))

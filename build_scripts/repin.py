@@ -8,9 +8,8 @@ Exit status: 0 changed, 1 refused or failed, 130 interrupted. Unless it is 0, th
 import os
 import sys
 
-from robo_genesis.maintain.repin import Repin, run_repin
+from robo_genesis.maintain.repin import run_repin
 from robo_genesis.pipeline.command import run
 
 if __name__ == "__main__":
-    request = Repin(os.environ.get("GENESIS", ""))
-    sys.exit(run(lambda: run_repin(request), "changed"))
+    sys.exit(run(lambda: run_repin(os.environ.get("GENESIS", "")), "changed"))

@@ -18,14 +18,8 @@ from robo_genesis.evidence.advice import advice
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.bundles.status import (
-    RECORDED_PAGE,
-    Status,
-    bundle_status,
-    changes,
-    recorded_folders,
-    recorded_status,
-)
+from robo_genesis.pipeline.bundles import status as states
+from robo_genesis.pipeline.bundles.status import Status, bundle_status, recorded_folders
 from robo_genesis.pipeline.command import path, run
 
 
@@ -34,7 +28,7 @@ def all_bundles() -> Iterator[tuple[str, Status]]:
     for folder in recorded_folders(BOOK):
         lesson, backend = folder.parts[-2:]
         labs = {lesson: built(lesson)}
-        yield f"{lesson} recorded", recorded_status(BOOK, lesson, backend, labs=labs)
+        yield f"{lesson} recorded", states.recorded_status(BOOK, lesson, backend, labs=labs)
     for folder in recorded_folders(BOOK / PUBLISHED):
         lesson = folder.parent.name
         yield f"{lesson} built", bundle_status(folder, lesson, "lab")
@@ -51,13 +45,12 @@ def one_bundle(folder: Path) -> tuple[Status, list[str]]:
     with suppress(BundleRefused, OSError):
         bundle_files.scan(folder)
         predicate = read_manifest(folder).predicate
-    lab = built(predicate.lesson) if predicate and predicate.page == RECORDED_PAGE else None
+    lab = built(predicate.lesson) if predicate and predicate.page == states.RECORDED_PAGE else None
     runs = [lab] if lab and lab.is_dir() else []
     status = bundle_status(folder, book=BOOK, cpu_runs=runs)
     lines = []
     if status.code:
-        stale = status.code == "stale"
-        changed = changes(read_manifest(folder), BOOK) if stale else []
+        changed = states.changes(read_manifest(folder), BOOK) if status.code == "stale" else []
         kinds = tuple(dict.fromkeys(kind for kind, _ in changed))
         lines += [f"What this means: {text}" for text in advice(status.code, kinds, predicate)]
     if runs and folder.resolve() != runs[0].resolve():
@@ -91,12 +84,8 @@ def main() -> int:
         found = [(bundle.parent.name, status)]
     else:
         found = list(all_bundles())
-    if not found:
-        print("No bundle is recorded in book/evidence, and none is built. `make book` builds one.")
-    for place, status in found:
-        print(line(place, status))
-    for text in more:
-        print(printable(text))
+    none = "No bundle is recorded in book/evidence, and none is built. `make book` builds one."
+    print(*[line(*one) for one in found] or [none], *map(printable, more), sep="\n")
     return 0 if all(status.state == "verified" for _, status in found) else 1
 
 

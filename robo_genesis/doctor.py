@@ -36,6 +36,9 @@ from robo_genesis.sim.diagnosis import Bench, StepResult, shareable
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
 REPORT_FORMAT = 3
 MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
+FACTS = ("engine", "quadrants", "torch", "python", "system", "backend", "device")
+"""What a manifest and a report say about a machine."""
+
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
@@ -77,12 +80,8 @@ def examine() -> dict[str, Any]:
         "machine": machine(bench),
         "versions": {"python": platform.python_version()}
         | {name: project.installed_version(name) for name in PACKAGES},
-        "platform": {
-            "system": platform.system(),
-            "release": platform.release(),
-            "machine": platform.machine(),
-            "cpus": os.cpu_count(),
-        },
+        "platform": {name: getattr(platform, name)() for name in ("system", "release", "machine")}
+        | {"cpus": os.cpu_count()},
         "environment": {name: shareable(value) for name, value in contract.items()},
         "warnings": [shareable(text) for text in warnings],
     }
@@ -90,17 +89,11 @@ def examine() -> dict[str, Any]:
 
 def machine(bench: Bench) -> dict[str, str]:
     """Return the facts that the manifest of a run has too; fewer if the engine did not start."""
-    facts = {
-        "engine": project.installed_version(project.ENGINE),
-        "quadrants": project.installed_version("quadrants"),
-        "torch": project.installed_version("torch"),
-        "python": platform.python_version(),
-        "system": platform.platform(),
-    }
+    versions = [project.installed_version(name) for name in PACKAGES[:3]]
+    found = [*versions, platform.python_version(), platform.platform()]
     if bench.engine:
-        found = bench.engine.backend
-        facts |= {"backend": found.actual, "device": found.device_name}
-    return {name: "not installed" if value is None else value for name, value in facts.items()}
+        found += [bench.engine.backend.actual, bench.engine.backend.device_name]
+    return {name: value or "not installed" for name, value in zip(FACTS, found, strict=False)}
 
 
 def recorded_machine(bundle: str) -> dict[str, str]:
@@ -114,15 +107,10 @@ def recorded_machine(bundle: str) -> dict[str, str]:
 
     with contextlib.ExitStack() as opened:
         run = read_manifest(bundle_folder(bundle, opened)).predicate
-    return {
-        "engine": run.engine.version,
-        "quadrants": run.engine.quadrants_version,
-        "torch": run.backend.torch_version,
-        "python": run.host.python,
-        "system": run.host.os,
-        "backend": run.backend.actual,
-        "device": run.backend.device_name,
-    }
+    engine, backend, host = run.engine, run.backend, run.host
+    versions = [engine.version, engine.quadrants_version, backend.torch_version, host.python]
+    found = [*versions, host.os, backend.actual, backend.device_name]
+    return dict(zip(FACTS, found, strict=True))
 
 
 def read_report(file: str) -> dict[str, Any]:
@@ -188,12 +176,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--like", metavar="BUNDLE", help="compare with the machine of this run")
     parser.add_argument("--report", metavar="FILE", help="show this report, run no step")
     options = parser.parse_args(arguments)
-    for name in ("like", "report"):
-        if options.json and getattr(options, name) is not None:
-            parser.error(
-                f"--json and --{name} cannot be combined. Make the report with {MAKE_REPORT}, and "
-                "compare it with --report report.json --like BUNDLE"
-            )
+    given = [name for name in ("like", "report") if getattr(options, name) is not None]
+    if options.json and given:
+        parser.error(
+            f"--json and --{given[0]} cannot be combined. Make the report with {MAKE_REPORT}, and "
+            "compare it with --report report.json --like BUNDLE"
+        )
     try:
         recorded = None if options.like is None else recorded_machine(options.like)
         report = None if options.report is None else read_report(options.report)
@@ -205,8 +193,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{count} steps; the first start of the engine takes minutes", file=sys.stderr)
         report = examine()
     results = [StepResult(**step) for step in report["steps"]]
-    text = json.dumps(report, indent=2, ensure_ascii=False) if options.json else table(results)
-    print(text)
+    print(json.dumps(report, indent=2, ensure_ascii=False) if options.json else table(results))
     if recorded is not None:
         print("", *differences(report["machine"], recorded, head), sep="\n")
     return 0 if all(one.state == "ok" for one in results) else 1

@@ -66,7 +66,14 @@ def engine_on(engine: session.Engine, actual: str) -> session.Engine:
 @contextmanager
 def without_engine(backend):
     """Replace the engine that the recorder probes, and the digests of its wheel."""
+    ran = {project.ENGINE: project.engine_pin(), "quadrants": QUADRANTS}
+    ran["torch"], found = backend.torch_version, record.host_record
+
+    def host(cpu):
+        return (record := found(cpu)) | {"packages": record["packages"] | ran}
+
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(record, "host_record", host)
         patch.setattr(session, "probe", lambda requested: backend)
         patch.setattr(record, "files_match_wheel", lambda *names: True)
         for name in ("RUN_ID", "COMMAND", "PAGE_SHA256", "PAGE_IMPORTS"):

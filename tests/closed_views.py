@@ -12,26 +12,12 @@ PLANE, FAR = 1, 20.0
 SIZE, FOV = (160, 120), 42.0
 """Columns and rows, and vertical field of view [degree] of the camera."""
 
-TRANSFORM = np.array([
-    [0.6, -0.48, 0.64, 1.1],
-    [0.8, 0.36, -0.48, -0.7],
-    [0.0, 0.8, 0.6, 0.9],
-    [0.0, 0.0, 0.0, 1.0],
-])  # fmt: skip
+TRANSFORM = cameras.looking((1.1, -0.7, 0.9), (0.46, -0.22, 0.3))
 """Pose of the camera, which looks down, z backwards [m]."""
 
 K = cameras.intrinsics(FOV, SIZE)
 MARKER = Marker(3, (TRANSFORM @ (0.3, 0.2, -1.2, 1.0))[:3], 0.1)
 """A sphere in its view [m]."""
-
-
-def looking(pos, at) -> np.ndarray:
-    """Return the pose (4, 4) of a camera at a place, upright: x right, y up, z backwards."""
-    z = np.subtract(pos, at) / np.linalg.norm(np.subtract(pos, at))
-    x = np.cross((0, 0, 1), z) / np.linalg.norm(np.cross((0, 0, 1), z))
-    transform = np.eye(4)
-    transform[:3] = np.column_stack([x, np.cross(z, x), z, pos])
-    return transform
 
 
 def plane_depth(start, directions, height=0.0) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Runs of the Franka without Genesis, by the engine's rule of stepping and MuJoCo's mechanics."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -30,25 +30,27 @@ def answer(position, q_start, iterations) -> IkAnswer:
 
 
 @cache
-def model(timestep: float) -> mujoco.MjModel:
+def model(timestep: float, load: float) -> mujoco.MjModel:
     from robo_genesis.lessons.l04.spec import G1
 
-    return mujoco_joints.load(G1, timestep, "Euler")
+    of = mujoco_joints.load(G1, timestep, "Euler")
+    of.body("hand").mass += load
+    mujoco.mj_setConst(of, mujoco.MjData(of))
+    return of
 
 
-def driven(
-    case: ControlCase,
-    links: Sequence[str],
-    extra: Callable[[np.ndarray], np.ndarray] = lambda q: np.zeros(len(JOINT_NAMES)),
-) -> Trace:
+def driven(case: ControlCase, links: Sequence[str], load: float = 0.0) -> Trace:
     """Return a run by semi-implicit Euler with (M + h D) a = f, stored in float32 like others.
 
     Args:
         case: its target is one for all steps, (d,), or one for each, (n, d).
         links: of the trace.
-        extra: effort (d,) of a load at positions (d,), which the controller must hold.
+        load: what is added to the mass of the hand [kg].
     """
-    of, commands = model(case.dt), np.broadcast_to(case.q_target, (case.steps, len(JOINT_NAMES)))
+    of, commands = (
+        model(case.dt, load),
+        np.broadcast_to(case.q_target, (case.steps, len(JOINT_NAMES))),
+    )
     data, h, dofs = mujoco.MjData(of), case.dt / case.substeps, len(JOINT_NAMES)
     damping, mass = of.dof_damping, np.zeros((dofs, dofs))
     q, qd, force = np.array(case.q_start), np.zeros(dofs), np.zeros(dofs)
@@ -62,7 +64,7 @@ def driven(
             mujoco.mj_fwdPosition(of, data)
             mujoco.mj_fwdVelocity(of, data)
             mujoco.mj_fullM(of, data, mass)
-            force = control_law(now, q, qd) - data.qfrc_bias - damping * qd - extra(q)
+            force = control_law(now, q, qd) - data.qfrc_bias - damping * qd
             qd = qd + h * np.linalg.solve(mass + h * np.diag(damping + case.kv), force)
             q = q + h * qd
         at.append(q)
@@ -78,8 +80,15 @@ def assembled(case: ControlCase, links: Sequence[str], at, efforts, targets) -> 
     return assemble(case, kept, targets, np.float32(case.effort_limit))
 
 
-def assigned(case: ControlCase, links: Sequence[str], postures: np.ndarray | None = None) -> Trace:
-    """Return the states of a straight line, as `assign_path` does, or those of postures (n, d)."""
+def assigned(
+    case: ControlCase, links: Sequence[str], before: Trace, postures: np.ndarray | None = None
+) -> Trace:
+    """Return the states of a straight line, as `assign_path` does, or those of postures (n, d).
+
+    `before` is the run whose last internal force remains.
+    """
     path = np.linspace(case.q_start, case.q_target, case.steps + 1)
     path = path if postures is None else np.vstack([case.q_start, postures])
-    return assembled(case, links, path, np.zeros((len(path), 3, len(JOINT_NAMES))), path[1:])
+    efforts = np.zeros((len(path), 3, len(JOINT_NAMES)))
+    efforts[:, 2] = before.internal_force[-1]
+    return assembled(case, links, path, efforts, path[1:])

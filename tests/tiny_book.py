@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.refusals import BundleRefused
 
 FRONT = (
@@ -99,6 +100,20 @@ def make_book(folder: Path, **pages: str) -> Path:
     shutil.copy(BOOK / "_config.yml", book)
     shutil.copytree(BOOK / "_static", book / "_static", dirs_exist_ok=True)
     return book
+
+
+def seal(place: Path) -> None:
+    """Make the digests of an executed page's record right again."""
+    record = json.loads((place / "page.json").read_text())
+    files = [path for path in place.rglob("*") if path.is_file() and path != place / "page.json"]
+    record["files"] = {path.relative_to(place).as_posix(): sha256(path) for path in files}
+    (place / "page.json").write_text(json.dumps(record))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Return all files of a folder."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
 def published_marker(book: Path) -> Path:

@@ -210,8 +210,7 @@ def evaluate(
         findings: list[Finding] = []
         failure = None
         try:
-            for finding in check(run):
-                findings.append(finding)  # noqa: PERF402 - those before an error are kept
+            findings.extend(check(run))  # keeps those before an error
         except (ValueError, LookupError, ArithmeticError) as error:
             # Arrays that do not fit together, or values beyond what floats can hold.
             failure = error

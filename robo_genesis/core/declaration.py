@@ -4,39 +4,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any, Protocol
+from types import ModuleType
+from typing import Any
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import claim_of
-from robo_genesis.core.comparison import Relation
 from robo_genesis.core.experiment import MeasuringPage
 from robo_genesis.core.metrics import CaseMetrics
 
 MEASURES = False
-
-
-class Specification(Protocol):
-    """The data in a lesson's `spec.py` that other sub-packages read."""
-
-    @property
-    def MINIMUM_HARDWARE(self) -> str:  # noqa: N802 - a module's constant
-        """The backend whose evidence a release requires."""
-
-    @property
-    def CASES(self) -> Mapping[str, Any]:  # noqa: N802
-        """The runs of the lab by name."""
-
-    @property
-    def RESOLUTION(self) -> Mapping[str, float]:  # noqa: N802
-        """By unit, the difference below which two values count as equal."""
-
-    @property
-    def TOLERANCES(self) -> Mapping[str, tuple[float, float]]:  # noqa: N802
-        """By unit or metric, (atol, rtol) between engine versions or backends."""
-
-    @property
-    def RELATIONS(self) -> tuple[Relation, ...]:  # noqa: N802
-        """The orderings that the lesson claims."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +21,18 @@ class Lesson:
 
     | field | meaning |
     |---|---|
-    | `spec` | its module of data |
+    | `spec` | its module of data, with the names below |
     | `metrics` | by case, the class of its metrics |
     | `pages` | the measuring pages by name |
     | `replays` | by name; the pictures of its evidence show the first |
+    | `spec.MINIMUM_HARDWARE` | the backend whose evidence a release requires |
+    | `spec.CASES` | the runs of the lab by name |
+    | `spec.RESOLUTION` | by unit, the difference below which two values count as equal |
+    | `spec.TOLERANCES` | by unit or metric, (atol, rtol) between engine versions or backends |
+    | `spec.RELATIONS` | the orderings that the lesson claims |
     """
 
-    spec: Specification
+    spec: ModuleType
     metrics: Mapping[str, type[CaseMetrics]]
     pages: Mapping[str, MeasuringPage]
     replays: Mapping[str, Replay]

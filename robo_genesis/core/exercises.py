@@ -5,7 +5,7 @@ A test of a student's function judges what the function returns; a mistake is ju
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial, wraps
+from functools import wraps
 from inspect import signature
 from typing import Any, ParamSpec
 
@@ -55,25 +55,6 @@ def quoted(error: Exception | None) -> str:
     return f"`{type(error).__name__}`: {error}" if error else "No exception was raised."
 
 
-class Counted:
-    """An object that counts the calls of one of its methods, and is otherwise as it was."""
-
-    def __init__(self, counted: Any, method: str) -> None:
-        """Wrap an object; `method` is the name of the method."""
-        self.counted, self.method, self.calls = counted, method, 0
-
-    def __getattr__(self, name: str) -> Any:
-        """Return what the object has."""
-        found = getattr(self.counted, name)
-        return partial(self._count, found) if name == self.method else found
-
-    def _count(self, method: Callable[..., Any], *given: Any, **named: Any) -> Any:
-        self.calls += 1
-        return method(*given, **named)
-
-
-CLAIM = "The function does what its docstring says."
-
 Given = ParamSpec("Given")
 
 
@@ -87,23 +68,18 @@ def as_test(findings: Callable[Given, Iterable[Finding]]) -> Callable[Given, lis
     @wraps(findings)
     def judge(*given: Given.args, **named: Given.kwargs) -> list[Check]:
         signature(findings).bind(*given, **named)
-        return outcome(findings.__name__, lambda _: findings(*given, **named))
+
+        def of_function(_: None) -> Iterable[Finding]:
+            """The function does what its docstring says."""
+            return findings(*given, **named)
+
+        of_function.__name__ = findings.__name__
+        try:
+            return list(evaluate((of_function,), None))
+        except Exception as error:  # whatever a student's function raises
+            return [Check(findings.__name__, False, f"it raised {type(error).__name__}: {error}")]
 
     return judge
-
-
-def outcome(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Check]:
-    """Return the outcome of the findings; an exception of the student's function fails the check.
-
-    Args:
-        name: of the check.
-        findings: calls the student's function.
-    """
-    findings.__name__, findings.__doc__ = name, CLAIM
-    try:
-        return list(evaluate((findings,), None))
-    except Exception as error:  # whatever a student's function raises
-        return [Check(name, False, f"it raised {type(error).__name__}: {error}")]
 
 
 def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Iterator[Finding]:

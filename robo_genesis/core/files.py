@@ -10,7 +10,7 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
@@ -22,6 +22,10 @@ NEXT, OLD = ".next", ".old"
 DIGEST = hashlib.sha256().digest_size
 KEPT = 30 * 24 * 3600
 """Seconds until an unused file is removed."""
+
+MADE_BY_TOOLS = ("__pycache__", ".ipynb_checkpoints")
+NO_SOURCE = ("__pycache__", ".*", "*~", "#*#", "*.bak", "*.orig", "*.rej")
+"""Names of what Python and Jupyter make; the same with hidden files and back-ups of editors."""
 
 
 @contextmanager
@@ -141,6 +145,44 @@ def put(source: Path, folder: Path) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
     with replaced(folder) as following:
         shutil.copytree(source, following)
+
+
+def files_below(
+    folder: Path, skip: tuple[str, ...] = (), left_out: Sequence[str] = MADE_BY_TOOLS
+) -> Iterator[Path]:
+    """Yield all files below a folder and its links.
+
+    Args:
+        folder: it need not exist.
+        skip: how the names begin that are left out at the top.
+        left_out: patterns of names of files and folders that are left out anywhere.
+
+    Raises:
+        ProjectError: a link leads to a folder that contains it, so there would be no end.
+    """
+    ignored = shutil.ignore_patterns(*left_out)
+    for here, folders, files in os.walk(folder, followlinks=True):
+        for link in filter(Path.is_symlink, (Path(here, name) for name in folders)):
+            if link.parent.resolve().is_relative_to(link.resolve()):
+                raise ProjectError(f"{link} links to a folder that contains it. Remove the link.")
+        top = skip if Path(here) == folder else ()
+        gone = ignored(here, [*folders, *files])
+        folders[:] = [name for name in folders if name not in gone and not name.startswith(top)]
+        yield from (Path(here, name) for name in files if name not in gone)
+
+
+def files_digest(base: Path, files: Iterable[Path]) -> str:
+    """Return the digest of names and contents of files; an absent one counts as such.
+
+    Args:
+        base: the names begin below it.
+        files: their order does not matter.
+    """
+    found = hashlib.sha256()
+    for path in sorted(files):
+        content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "absent"
+        found.update(os.fsencode(path.relative_to(base)) + f"\0{content}\n".encode())
+    return found.hexdigest()
 
 
 def json_digest(value: Any) -> str:

@@ -48,14 +48,13 @@ SOLUTIONS = "SOLUTIONS"
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = (
     "GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "ROCM_", "HSA_", "CUDA_",
+    "NVIDIA_TF32_",
 )  # fmt: skip
-SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
-"""Switches that Genesis itself sets when it is imported; they decide only how messages print."""
-
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
 COMPILED_KERNELS = "QD_OFFLINE_CACHE_FILE_PATH"
 CACHE_FOLDERS = {
     COMPILED_KERNELS: "kernels",
+    "GS_CACHE_FILE_PATH": "geometry",  # by default below the user's home, for all versions
     "NUMBA_CACHE_DIR": "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",
     "MPLCONFIGDIR": "matplotlib",  # its font list; also ignores a user's matplotlibrc
@@ -92,16 +91,15 @@ def engine_pin(root: Path = ROOT) -> str:
             not exact.
     """
     file, fix = str(root / "pyproject.toml"), "Fix the line in project.dependencies"
-    from_metadata = root == ROOT and not in_checkout()
-    if from_metadata:
+    if from_metadata := root == ROOT and not in_checkout():
         file = f"The metadata of the installed package {COURSE}"
         fix = "Install the course's wheel again with pip, or use a checkout"
     try:
-        if from_metadata:
-            lines = requires(COURSE) or []
-        else:
-            lines = tomllib.loads(Path(file).read_text("utf8"))["project"]["dependencies"]
-        engines = [line for line in map(Requirement, lines) if line.name == ENGINE]
+        text = "" if from_metadata else Path(file).read_text("utf8")
+        declared = (
+            requires(COURSE) if from_metadata else tomllib.loads(text)["project"]["dependencies"]
+        )
+        engines = [line for line in map(Requirement, declared or []) if line.name == ENGINE]
     except (KeyError, ValueError, PackageNotFoundError) as error:
         raise ProjectError(
             f'{file} cannot be read: {error}\nValid dependencies are like "numpy>=2.0". {fix}.'
@@ -149,12 +147,12 @@ def require_pinned_engine(root: Path = ROOT) -> str:
     """
     pin, installed = engine_pin(root), installed_version(ENGINE)
     if installed != pin:
-        found = f"Installed is {ENGINE} {installed or '(none)'}, "
+        found = f"Installed is {ENGINE} {installed or '(none)'}, pinned in pyproject.toml is {pin}."
         if not in_checkout():
-            raise ProjectError(f"{found}the course needs {pin}. Run pip install {ENGINE}=={pin}.")
+            raise ProjectError(f"{found} Run pip install {ENGINE}=={pin}.")
         raise ProjectError(
-            f"{found}pinned in pyproject.toml is {pin}. Install the lock (pip install -r "
-            "requirements.lock), or change pin and lock together."
+            f"{found} Install the lock (pip install -r requirements.lock), or change pin and lock "
+            "together."
         )
     return pin
 
@@ -181,8 +179,8 @@ def locked_versions(lock: str) -> dict[str, str]:
 
 def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
     """Return the folder for what the engine compiles: one per engine version and lock."""
-    name = f"{engine_pin(root)}-{lock_digest(root)[:12]}"
-    return (cache or root / ".cache") / COMPILED / name
+    cache = cache or root / ".cache"
+    return cache / COMPILED / f"{engine_pin(root)}-{lock_digest(root)[:12]}"
 
 
 def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> dict[str, str]:
@@ -224,13 +222,14 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
         environment: variables, by default those of this process.
 
     Returns:
-        Backend and render, with defaults if they are not set, and the engine's switches that are
-        set; the folders of compiled code are not included.
+        Backend and render, with defaults if they are not set, and of the engine's switches and the
+        folders of libraries those that are set; the folders of compiled code are not included.
     """
     given = os.environ if environment is None else environment
-    defaults = {BACKEND: BUILD_BACKEND, RENDER: "1"}
-    requested = {name: given.get(name) or default for name, default in defaults.items()}
-    return requested | engine_switches(given)
+    # The engine appends to LD_LIBRARY_PATH, so it is no switch of a manifest.
+    names = (BACKEND, RENDER, "LD_LIBRARY_PATH")
+    requested = {name: given[name] for name in names if given.get(name)}
+    return {BACKEND: BUILD_BACKEND, RENDER: "1"} | requested | engine_switches(given)
 
 
 def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
@@ -239,7 +238,8 @@ def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
     They are the same before and after the import of the engine.
     """
     switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)}
-    switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | set(SET_BY_ENGINE)
+    # Genesis itself sets the last one at its import; it decides only how messages print.
+    switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | {"QD_ENABLE_PYBUF"}
     return {name: environment[name] for name in sorted(switches)}
 
 

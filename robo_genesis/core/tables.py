@@ -70,6 +70,11 @@ def number_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterab
     )
 
 
+def timed_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]) -> str:
+    """Return a `number_table` of times, which nothing recomputes, and say so below it."""
+    return number_table(first, heads, rows) + "\nReported by this run, not recomputed.\n"
+
+
 def six_digits(metrics: Mapping[str, CaseMetrics]) -> str:
     """Return metrics as rows and cases as columns, each value with six digits and its unit."""
     return metric_table(metrics, lambda *value: text.six_digits(*value).replace("-", "−"))

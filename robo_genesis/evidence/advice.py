@@ -5,6 +5,11 @@ from robo_genesis.evidence.bundle import Predicate
 LOCK = "Install the course's versions: pip install -r requirements.lock. Then run the page again."
 OWN = "Your bundle answers your own question and is not evidence for the course's page."
 
+EDITED = (
+    "The recorded {} are not those of the recorded {}. If you edited neither file, your copy of "
+    "the course {}: use one copy for both."
+)
+
 BY_CODE = {
     "older-schema": (
         "The bundle was recorded with an older state of this course. "
@@ -14,22 +19,8 @@ BY_CODE = {
         "The files are sound, but a check of the run itself failed. If you changed the experiment, "
         "this can be your result; otherwise, restart the kernel and run all cells in order."
     ),
-    "engine-files": (
-        "A file of your installed engine differs from the published package. "
-        "Install it again: pip install --force-reinstall -r requirements.lock."
-    ),
-    "torch": (
-        "Genesis and Torch used different devices, or a switch forced one. Unset "
-        "GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, restart the kernel and run the page again."
-    ),
-    "metrics": (
-        "The recorded metrics are not those of the recorded arrays. If you edited neither file, "
-        "your copy of the course computes metrics in another way: use one copy for both."
-    ),
-    "checks": (
-        "The recorded outcomes of the checks are not those of the recorded runs. If you edited "
-        "neither file, your copy of the course has other checks: use one copy for both."
-    ),
+    "metrics": EDITED.format("metrics", "arrays", "computes metrics in another way"),
+    "checks": EDITED.format("outcomes of the checks", "runs", "has other checks"),
     "cases": (
         "The bundle does not have exactly the page's runs. If you added or removed runs, that is "
         f"no fault. {OWN}"

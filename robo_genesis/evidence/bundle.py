@@ -14,7 +14,7 @@ import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import rfc8785
 from pydantic import Field, TypeAdapter, ValidationError
@@ -33,6 +33,7 @@ from robo_genesis.evidence.fields import (
 )
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence.strict_json import read_json
+from robo_genesis.sim.camera.frames import Renderer
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:robo-genesis:evidence:v2"
@@ -40,6 +41,9 @@ SCHEMA_VERSION = 2
 PRINTED = "printed.json"
 KEYED = ("schema_version", "lesson", "page", "source", "parameters", "seed")
 KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
+
+
+Value = TypeVar("Value")
 
 
 class Digest(Strict):
@@ -94,7 +98,7 @@ class HostRecord(Strict):
     os: Line
     machine: Line
     cpu: Line
-    cores: Index
+    cores: int = Field(ge=1, lt=2**31)
     python: Line
     packages: dict[Line, Line]
 
@@ -102,12 +106,12 @@ class HostRecord(Strict):
 class GitRecord(Strict):
     """State of the checkout."""
 
-    commit: Line
+    commit: str = Field(pattern="^([0-9a-f]{40}|[0-9a-f]{64})$")
     dirty: bool
 
 
 class SourceRecord(Strict):
-    """Digests of the syntax of what computed: code cells of the page, modules of the package."""
+    """Digests of the syntax of what computed: code cells and modules; and of data files."""
 
     page: Sha256 | None
     modules: dict[Line, Sha256]
@@ -220,6 +224,14 @@ def evidence_key(predicate: dict[str, Any]) -> str:
     return hashlib.sha256(rfc8785.dumps(keyed)).hexdigest()
 
 
+def render_record(drawn: Renderer | None) -> dict[str, Any]:
+    """Return what a manifest says about the renderer of its frames, None without a camera."""
+    if drawn is None:
+        return {"mode": "skip", "vendor": None, "renderer": None, "software": None}
+    facts = {"vendor": drawn.vendor, "renderer": drawn.name, "software": drawn.software}
+    return {"mode": "camera"} | facts
+
+
 def read_manifest(folder: Path) -> Manifest:
     """Return the manifest of a bundle; only its form is checked.
 
@@ -255,7 +267,7 @@ def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     return _validated(dict[Line, dict[Line, Metric]], content, "metrics.json")
 
 
-def by_full_name(metrics: Mapping[str, Mapping[str, Metric]]) -> dict[str, Metric]:
+def by_full_name(metrics: Mapping[str, Mapping[str, Value]]) -> dict[str, Value]:
     """Return metrics by `group.name`."""
     return {f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()}
 
@@ -270,9 +282,7 @@ def read_printed(folder: Path) -> list[list[dict[str, Any]]]:
     return _validated(list[list[dict[Line, Any]]], read_json(folder, PRINTED), PRINTED)
 
 
-@cache
-def _adapter(form: Any) -> TypeAdapter[Any]:
-    return TypeAdapter(form)
+_adapter = cache(TypeAdapter[Any])
 
 
 def _validated(form: Any, value: Any, file: str) -> Any:

@@ -21,6 +21,7 @@ from robo_genesis.evidence.rows import (
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_lesson, find_page
 
+SAME = "Both have the same cases, metrics, checks, labels and joints."
 NO_PERFORMANCE = "No performance is recorded yet."
 
 
@@ -102,7 +103,7 @@ def compare(old: Path, new: Path) -> BundleComparison:
 
 def _sections(old: Side, new: Side, spec: PageSpecification) -> tuple[Section, ...]:
     every = (
-        rows.section("Coverage", rows.coverage(old, new, spec)),
+        rows.section("Coverage", rows.coverage(old, new, spec), SAME),
         rows.section("Invariants", rows.invariants(old, new)),
         rows.section("Relations", rows.relations(old, new, spec), "The lesson claims no ordering."),
         rows.section("Exact counts", rows.values(old, new, spec, "exact"), "There are no counts."),

@@ -1,6 +1,6 @@
 """A bundle of an accelerator is compared with runs on the CPU, of which it must not be a copy."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from robo_genesis.core.comparison import same_arrays
@@ -24,8 +24,9 @@ def require_own_run(folder: Path, cpu_runs: Sequence[Path]) -> None:
             backend than the CPU are ignored, and so are absent and damaged ones.
 
     Raises:
-        BundleRefused: `copy` if run id or all arrays of a case are those of a CPU run; `log` if the
-            model importer gave a warning there that is missing here.
+        BundleRefused: `copy` if run id or all arrays of a case are those of a CPU run, or if a time
+            is equal, or several times have one ratio to those there; `log` if the model importer
+            gave a warning there that is missing here.
     """
     if not cpu_runs:
         return
@@ -61,6 +62,20 @@ def _compare(own: Side, other: Side) -> None:
     if equal:
         its = f"all its arrays of {', '.join(equal)}, expected others: an accelerator rounds"
         raise BundleRefused("copy", f"{what} {its} differently. {MEASURE}")
+    if same_times(_times(own), _times(other)):
+        raise BundleRefused("copy", f"{what} the same times, or a multiple of some. {MEASURE}")
     imported = [text for text in dict.fromkeys(there.warnings) if text.startswith(IMPORTER)]
     missing = [text for text in imported if text not in here.warnings]
     expect("log", "log.txt", "list of missing warnings of the model importer", missing, [], MEASURE)
+
+
+def _times(side: Side) -> dict[str, float]:
+    """Return the elapsed times that are not zero, by name [s]."""
+    found = side.numbers.items()
+    return {n: m.value for n, m in found if m.kind == "performance" and m.unit == "s" and m.value}
+
+
+def same_times(times: Mapping[str, float], others: Mapping[str, float]) -> bool:
+    """Return whether a time is the other one, or two times have the same ratio to the others."""
+    ratios = [1.0, *(times[name] / others[name] for name in times.keys() & others.keys())]
+    return len({f"{ratio:.9g}" for ratio in ratios}) < len(ratios)

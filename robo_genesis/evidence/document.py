@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from string import Template
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
@@ -15,24 +16,8 @@ from robo_genesis.evidence.rows import SEVERITY
 
 Cells = tuple[str, ...]
 
-STYLE = """
-:root { color-scheme: light dark; --line: #c9ced6; --soft: #f3f4f5; --text: #222832; --page: #fff;
-  --bad: #a3122a; --unsure: #7a4b00; --good: #1b6b3a; }
-@media (prefers-color-scheme: dark) { :root { --line: #48566b; --soft: #222832; --text: #ced6dd;
-  --page: #14181e; --bad: #ff8f9e; --unsure: #f0b75e; --good: #6fd39a; } }
-body { background: var(--page); color: var(--text); line-height: 1.6; margin: 0 auto;
-  max-width: 60rem; padding: 1rem 1rem 3rem; overflow-wrap: anywhere;
-  font-family: -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
-h2 { border-bottom: 1px solid var(--line); margin-top: 2rem; }
-.box { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; overflow-wrap: normal; }
-th, td { border-bottom: 1px solid var(--line); padding: .3rem .8rem .3rem 0; text-align: left;
-  vertical-align: top; }
-.differs, .not-comparable { color: var(--bad); font-weight: 600; }
-.inconclusive { color: var(--unsure); font-weight: 600; }
-.equal, .within-tolerance { color: var(--good); }
-.verdict { background: var(--soft); border-left: .3rem solid; padding: .5rem 1rem; }
-"""
+PAGE = Path(__file__).with_suffix(".html")
+"""The page around the body, with its style sheet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,13 +63,8 @@ class Document:
             mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.state else ""
             blocks += [f"<h2>{_escaped(part.heading)}{mark}</h2>", _list(part.remarks)]
             blocks.append(_html_table(part) if len(part.rows) > 1 else f"<p>{part.empty}</p>")
-        head = (
-            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f"<title>{_escaped(self.title)}</title>\n<style>{STYLE}</style>\n"
-            "</head>\n<body>\n<main>\n"
-        )
-        return head + "\n".join(filter(None, blocks)) + "\n</main>\n</body>\n</html>\n"
+        page, body = Template(PAGE.read_text("utf8")), "\n".join(filter(None, blocks))
+        return page.substitute(title=_escaped(self.title), body=body)
 
     def write(self, folder: Path) -> list[Path]:
         """Write both pages and return their paths."""

@@ -2,15 +2,15 @@
 
 import re
 from collections.abc import Iterator
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.evidence.bundle import Manifest, Predicate, evidence_key
+from robo_genesis.evidence.bundle import Manifest, Predicate, evidence_key, render_record
 from robo_genesis.evidence.fields import LINE_LIMIT
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, unexpected
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
 from robo_genesis.lessons import LESSONS
-from robo_genesis.sim.backends import contradictions
+from robo_genesis.sim.backends import DRIVERS, FOREIGN, PROCESSOR, TAG, contradictions
 from robo_genesis.sim.camera.frames import Renderer
 
 MANIFEST = "manifest.json"
@@ -19,7 +19,10 @@ TORCH = (
     "Use a Torch build for this backend, unset GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, and run the "
     "page again."
 )
-REINSTALL = "The installed engine was changed. Install it again from requirements.lock."
+REINSTALL = (
+    "A file of the installed engine differs from the published package. Install it again: "
+    "pip install --force-reinstall -r requirements.lock."
+)
 
 FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 """Switches that can make the engine and Torch use different devices."""
@@ -27,9 +30,18 @@ FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 STATED = ("backend", "device", "engine version", "seed", "precision")
 """The facts that the log of the pinned version states: where it runs, and how it was started."""
 
-BEGINNING = re.compile("^(?=(?:DEBUG|INFO|WARNING|ERROR|CRITICAL) )", re.MULTILINE)
-MESSAGE = re.compile(r"(?:WARNING|ERROR|CRITICAL) (.*?)\n?\Z", re.DOTALL)
-SOFTWARE_LINE = "Software rendering context detected"
+CLOCKS = timedelta(days=1)
+"""Allowed difference between the clocks of two machines."""
+
+LEVELS = "WARNING|ERROR|CRITICAL"
+WARNING = re.compile(rf"^(?:{LEVELS}) (.*?)\n?(?=^(?:DEBUG|INFO|{LEVELS}) |\Z)", re.M | re.S)
+"""A message at WARNING or above, which may have several lines."""
+
+SOFTWARE, SOFTWARE_LINE = "software rendering", "Software rendering context detected"
+"""The fact that the engine draws in software, and the line that states it for `llvmpipe`."""
+
+STATING = re.compile(r"^.*(?:Running on \[|initialized\.).*$", re.MULTILINE)
+"""A line that may state a fact; in most of a log's lines, which may be millions, nothing does."""
 
 
 def check_identity(
@@ -50,26 +62,26 @@ def check_identity(
         expect("lesson", MANIFEST, "lesson", predicate.lesson, " or ".join(LESSONS), move)
     if page is not None:
         expect("lesson", MANIFEST, "page", predicate.page, page, move)
-    started, ended = predicate.started, predicate.ended
     try:
-        if datetime.fromisoformat(started) > datetime.fromisoformat(ended):
-            raise ValueError(f"ended is {ended}, before started, {started}")
+        started, ended = map(datetime.fromisoformat, (predicate.started, predicate.ended))
+        if not started <= ended <= datetime.now(UTC) + CLOCKS:
+            raise ValueError(f"the run is from {started} to {ended}")
     except ValueError as error:
-        text = f"{error}, expected RFC 3339 times in order"
+        text = f"{error}, expected RFC 3339 times in order, none in the future"
         raise BundleRefused("time", f"{MANIFEST}: {text}. {AGAIN}") from error
     key = evidence_key(predicate.model_dump())
     expect("key", MANIFEST, "evidence_key", predicate.evidence_key, key)
 
 
 def check_circumstances(folder: Path, predicate: Predicate) -> None:
-    """Require one backend, a matching Torch, switches that force no device, a true renderer.
+    """Require one backend, a machine and a Torch for it, true switches, a true renderer.
 
     The backend names the folder. The files of the engine are those of its wheels.
 
     Raises:
-        BundleRefused: `backend`; `torch`, also for a switch that forces a device; `environment` for
-            a variable that is not a switch of the engine, and for a value that names a home folder;
-            `render`; `engine-files`.
+        BundleRefused: `backend`, also for a machine that cannot have it; `torch`, also for a switch
+            that forces a device; `packages`; `environment` for a variable that is not a switch of
+            the engine, and for a value that names a home folder; `render`; `engine-files`.
     """
     backend, render, switches = predicate.backend, predicate.render, predicate.environment
     expect("backend", MANIFEST, "backend.actual", backend.actual, folder.name, RELABEL)
@@ -79,22 +91,50 @@ def check_circumstances(folder: Path, predicate: Predicate) -> None:
         expect("backend", MANIFEST, "actual where cpu was requested", backend.actual, "cpu")
     for what, found, expected in contradictions(backend):
         expect("torch", MANIFEST, what, found, expected, TORCH)
+    _check_machine(predicate)
+    _check_packages(predicate)
     forced = [name for name in FORCED if name in switches]
     expect("torch", MANIFEST, "list of set variables that must stay unset", forced, [], TORCH)
     others = sorted(switches.keys() - project.engine_switches(switches).keys())
     expect("environment", MANIFEST, "list of variables that are not engine switches", others, [])
     private = sorted(name for name, value in switches.items() if project.HOME_FOLDER.search(value))
     expect("environment", MANIFEST, "list of variables that name a home folder", private, [])
-    named = render.vendor, render.renderer, render.software
-    if render.mode == "camera":
-        vendor, name = render.vendor or "a vendor", render.renderer or "a renderer"
-        valid: tuple[object, ...] = (vendor, name, Renderer(vendor, name).software)
-    else:
-        valid = (None, None, None)
-    what = f"vendor, renderer, software of mode {render.mode}"
-    expect("render", MANIFEST, what, named, valid)
+    drawn = Renderer(render.vendor or "a vendor", render.renderer or "a renderer")
+    valid = render_record(drawn if render.mode == "camera" else None)
+    expect_equal("render", MANIFEST, "render.{}", render.model_dump(), valid)
     match = predicate.engine.files_match_wheel
     expect("engine-files", MANIFEST, "engine.files_match_wheel", match, True, REINSTALL)
+
+
+def _check_machine(predicate: Predicate) -> None:
+    """Require a device and, for an accelerator, a driver of the backend."""
+    backend, cpu, actual = predicate.backend, predicate.host.cpu, predicate.backend.actual
+    device, has_driver = backend.device_name, backend.driver is not None
+    if actual == "cpu":
+        expect("backend", MANIFEST, "backend.device_name", device, cpu)
+    if actual in DRIVERS:
+        words = rf"^{re.escape(cpu)}$|{PROCESSOR}|{FOREIGN[actual]}"
+        what = f"list of words in device_name that no {actual} device has"
+        expect("backend", MANIFEST, what, re.findall(words, device, re.IGNORECASE), [])
+    expect("backend", MANIFEST, "whether there is a driver", has_driver, actual in DRIVERS)
+
+
+def _check_packages(predicate: Predicate) -> None:
+    """Require that the installed versions are those that ran.
+
+    Torch names its build; its package need not: on PyPI, `2.13.0` is 2.13.0+cu130.
+    """
+    engine, torch = predicate.engine, predicate.backend.torch_version
+    ran = {project.ENGINE: engine.version, "quadrants": engine.quadrants_version, "torch": torch}
+    for package, version in ran.items():
+        listed = predicate.host.packages.get(package, "none")
+        valid = listed if _same_build(listed, version) else version
+        expect("packages", MANIFEST, f"version of {package} in host.packages", listed, valid)
+
+
+def _same_build(listed: str, ran: str) -> bool:
+    tag = TAG.search(listed)
+    return listed.partition("+")[0] == ran.partition("+")[0] and (not tag or tag[0] in ran)
 
 
 def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
@@ -109,16 +149,15 @@ def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
         text = (folder / "log.txt").read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise BundleRefused("log", f"log.txt: {error}, expected UTF-8. {AGAIN}") from error
-    longest = max(map(len, text.split("\n")))
-    if longest > LINE_LIMIT:
-        most = f"at most {LINE_LIMIT}"
-        raise unexpected("log", "log.txt", "length of the longest line", longest, most)
-    stated = set()
-    for what, found, expected in _log_facts(text, manifest.predicate):
+    long = [n for n in map(len, text.split("\n")) if n > LINE_LIMIT]
+    expect("log", "log.txt", f"list of lines with more than {LINE_LIMIT} characters", long, [])
+    predicate, stated = manifest.predicate, set()
+    for what, found, expected in _log_facts(text, predicate):
         expect("log", "log.txt", what, found, expected)
         stated.add(what)
-    if manifest.predicate.engine.version == project.engine_pin(root):
-        missing = [what for what in STATED if what not in stated]
+    if predicate.engine.version == project.engine_pin(root):
+        needed = (*STATED, SOFTWARE) if "llvmpipe" in str(predicate.render.renderer) else STATED
+        missing = [what for what in needed if what not in stated]
         expect("log", "log.txt", "list of facts that the engine does not state", missing, [])
 
 
@@ -128,13 +167,13 @@ def _log_facts(text: str, predicate: Predicate) -> Iterator[tuple[str, object, o
     Each line is searched from its start alone: the time grows with its length, not its square.
     """
     backend, engine = predicate.backend, predicate.engine
-    yield "warnings", _warnings(text), predicate.warnings
+    yield "warnings", WARNING.findall(text), predicate.warnings
     stated = {
         "engine version": engine.version,
         "seed": str(predicate.seed),
         "precision": engine.precision,
     }
-    for line in text.split("\n"):
+    for line in STATING.findall(text):
         device, _, name = line.partition("Running on [")[2].rpartition("] with backend ")
         if word := re.match(r"(?:gs\.)?(\w+)", name):
             yield "backend", word[1], backend.actual
@@ -145,10 +184,4 @@ def _log_facts(text: str, predicate: Predicate) -> Iterator[tuple[str, object, o
             if found[1] and (value := re.match(r"[^,\s]+", found[2])):
                 yield what, value[0], expected
     if predicate.render.mode == "camera" and SOFTWARE_LINE in text:
-        yield "software rendering", True, predicate.render.software
-
-
-def _warnings(text: str) -> list[str]:
-    """Return the messages of the log at WARNING or above; a message may have several lines."""
-    messages = (MESSAGE.match(part) for part in BEGINNING.split(text))
-    return [found[1] for found in messages if found]
+        yield SOFTWARE, True, predicate.render.software

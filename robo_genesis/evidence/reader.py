@@ -34,10 +34,10 @@ def from_bundle(
         page=page,
         traces={name: trace_files.read_run(folder, arrays, name, page.kind) for name in page.runs},
         links=arrays.coords["link"],
-        readings=readings(metrics, page, rendered),
         frames=read_frames(folder, predicate, page.frames),
         rendered=rendered,
         joints=trace_files.read_joints(arrays) if page.joints else None,
+        readings=readings(metrics, page, rendered),
     )
 
 
@@ -76,8 +76,8 @@ def readings(
     """Return the values that the engine reported, by group and name; no array contains them.
 
     Raises:
-        BundleRefused: `metrics` if a group lacks a value or has another one, or if a count is not
-            an integer.
+        BundleRefused: `metrics` if a group lacks a value or has another one, or if a value is
+            beyond its limits or a count that is not an integer.
     """
     found = {}
     for group, declared in page.groups(rendered).items():
@@ -85,9 +85,8 @@ def readings(
         values = {name: metric.value for name, metric in recorded if metric.value is not None}
         what = f"list of values in {group}"
         expect("metrics", "metrics.json", what, sorted(values), sorted(declared.units))
-        if declared.kind == "exact":
-            integers = [name for name, value in values.items() if isinstance(value, int)]
-            expect("metrics", "metrics.json", f"list of integers in {group}", integers, [*values])
+        wrong = [name for name, value in values.items() if not declared.possible(name, value)]
+        expect("metrics", "metrics.json", f"list of impossible values in {group}", wrong, [])
         found[group] = values
     return found
 

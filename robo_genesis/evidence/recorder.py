@@ -139,12 +139,7 @@ class Recorder:
             "backend": asdict(backend)
             | {"actual_at_end": session.probe(backend.requested).actual}
             | {"driver": driver_version(backend.actual)},
-            "render": {
-                "mode": "camera" if renderer else "skip",
-                "vendor": renderer.vendor if renderer else None,
-                "renderer": renderer.name if renderer else None,
-                "software": renderer.software if renderer else None,
-            },
+            "render": bundle.render_record(renderer),
             "host": host_record(backend.device_name if backend.actual == "cpu" else None),
             "environment": {
                 name: project.without_home(value) for name, value in self.engine.switches.items()
@@ -167,12 +162,8 @@ def require_complete(run: Experiment) -> None:
             f"The page has the runs {', '.join(found) or 'none'}; its declaration names "
             f"{', '.join(declared)}. Run each declared case, or correct the declaration."
         )
-    odd = [
-        f"{group}.{name}"
-        for group, records in run.records().items()
-        for name, record in records.items()
-        if record["value"] is not None and not math.isfinite(record["value"])
-    ]
+    values = {name: of["value"] for name, of in bundle.by_full_name(run.records()).items()}
+    odd = [name for name, value in values.items() if not math.isfinite(value or 0)]
     if odd:
         raise RecordError(
             f"Not all values are finite: {', '.join(odd)}. A bundle takes finite numbers only. "
@@ -202,7 +193,8 @@ def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
 
 def host_record(cpu: str | None) -> dict[str, Any]:
     """Describe the machine and every installed package."""
-    packages = {d.metadata["Name"]: d.version for d in importlib.metadata.distributions()}
+    found = [*importlib.metadata.distributions()]  # of two of one name, Python imports the first
+    packages = {d.metadata["Name"]: d.version for d in reversed(found)}
     return {
         "os": platform.platform(),
         "machine": platform.machine(),

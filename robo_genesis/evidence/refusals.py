@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.text import printable, quoted
 
 AGAIN = "Record the bundle again."
@@ -48,6 +47,8 @@ def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> 
         found: the value in the bundle.
         expected: the valid value.
     """
+    from robo_genesis.core.comparison import agree, differences  # not in a build without work
+
     for path, here, there in differences(found, expected, agree):
         raise unexpected(code, file, what.format(path), here, there)
 

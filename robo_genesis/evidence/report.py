@@ -55,13 +55,9 @@ def document(comparison: BundleComparison) -> Document:
         Part(part.title, _table(part.rows), part.empty, state=part.state if part.rows else "")
         for part in comparison.sections
     ]
-    return Document(
-        title(comparison),
-        verdict(comparison),
-        comparison.state,
-        [*parts, Part("The two bundles", _origin(comparison))],
-        comparison.remarks,
-    )
+    parts.append(Part("The two bundles", _origin(comparison)))
+    head = title(comparison), verdict(comparison), comparison.state
+    return Document(*head, parts, comparison.remarks)
 
 
 def changes(comparison: BundleComparison) -> list[Cells]:

@@ -16,7 +16,6 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
 """States from best to worst. A row that is only shown does not affect the verdict."""
 
 MISSING = "missing"
-KINDS = {"case": "cases", "metric": "metrics", "check": "checks", "axis": "axes", "joint": "joints"}
 
 VERDICTS = {
     frozenset({HELD}): (EQUAL, "held in both"),
@@ -115,13 +114,6 @@ def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
         both = here.get(name, MISSING), there.get(name, MISSING)
         if both[0] != both[1] or MISSING in both:
             yield Row(DIFFERS, name, *both)
-    if not old.checks and not new.checks:
-        yield Row(DIFFERS, "checks", "none", "none")
-    for kind, plural in KINDS.items():
-        numbers = [sum(name.startswith(kind) for name in side) for side in (here, there)]
-        if all(numbers):
-            state = EQUAL if numbers[0] == numbers[1] else SHOWN
-            yield Row(state, f"number of {plural}", str(numbers[0]), str(numbers[1]))
 
 
 def _content(side: Side) -> dict[str, str]:

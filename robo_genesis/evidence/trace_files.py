@@ -147,14 +147,10 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
         trace = kind(**{field: values[of.name] for field, of in fields.items()})
     except TraceError as error:
         raise BundleRefused("bad-trace", f"{described.file}: {error} {AGAIN}") from error
-    found = {
-        dim: length
-        for field, of in fields.items()
-        for dim, length in zip(of.dims, getattr(trace, field).shape, strict=True)
-        if dim in ("dof", "link")
-    }
-    labels = {axis: len(names) for axis, names in arrays.coords.items()}
-    expect("labels", place, "number of labels", labels, found)
     expected = _description(case, trace, types, described.note)
+    axes = [zip(of.dims, of.shape, strict=True) for of in expected.variables.values()]
+    lengths = {dim: n for pairs in axes for dim, n in pairs if dim in ("dof", "link")}
+    labels = {axis: len(names) for axis, names in arrays.coords.items()}
+    expect("labels", place, "number of labels", labels, lengths)
     expect_equal("labels", place, "{}", described.model_dump(), expected.model_dump())
     return trace

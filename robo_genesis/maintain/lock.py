@@ -30,7 +30,6 @@ HEADER = """\
 # Resolved for CPython 3.11 on Linux x86-64. Torch's own CUDA packages are not named: its build
 # is your choice, and each build names its own exactly.
 """
-Metadata = Mapping[str, Any]
 
 
 def write_lock(constraints: Sequence[str], keep: bool = False) -> str:
@@ -54,7 +53,7 @@ def write_lock(constraints: Sequence[str], keep: bool = False) -> str:
     return f"{LOCK.name}: {len(versions)} packages, {ENGINE} {versions[ENGINE]}"
 
 
-def resolve(constraints: Sequence[str], keep: bool = False) -> dict[str, Metadata]:
+def resolve(constraints: Sequence[str], keep: bool = False) -> dict[str, Any]:
     """Return name → metadata of the packages that pip would install into an empty environment.
 
     Args:
@@ -73,7 +72,7 @@ def resolve(constraints: Sequence[str], keep: bool = False) -> dict[str, Metadat
     return {canonicalize_name(metadata["name"]): metadata for metadata in [*installed, *found]}
 
 
-def needed(packages: Mapping[str, Metadata]) -> set[str]:
+def needed(packages: Mapping[str, Any]) -> set[str]:
     """Return the names that the project needs, directly or not, without Torch's CUDA parts."""
     found: set[tuple[str, str]] = set()
     waiting = [(COURSE, extra) for extra in ("", *EXTRAS)]

@@ -12,9 +12,7 @@ from robo_genesis.core.project import ProjectError
 
 TEMPLATE = Path(__file__).with_name("template")
 SUFFIX = ".tmpl"
-TITLE = "A robot turns one joint"
 OUTCOME = "measure how a joint turns"
-NAME = re.compile(r"l\d\d")
 CHAPTER, ENTRY = "  - file: ", "- id: "
 
 
@@ -49,17 +47,11 @@ def require_new(root: Path, lesson: str) -> None:
     Raises:
         ProjectError: the message says what is valid.
     """
-    if not NAME.fullmatch(lesson):
+    if not re.fullmatch(r"l\d\d", lesson):
         raise ProjectError(f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07.")
-    used = [
-        found.relative_to(root).as_posix()
-        for parent in ("robo_genesis/lessons", "book/lessons", "tests/lessons")
-        for found in sorted((root / parent).glob(f"{lesson}*"))
-    ]
-    if used:
-        raise ProjectError(
-            f"Lesson {lesson} exists: {', '.join(used)}. Give another number, or remove these."
-        )
+    if used := sorted(root.glob(f"*/lessons/{lesson}*")):
+        names = ", ".join(path.relative_to(root).as_posix() for path in used)
+        raise ProjectError(f"Lesson {lesson} exists: {names}. Give another number, or remove it.")
 
 
 def lesson_files(root: Path, lesson: str) -> dict[Path, str]:
@@ -106,7 +98,7 @@ def with_entry(course_map: str, lesson: str) -> str:
     new = f"  page: lessons/{lesson}-new-lesson/lecture\n  outcomes: [{OUTCOME}]\n"
     if name not in names:
         at = sum(other < name for other in names)
-        entries.insert(at, f"{ENTRY}{name}\n  title: {TITLE}\n{new}")
+        entries.insert(at, f"{ENTRY}{name}\n  title: A robot turns one joint\n{new}")
     elif "\n  page:" in entries[names.index(name)]:
         raise ProjectError(f"book/course_map.yml names a page of {name}. Remove that line.")
     else:

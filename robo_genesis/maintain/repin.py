@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -27,25 +27,26 @@ from robo_genesis.pipeline.pages.kernels import wait_or_kill
 FILES = ("pyproject.toml", "requirements.lock")
 """What a change of the pin changes: measured results are never kept in the tree."""
 
+FAILED = re.compile(r"^\[ *[\d.]+ s\] \w+ +(.+?)  (failed|refused)\b.*?: (.+)\n", re.MULTILINE)
+"""The line of `make book` for a page that failed or whose bundle is refused, and why."""
+
 LINES = 50
 """How many last lines of a log an error and the report show."""
 
 
-@dataclass(frozen=True, slots=True)
-class Repin:
-    """Which checkout gets which engine version."""
-
-    genesis: str
-    root: Path = project.ROOT
-    cache: Path = project.CACHE
-    say: Callable[[str], None] = say
-
-
-def run_repin(request: Repin) -> list[str]:
+def run_repin(
+    genesis: str,
+    root: Path = project.ROOT,
+    cache: Path = project.CACHE,
+    say: Callable[[str], None] = say,
+) -> list[str]:
     """Try the version in a checkout of the last commit, then write pin and lock.
 
     Args:
-        request: see there.
+        genesis: the engine's version.
+        root: the checkout.
+        cache: the folder of its caches.
+        say: prints a line.
 
     Returns:
         The last lines for the user: what was changed, where the report is and what to do next.
@@ -53,9 +54,8 @@ def run_repin(request: Repin) -> list[str]:
     Raises:
         ProjectError, BundleRefused: nothing was changed.
     """
-    root, folder = request.root, request.cache / "repin"
-    old = project.engine_pin(root)
-    new = wanted_version(request.genesis, old)
+    folder, old = cache / "repin", project.engine_pin(root)
+    new = wanted_version(genesis, old)
     if problems := unclean(root, "make repin tries the last commit"):
         raise project.ProjectError("\n".join(problems))
     require_locked_packages(root)
@@ -63,9 +63,9 @@ def run_repin(request: Repin) -> list[str]:
 
     with (
         locked(folder / "lock", "Another make repin"),
-        fresh_checkout(root, folder / "work", request.cache) as work,
+        fresh_checkout(root, folder / "work", cache) as work,
     ):
-        trial = Trial(request, old, new, work, Progress(request.say))
+        trial = Trial(cache, old, new, work, Progress(say))
         pages, new = trial.run(), trial.new
         if texts(root) != before:
             raise project.ProjectError(
@@ -110,15 +110,14 @@ def require_locked_packages(root: Path) -> None:
     """
     installed = {canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()}
     unlike = [
-        f"{name} {installed.get(canonicalize_name(name), '(none)')} instead of {version}"
+        f"{name} {found} instead of {version}"
         for name, version in locked_versions((root / FILES[1]).read_text("utf8")).items()
-        if installed.get(canonicalize_name(name)) != version
+        if (found := installed.get(canonicalize_name(name), "(none)")) != version
     ]
     if unlike:
         raise project.ProjectError(
-            f"This environment differs from requirements.lock: {', '.join(unlike[:5])}"
-            f"{', …' if unlike[5:] else ''}. Install the lock (pip install -r requirements.lock), "
-            "or omit PYTHON=…, so that .venv is used."
+            f"This environment differs from requirements.lock: {', '.join(unlike)}. Install the "
+            "lock (pip install -r requirements.lock), or omit PYTHON=…, so that .venv is used."
         )
 
 
@@ -151,14 +150,19 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 
 @dataclass(slots=True)
 class Trial:
-    """The steps in the checkout, each with its log; `before` is what the old version built."""
+    """The steps in the checkout, each with its log.
 
-    request: Repin
+    `before` is what the old version built, `failed` what the current step has found: the name of
+    each page that is not accepted → `failed` or `refused`, and why.
+    """
+
+    cache: Path
     old: str
     new: str
     work: Path
     progress: Progress
     before: refresh.EngineBuild | None = None
+    failed: dict[str, refresh.Pair] = field(default_factory=dict)
 
     def run(self) -> list[Path]:
         """Resolve, build with the old and the new version, report, test; return the report."""
@@ -188,28 +192,38 @@ class Trial:
             ProjectError: the command failed.
         """
         version = project.engine_pin(self.work)
-        log = self.request.cache / "repin" / "logs" / f"{stage}-{version}.log"
+        log = self.cache / "repin" / "logs" / f"{stage}-{version}.log"
         self.progress(stage, what, f"log: {log}")
-        if run_logged(command, self.work, log):
+        self.failed = {}
+        if run_logged(command, self.work, log, lambda: self.name_failed(stage, log)):
+            self.name_failed(stage, log)
             head, lines = f"Failed: {stage} {what}", last_words(log)
             remedy = (
                 f"The checkout still pins {self.old}. Give another version, or change what failed "
                 f"so that it passes with {self.new} too, and commit; then run make repin again. It "
-                "reuses what is compiled and executed."
+                "reuses what is compiled and executed, and begins with the pages that failed."
             )
             pages = self.write_report(head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
             raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
+
+    def name_failed(self, stage: str, log: Path) -> None:
+        """Print each page of a build that failed or was refused since the last call."""
+        for page, state, why in FAILED.findall(log.read_text("utf8", errors="replace")):
+            if stage == "book" and page not in self.failed:  # tests print builds of their own
+                self.failed[page] = state, why
+                self.progress(stage, page, f"{state}: {why}")
 
     def write_report(self, *failed: str) -> list[Path]:
         """Compare what both versions built, as far as they did, and write the report."""
         found = refresh.Refresh((self.old, self.new))
         if self.before:
             site = self.work / "book" / PUBLISHED / "html"
-            after = refresh.read_build(self.work, self.new, site)
+            absent = [page for page, (state, _) in self.failed.items() if state == "failed"]
+            after = refresh.read_build(self.work, self.new, site, absent)
             found = refresh.compare_builds(self.before, after)
-        found = replace(found, failed=failed)
-        folder = self.request.cache / "reports" / f"repin-{self.old}-{self.new}"
+        found = replace(found, failed=failed, pages=self.failed)
+        folder = self.cache / "reports" / f"repin-{self.old}-{self.new}"
         self.progress("report", refresh.summary(found), str(folder))
         return refresh.document(found).write(folder)
 
@@ -221,13 +235,16 @@ def last_words(log: Path) -> list[str]:
     return [line.rstrip() for line in after.splitlines() if line.strip()][-LINES:]
 
 
-def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
+def run_logged(
+    command: Sequence[str], folder: Path, log: Path, meanwhile: Callable[[], None] = lambda: None
+) -> int:
     """Run a command in a checkout with its output in a log, and return its exit status.
 
     Args:
         command: program and arguments; it ends with this process.
         folder: the checkout.
         log: file of its output, written over.
+        meanwhile: called each second.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
@@ -241,4 +258,4 @@ def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
             start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
-        return wait_or_kill(process)
+        return wait_or_kill(process, meanwhile)

@@ -1,7 +1,8 @@
 """The refresh report: what another engine version changes in packages, evidence and sentences."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from itertools import groupby, zip_longest
@@ -9,6 +10,7 @@ from pathlib import Path
 
 from bs4 import BeautifulSoup
 
+from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.project import STORE, locked_versions
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
@@ -36,6 +38,16 @@ HIDDEN = "math, svg, .cell_input"
 BREAK = "\x1e"
 LEFT_OUT = {Path("evidence", "ledger.html"), Path("performance", "costs.html")}
 """The ledger lists digests of other pages; the costs are the times of the build itself."""
+JUDGED = (
+    "Rule, if the run obeys mechanics: our check assumes more than the engine documents, for "
+    "example an order of work within a step. Correct the check. Engine, if the run does not: keep "
+    "the pin, and report the run to the engine's developers."
+)
+RAISED = (
+    "Engine, if its interface, a message or its speed changed: adapt the page, or keep the pin and "
+    "report the change. Rule, if the page expects more than the engine documents: correct the page."
+)
+"""What to decide about a page whose run was judged, and about one that ended before."""
 NOTHING = "Nothing was found here, or the trial failed before."
 
 
@@ -62,7 +74,8 @@ class Refresh:
     `packages` is name → versions in both locks, "" for none; `missing` is lesson/page/backend → why
     its bundles were not compared; `recorded` is lesson/backend → state under both pins; `changed`
     holds (page, old, new) of each changed sentence, see `changed_sentences`. `failed` says what
-    failed, why, and what to do; what was not reached is empty then.
+    failed, what to do, and the last lines of the log; what was not reached is empty then. `pages`
+    is the name of each page that is not accepted → `failed` or `refused`, and why.
     """
 
     versions: Pair
@@ -72,6 +85,7 @@ class Refresh:
     recorded: dict[str, tuple[Status, Status]] = field(default_factory=dict)
     changed: tuple[tuple[str, str, str], ...] = ()
     failed: tuple[str, ...] = ()
+    pages: Mapping[str, Pair] = field(default_factory=dict)
 
     @property
     def state(self) -> str:
@@ -80,31 +94,33 @@ class Refresh:
         return worst([comparison.state for comparison in self.comparisons] + lacking)
 
     @property
-    def title(self) -> str:
-        """The heading of the report."""
-        return f"Engine {self.versions[0]} → {self.versions[1]}"
-
-    @property
     def stale(self) -> list[str]:
         """Recorded bundles that the new pin makes stale."""
         both = self.recorded.items()
         return [name for name, (was, now) in both if now.state == "stale" != was.state]
 
 
-def read_build(root: Path, version: str, site: Path) -> EngineBuild:
-    """Return what an engine version has built in a checkout that pins it, refused or not."""
+def read_build(root: Path, version: str, site: Path, failed: Collection[str] = ()) -> EngineBuild:
+    """Return what an engine version has built in a checkout that pins it, refused or not.
+
+    Args:
+        root: the checkout.
+        version: of the engine.
+        site: the folder of the HTML.
+        failed: names of pages of which the store can have an earlier run alone.
+    """
     bundles, book = {}, root / "book"
     for page in find_pages(book):
+        if page.docname in failed:
+            continue
         for folder in folders(root / ".cache" / STORE, page):
-            try:
+            with suppress(PageRefused):  # of an older form, or damaged: no build of today
                 record = read_record(folder)
-            except PageRefused:  # of an older form, or damaged: no build of today
-                continue
-            bundle = find_bundle(folder / OUTPUTS, record.run_id)
-            current = record.engine == version and record.code == code_digest(page)
-            if bundle and current:
-                bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
-                break
+                bundle = find_bundle(folder / OUTPUTS, record.run_id)
+                current = record.engine == version and record.code == code_digest(page)
+                if bundle and current:
+                    bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
+                    break
     lock = (root / "requirements.lock").read_text("utf8")
     return EngineBuild(version, lock, bundles, recorded(root), site)
 
@@ -141,8 +157,8 @@ def recorded(root: Path) -> dict[str, Status]:
 def changed_packages(old: str, new: str) -> dict[str, Pair]:
     """Return name → (old, new) version of each package that differs between two locks."""
     was, now = locked_versions(old), locked_versions(new)
-    both = {name: (was.get(name, ""), now.get(name, "")) for name in was | now}
-    return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
+    names = sorted(was | now)
+    return {n: (was.get(n, ""), now.get(n, "")) for n in names if was.get(n) != now.get(n)}
 
 
 def changed_sentences(old: Path, new: Path, versions: Pair) -> Iterator[tuple[str, str, str]]:
@@ -198,7 +214,13 @@ def document(refresh: Refresh) -> Document:
     """Return the whole report."""
     text = summary(refresh)
     verdict = f"{text[0].upper()}{text[1:]}."
-    return Document(refresh.title, verdict, refresh.state, list(_parts(refresh)))
+    title = f"Engine {' → '.join(refresh.versions)}"
+    return Document(title, verdict, refresh.state, list(_parts(refresh)))
+
+
+def _advice(state: str, why: str) -> str:
+    """Return how to decide whether the engine or a rule of ours must change."""
+    return JUDGED if state == "refused" or why.startswith(CheckFailed.__name__) else RAISED
 
 
 def _parts(refresh: Refresh) -> Iterator[Part]:
@@ -210,7 +232,11 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
     old, new = refresh.versions
     both = refresh.comparisons
     if refresh.failed:
-        yield Part(refresh.failed[0], [()], remarks=refresh.failed[1:])
+        what, remedy, *lines = refresh.failed
+        named = [("page", "result", "reason", "rule or engine?")]
+        named += [(page, *found, _advice(*found)) for page, found in refresh.pages.items()]
+        yield Part(what, named, remarks=[remedy])
+        yield Part("Last lines of the log", [()], remarks=lines)
     rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
     rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]
     yield Part("Pages", [("page", "result", "rows"), *rows], NOTHING)

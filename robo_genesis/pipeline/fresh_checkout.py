@@ -19,12 +19,7 @@ from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import COMPILED, ROOT, STORE, ProjectError
 from robo_genesis.pipeline.command import end_with_parent
-from robo_genesis.pipeline.pages.kernels import (
-    ALLOWED,
-    MACHINE,
-    interrupts_blocked,
-    wait_or_kill,
-)
+from robo_genesis.pipeline.pages.kernels import interrupts_blocked, users_variables, wait_or_kill
 
 FOLDER, CHECKOUT = "release", "checkout"
 """Folders of a release in the caches, and of the checkout in it. They stay if a release fails."""
@@ -131,11 +126,11 @@ def release_environment(work: Path, executed: Path | None = None) -> dict[str, s
         work: the fresh checkout.
         executed: see `release`.
     """
-    names = {*MACHINE, *SETTINGS, *NETWORK, *(name.lower() for name in NETWORK)}
-    kept = {
+    names = {*SETTINGS, *NETWORK, *(name.lower() for name in NETWORK)}
+    kept = users_variables() | {
         name: value
         for name, value in os.environ.items()
-        if name in names or name.startswith(ALLOWED) or name.lower().startswith("npm_config_")
+        if name in names or name.lower().startswith("npm_config_")
     }
     own = {
         "RELEASE": "1",

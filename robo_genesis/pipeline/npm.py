@@ -16,30 +16,13 @@ from robo_genesis.pipeline.command import output_of
 LOCK = ("package.json", "package-lock.json")
 SETTINGS = ".npmrc"
 
+DIGESTS = Path(__file__).with_suffix(".sha256")
 PUBLISHED = {
-    "@fontsource/stix-two-math/files/stix-two-math-latin-400-normal.woff":
-        "794b8382140b9a061229bcdb5f3786c00e0bad91376d060fa1565184c90bf7c4",
-    "@fontsource/stix-two-math/LICENSE":
-        "0c8b99c034064cbb3c8ad9ba4531b89e179645b93d612da3e8be1cc52b393e58",
-    "@google/model-viewer/dist/model-viewer-umd.min.js":
-        "d785423b1d046ea84a9f59ef6cf15f3077603e1bf938b01ced9b0240691884a2",
-    "@google/model-viewer/LICENSE":
-        "cfc7749b96f63bd31c3c42b5c471bf756814053e847c10f3eb003417bc523d30",
-    "three/LICENSE":
-        "8b378ebe60e2fe500158cb0ac71cb5e8b7d92953c2abcc63a0eb90499653b5bc",
-    "lit/LICENSE":
-        "45d31799d0db956cc3eb5469346abbd9b7025babc5ff29fab10d7095da992ef1",
-    "lit-html/LICENSE":
-        "2b66f9390afde29edfe4314daff93f01fb182e1178053e228120178987e5db75",
-    "lit-element/LICENSE":
-        "45d31799d0db956cc3eb5469346abbd9b7025babc5ff29fab10d7095da992ef1",
-    "@lit/reactive-element/LICENSE":
-        "45d31799d0db956cc3eb5469346abbd9b7025babc5ff29fab10d7095da992ef1",
-    "@monogrid/gainmap-js/LICENSE":
-        "7fb8f722609c6669a9c9a4865e2a86205c7760e7dc7a039b0fb9913c3e62c6cc",
-}  # fmt: skip
-"""What the site ships, by its place in `node_modules`, with its SHA-256: the lock holds digests of
-archives, which npm compares while it unpacks them, and this table those of the unpacked files."""
+    name: digest for digest, name in map(str.split, DIGESTS.read_text("utf8").splitlines())
+}
+"""What the site ships, by its place in `node_modules`, with its SHA-256, from a file as `sha256sum`
+writes it. The lock holds digests of archives, which npm compares while it unpacks them; these are
+those of the unpacked files."""
 
 
 def node() -> Path:
@@ -108,7 +91,7 @@ def published(name: str, root: Path = ROOT, cache: Path = CACHE) -> bytes:
     raise ProjectError(
         f"npm's file {name} has the digest {digest}, expected is {PUBLISHED[name]}. If "
         "package-lock.json names a new version, read what changed in the file and write its "
-        "digest into PUBLISHED of robo_genesis/pipeline/npm.py."
+        "digest into robo_genesis/pipeline/npm.sha256."
     )
 
 

@@ -32,13 +32,7 @@ from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
-from robo_genesis.pipeline.pages.store import (
-    Verify,
-    exported,
-    forget,
-    import_pages,
-    places,
-)
+from robo_genesis.pipeline.pages.store import Verify, exported, forget, handed_over, places
 from robo_genesis.pipeline.release import missing_for_release
 
 
@@ -82,8 +76,7 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
-        ProjectError: pages that were executed elsewhere are refused, or the checkout or SITE_URL is
-            not fit for a build; nothing was published.
+        ProjectError: pages from elsewhere, checkout or SITE_URL are refused; nothing was published.
     """
     with (
         build.sphinx or SphinxProcess(build.book, build.cache / LOG) as sphinx,
@@ -96,14 +89,18 @@ def run_build(build: Build) -> list[str]:
         npm.require_published()
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
-        if build.executed:
-            import_pages(build.executed, pages, into, verify)
-        results = _execute(build, pages, into, environment, progress)
         manifests: dict[str, Any] = {}
+        if build.executed:
+            progress("execute", f"no page: all are taken from {build.executed}")
+            results = handed_over(build.executed, pages, into)
+            manifests = _accepted(build, verify, results, progress)
+        else:
+            results = _execute(build, pages, into, environment, progress, verify)
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
             draft.prepare()  # first: most files are still those of the last render
-            manifests.update(_accepted(build, verify, results, progress))
+            if not build.executed:
+                manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)
 
         progress("render", "all pages")
@@ -121,7 +118,10 @@ def run_build(build: Build) -> list[str]:
             if kept:  # what is wrong may be a file that the kept folder has lost
                 discard(kept)
             raise
-        forget(build.cache / project.STORE, results)
+        for result in results:
+            if build.executed:  # stored only now: what was refused must not stop later builds
+                put(result.folder, into[result.page.docname])
+        forget(build.cache / project.STORE, pages, into)
         summary = partial(_summary, engine, results, manifests, checked)
 
         def finish(published: Path) -> None:
@@ -146,7 +146,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         The last lines for the user: where the page is, and what executed it.
 
     Raises:
-        BuildError: the book lacks the page, or the page failed. Nothing was exported.
+        BuildError: the book lacks the page, or it failed or is refused. Nothing was exported.
         ProjectError: folder, checkout or book are not fit for it, or a build runs here.
     """
     with build_lock(build.cache):
@@ -160,7 +160,10 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
             raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
         place = exported(names[name], to)
         progress = Progress(build.say)
-        [result] = _execute(build, [names[name]], into, environment, progress)
+        [result] = results = _execute(build, [names[name]], into, environment, progress)
+        verify = build.verify or partial(verify_bundle, book=build.book)
+        if refused := verify_results(verify, results, progress)[1]:
+            raise BuildError(*refused)
         put(result.folder, place)
         progress("export", result.page.docname, result.status)
     return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
@@ -178,16 +181,7 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path], dict[str, 
     project.remove_stale_kernel_lock(build.cache)
     engine = project.require_pinned_engine(build.root)
     pages = find_pages(build.book)
-    into = places(pages, build.cache / project.STORE, build.root)
-    return engine, pages, into, environment
-
-
-def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
-    """Return the folder of the lab's bundle of this build, by lesson of the book."""
-    labs: dict[str, Path | None] = {
-        str(result.page.lesson): None for result in results if result.page.declares_bundle
-    }
-    return labs | {str(r.page.lesson): r.bundle for r in results if r.page.page == "lab"}
+    return engine, pages, places(pages, build.cache / project.STORE, build.root), environment
 
 
 def _execute(
@@ -196,24 +190,36 @@ def _execute(
     into: Mapping[str, Path],
     environment: Mapping[str, str],
     progress: Progress,
+    verify: Verify | None = None,
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report.
 
-    A release is executed at its commit, so it reuses only what was imported for it.
+    With `verify`, a page is also verified when it ends, so that a refusal is known early. A release
+    is executed at its commit, so it reuses nothing.
     """
     progress("execute", f"{len(pages)} pages")
+    refused: list[str] = []
+
+    def accept(*results: PageResult) -> bool:
+        found = verify_results(verify, results, progress, "execute")[1] if verify else []
+        refused.extend(found)
+        return not found
+
     results = execute_pages(
         pages,
         into,
-        reuse=bool(build.executed) or not build.release,
+        reuse=not build.release,
         jobs=build.jobs,
         timeout=build.timeout,
         environment=environment,
         logs=build.cache / project.LOGS,
         report=Lines(partial(progress, "execute")),
+        accept=accept,
     )
-    if any(result.failure for result in results):
-        raise BuildError(failure_report(results))
+    failed = [failure_report(results)] if any(result.failure for result in results) else []
+    if failed or refused:
+        accept(*(result for result in results if result.status == "reused"))  # to report them all
+        raise BuildError("\n\n".join([*failed, *refused]))
     return results
 
 
@@ -225,7 +231,9 @@ def _accepted(
     Raises:
         BuildError: a bundle of this build or a recorded one is refused, or a release lacks one.
     """
-    labs = _labs(results)
+    measuring = [result for result in results if result.page.declares_bundle]
+    labs: dict[str, Path | None] = dict.fromkeys(str(result.page.lesson) for result in measuring)
+    labs |= {str(r.page.lesson): r.bundle for r in measuring if r.page.page == "lab"}
     manifests, refused = verify_results(verify, results, progress)
     if refused := refused + refused_records(build.book, labs):
         raise BuildError("\n".join(refused))

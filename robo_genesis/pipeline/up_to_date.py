@@ -4,16 +4,15 @@ Inputs and site are read whole, which takes a tenth of a second. Packages count 
 time of installation: an edited file inside one is not noticed.
 """
 
-import hashlib
 import json
 import os
 import platform
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
-from robo_genesis.core.files import json_digest
-from robo_genesis.core.git import git_or_none
+from robo_genesis.core.files import files_below, files_digest, json_digest
+from robo_genesis.core.git import history
 from robo_genesis.core.project import (
     PUBLISHED,
     ProjectError,
@@ -35,7 +34,6 @@ FILES = (
 VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC_TIME", "TZ")
 """What a build reads of the environment apart from what decides the pages' measurements."""
 
-LEFT_OUT = ("__pycache__", ".ipynb_checkpoints")
 SITE = ("html", "evidence", "pages")
 
 
@@ -63,10 +61,10 @@ def other_inputs(
         environment: variables, by default those of this process.
     """
     given = os.environ if environment is None else environment
-    kept = (path for path in _inside(book, (PUBLISHED, f".{PUBLISHED}")) if path not in pages)
+    kept = (path for path in files_below(book, (PUBLISHED, f".{PUBLISHED}")) if path not in pages)
     return {
         "book": [str(book), files_digest(book, kept)],
-        "code": files_digest(root, (p for name in FOLDERS for p in _inside(root / name))),
+        "code": files_digest(root, (p for name in FOLDERS for p in files_below(root / name))),
         "files": files_digest(root, (root / name for name in FILES)),
         "contract": environment_contract(given),
         "variables": {name: given.get(name) or "" for name in VARIABLES},
@@ -75,48 +73,9 @@ def other_inputs(
     }
 
 
-def files_digest(base: Path, files: Iterable[Path]) -> str:
-    """Return the digest of names and contents of files; an absent one counts as such.
-
-    Args:
-        base: the names begin below it.
-        files: their order does not matter.
-    """
-    found = hashlib.sha256()
-    for path in sorted(files):
-        content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "absent"
-        found.update(os.fsencode(path.relative_to(base)) + f"\0{content}\n".encode())
-    return found.hexdigest()
-
-
-def _inside(folder: Path, skip: tuple[str, ...] = ()) -> Iterator[Path]:
-    """Yield all files below a folder and its links, as Sphinx finds them.
-
-    Python's caches and top-level names with the prefixes `skip` are left out.
-
-    Raises:
-        ProjectError: a link leads to a folder that contains it, so there would be no end.
-    """
-    for here, folders, files in os.walk(folder, followlinks=True):
-        for link in filter(Path.is_symlink, (Path(here, name) for name in folders)):
-            if link.parent.resolve().is_relative_to(link.resolve()):
-                raise ProjectError(f"{link} links to a folder that contains it. Remove the link.")
-        top = skip if Path(here) == folder else ()
-        folders[:] = [n for n in folders if n not in LEFT_OUT and not n.startswith(top)]
-        yield from (Path(here, name) for name in files)
-
-
-def history(book: Path) -> list[str | None]:
-    """Return what decides the pages' histories: the commit, and the uncommitted changes."""
-    return [
-        git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository"),
-        git_or_none(book, "status", "--porcelain", "-z", "--", "."),
-    ]
-
-
 def site_digest(published: Path) -> str:
     """Return the digest of a published folder: the site and its bundles."""
-    return files_digest(published, (p for name in SITE for p in _inside(published / name)))
+    return files_digest(published, (p for name in SITE for p in files_below(published / name)))
 
 
 def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:

@@ -6,7 +6,6 @@ They read files below a given root, variables, and what Torch answers in a proce
 import grp
 import json
 import os
-import platform
 import shutil
 import signal
 import subprocess
@@ -87,8 +86,7 @@ def driver(machine: ProbedMachine) -> str:
     name = DRIVERS[machine.backend]
     if not (machine.root / "sys/module" / name).is_dir():
         raise DoubtError(f"/sys/module has no {name}, expected the driver loaded: modprobe {name}.")
-    version = driver_version(machine.backend, machine.root)
-    return f"{name} {version or f'of the kernel {platform.release()}, without a version'}"
+    return f"{name} {driver_version(machine.backend, machine.root)}"
 
 
 def card(machine: ProbedMachine) -> str:

@@ -24,10 +24,6 @@ TIME = 1e-9
 UNIT = 1e-5
 """Tolerance of the norm of a quaternion; runs of the engine have at most 2e-7."""
 
-REPEATED = 1e-4
-"""Tolerance of a run that is computed again on another CPU: in SI units, and as a share of the
-largest value of an array. Two runs on one CPU are equal; other CPUs round float64 differently."""
-
 ZERO, UNTURNED = np.zeros(()), np.array([1.0, 0, 0, 0])
 """Expected values of what is zero, and of the quaternion of a body that has not turned."""
 
@@ -86,25 +82,21 @@ def unit_quaternions(quat: FloatArray) -> Iterator[Finding]:
     yield from apart("pose", "norm of link_quat", norm, np.ones(()), UNIT)
 
 
-def computed_again(
-    trace: TimeSeries, again: TimeSeries, shares: Mapping[str, float] | None = None
+def mean_speed(
+    position: FloatArray, velocity: FloatArray, dt: float, room: float
 ) -> Iterator[Finding]:
-    """Yield an array that differs from that of the same run, computed by the verification.
+    """Yield a mean velocity of an outer step that is not between those before and after it.
 
     Args:
-        trace: the run.
-        again: the same run.
-        shares: by array, the tolerance instead of `REPEATED`.
+        position: (n+1, d) [m or rad].
+        velocity: of the same shape [m/s or rad/s].
+        dt: of the outer step [s].
+        room: tolerance of the mean velocity.
     """
-    for field in fields(trace):
-        found, expected = getattr(trace, field.name), getattr(again, field.name)
-        if found.shape != expected.shape:
-            yield broken("second-engine", f"shape of {field.name}", found.shape, expected.shape)
-            continue
-        share = (shares or {}).get(field.name, REPEATED)
-        room = share * max(1.0, float(np.abs(expected).max(initial=0.0)))
-        room = 0.0 if np.issubdtype(expected.dtype, np.integer) else room
-        yield from apart("second-engine", field.name, found, expected, room)
+    mean, middle = np.diff(position, axis=0) / dt, (velocity[1:] + velocity[:-1]) / 2
+    beyond = np.maximum(np.abs(mean - middle) - np.abs(np.diff(velocity, axis=0)) / 2, 0)
+    what = "mean velocity beyond those of both samples [rad/s or m/s]"
+    yield from apart("motion", what, beyond, ZERO, room)
 
 
 def copied(trace: TimeSeries, others: Mapping[str, TimeSeries]) -> Iterator[Finding]:

@@ -15,9 +15,9 @@ from robo_genesis.sim.arm.joints import to_numpy
 MIB = 2**20
 """Bytes of one MiB."""
 
+# On an accelerator, the first call returns before the step is done.
 Calls = tuple[Callable[[], Any], Callable[[], Any]]
-"""The first call starts a step; on an accelerator it returns before the step is done. The second
-returns when all started steps are done."""
+"""The first call starts a step. The second returns when all started steps are done."""
 
 Clock = Callable[[], float]
 
@@ -106,6 +106,5 @@ def fit(sizes: Any, times: Any) -> Model:
         times: of one step (n,) [s].
     """
     sizes, times = np.asarray(sizes, float), np.asarray(times, float)
-    columns = np.stack([1 / times, sizes / times], axis=1)  # (n, 2)
-    fixed, each = np.linalg.lstsq(columns, np.ones(len(times)), rcond=None)[0]
+    each, fixed = np.polyfit(sizes, times, 1, w=1 / times)
     return Model(float(fixed), float(each))

@@ -20,6 +20,7 @@ from robo_genesis.core.checks import (
     noted,
     within,
 )
+from robo_genesis.core.experiment import Readings
 
 
 @pytest.mark.parametrize(
@@ -139,9 +140,15 @@ def test_a_shared_check_names_each_value_that_is_not_allowed(findings, labels):
     assert [finding.label for finding in findings if not finding.passed] == labels
 
 
+def test_a_reading_is_within_its_limits_and_a_count_is_an_integer():
+    number, count = (Readings({"x": "1"}, kind, {"x": (1, 4)}) for kind in ("value", "exact"))
+    assert [number.possible("x", of) for of in (3.5, 0.9, 4.1, np.nan)] == [True, *[False] * 3]
+    assert [count.possible("x", of) for of in (3, 3.0, 5)] == [True, False, False]
+    assert not Readings({"x": "1"}, "exact").possible("x", -1)
+
+
 @pytest.mark.parametrize(
-    ("other", "passed"),
-    [(Case(steps=8), True), (Case(), False), (Case(steps=8, dt=0.25), False)],
+    ("other", "passed"), [(Case(steps=8), True), (Case(), False), (Case(steps=8, dt=0.25), False)]
 )
 def test_compared_cases_differ_in_the_given_fields_alone(other, passed):
     pairs = {("one", "other"): ["steps"]}

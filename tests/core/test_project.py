@@ -79,7 +79,7 @@ def test_engine_caches_are_named_by_engine_and_lock(tmp_path):
     assert kernels == root / ".cache/engine" / kernels.parent.name / "kernels"
     assert kernels.parent.name == f"9.8.7-{project.lock_digest(root)[:12]}"
     assert environment["QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES"] == "2000000000"
-    for name in ("NUMBA_CACHE_DIR", "MESA_SHADER_CACHE_DIR", "MPLCONFIGDIR"):
+    for name in ("GS_CACHE_FILE_PATH", "NUMBA_CACHE_DIR", "MESA_SHADER_CACHE_DIR", "MPLCONFIGDIR"):
         assert Path(environment[name]).is_dir()
     (root / "requirements.lock").write_text("numpy==2.1\n")
     assert project.engine_cache_folder(root) != kernels.parent
@@ -117,6 +117,7 @@ def test_a_home_folder_is_not_named(text, kept, monkeypatch):
 def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(tmp_path):
     switches = {f"{prefix}X": "1" for prefix in project.ENGINE_PREFIXES}
     folders = project.engine_cache_environment(checkout(tmp_path, "genesis-world==9.8.7"))
+    switches["LD_LIBRARY_PATH"] = "/opt/rocm/lib"
     given = {**switches, **folders, "ROBO_GENESIS_RENDER": "0", "HOME": "/"}
     defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "0"}
     assert project.environment_contract(given) == switches | defaults

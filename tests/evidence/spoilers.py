@@ -67,6 +67,7 @@ def pop(file, *path):
 predicate = part = partial(put, MANIFEST, "predicate")
 modules = partial(predicate, "source", "modules")
 check = partial(predicate, "checks")
+packages = partial(predicate, "host", "packages")
 joint = partial(put, ARRAYS, "joints")
 case = partial(put, ARRAYS, "cases")
 coords = partial(put, ARRAYS, "coords")
@@ -190,6 +191,7 @@ def on(actual, **changed):
     return both(
         part("backend", actual=actual, actual_at_end=actual, arch=actual, **torch),
         part("backend", requested="auto", driver="6.16", device_name="a GPU"),
+        packages(torch=torch["torch_version"]),
         part("render", vendor="AMD", renderer="AMD Radeon (radeonsi)", software=False),
         log("[a CPU] with backend gs.cpu", f"[a GPU] with backend gs.{actual}"),
         log(SOFTWARE, ""),
@@ -291,10 +293,11 @@ def checked_again(folder):
     predicate(checks=[outcome.record() for outcome in run.outcomes()])(folder)
 
 
-two_on_one_dof = joint(1, dof_idx_local=0)
-failing = both(two_on_one_dof, checked_again)
+link_too_many = put(METRICS, "model", "links", value=12)
+failing = both(link_too_many, checked_again)
 """A run that fails a check of its own, as it would have been measured."""
 
+older_compiler = both(part("engine", quadrants_version="1.2.9"), packages(quadrants="1.2.9"))
 drop_case = both(remove("arrays/G3.npz"), pop(ARRAYS, "cases", "G3"))
 older_type = manifest(lambda m: m.update(predicateType="urn:robo-genesis:evidence:v1"))
 
@@ -333,6 +336,8 @@ GROUPS = {
     ("bad-schema", "bad-schema"): {
         "an unknown field": predicate(mood="good"),
         "a number as text": predicate(seed="0"),
+        "a machine without a core": part("host", cores=0),
+        "the name of a branch": predicate(git={"commit": "main", "dirty": False}),
         "an unknown backend": part("backend", actual="tpu"),
         "found text of two lines": found("mapping", links="a\nb"),
         **{f"a driver of {what}": part("backend", driver=value) for what, value in ODD.items()},
@@ -360,6 +365,7 @@ GROUPS = {
     ("time", "time"): {
         "ended before it began": predicate(ended="2020-01-01T00:00:00Z"),
         "a day that no month has": predicate(started="2026-13-45T00:00:00Z"),
+        "a run that is to come": predicate(ended="2099-01-01T00:00:00Z"),
     },
     ("key", None): {"another key": predicate(evidence_key="0" * 64)},
     ("path", None): {
@@ -377,9 +383,24 @@ GROUPS = {
             part("backend", requested="auto"), filed_as("amdgpu")),
         "another backend at the end": part("backend", actual_at_end="cuda"),
         "cpu requested, amdgpu claimed": on("amdgpu", requested="cpu"),
+        "an accelerator without a driver": on("cuda", driver=None),
+        "a CPU with a driver": part("backend", driver="6.16"),
+        "another processor than the device": part("host", cpu="another CPU"),
+        "the processor as accelerator": on("amdgpu", device_name="a CPU"),
+        "a processor as accelerator": on("cuda", device_name="13th Gen Intel(R) Core(TM) i7"),
+        "a card of the other maker": on("cuda", device_name="AMD Instinct MI300X"),
+    },
+    ("packages", "packages"): {
+        "another engine installed": packages(**{"genesis-world": "1.3.2"}),
+        "no compiler installed": pop(MANIFEST, "predicate", "host", "packages", "quadrants"),
+        "another Torch installed": packages(torch="2.12.0"),
+        "another build of Torch installed": both(on("cuda"), packages(torch="2.13.0+cpu")),
     },
     ("torch", "torch"): {
         "amdgpu without HIP": on("amdgpu", hip_version=None),
+        "amdgpu with Torch for the CPU": on("amdgpu", torch_version="2.13.0+cpu"),
+        "a HIP newer than its ROCm": on("amdgpu", torch_version="2.13.0+rocm6.0"),
+        "a Torch of another CUDA": on("cuda", torch_version="2.13.0+cu126"),
         "Torch forced to the CPU": on("amdgpu", torch_device="cpu"),
         "an architecture that spells the valid ones": part("backend", arch="x64 or arm64"),
         "Torch forced to the CPU by a switch": predicate(
@@ -401,6 +422,7 @@ GROUPS = {
         "a log of another device": log("[a CPU]", "[a GPU]"),
         "a log of another seed": log("seed: 0", "seed: 1"),
         "a log of software drawing": both(on("cuda"), log("INFO", f"{SOFTWARE}INFO")),
+        "a log without its software drawing": log(SOFTWARE, ""),
         "a log without a seed": log("seed: 0", "seeds: none"),
         "a log with the device of another": after(
             LOG, b"INFO Running on [a GPU] with backend gs.amdgpu. Device memory: 1 GB.\n"),
@@ -413,7 +435,8 @@ GROUPS = {
     # The question.
     ("key", "stale"): {
         "an older engine": both(
-            part("engine", version="1.2.0"), log("version: ", "version: 1.2.0, was: ")),
+            part("engine", version="1.2.0"), packages(**{"genesis-world": "1.2.0"}),
+            log("version: ", "version: 1.2.0, was: ")),
         "other parameters": part("parameters", "cases", "G1", kp=lambda kp: kp[::-1]),
         "another module": modules(metrics="0" * 64),
         "no page digest": part("source", page=None),
@@ -427,6 +450,10 @@ GROUPS = {
         "one link too few": pop(ARRAYS, "coords", "link", -1),
         "a joint too few": pop(ARRAYS, "joints", -1),
         "a joint of no known type": joint(0, type="SPHERICAL"),
+        "two joints on one DOF": joint(1, dof_idx_local=0),
+        "two joints in each other's place": both(joint(0, q_idx_local=1), joint(1, q_idx_local=0)),
+        "a limit left out": joint(3, upper=None),
+        "a wider limit": joint(8, lower=-0.001),
     },
     ("digest", "bad-array"): {
         "a cut archive": bytes_of(G1, lambda b: b[:-500]),
@@ -481,10 +508,9 @@ GROUPS = {
         "a count that is missing": pop(METRICS, "model", "links"),
     },
     ("digest", "checks"): {
-        "an edited count": put(METRICS, "model", "links", value=12),
+        "an edited count": link_too_many,
         "one and the same picture twice": copied_to("frames/final.png"),
-        "two joints on one DOF, kept quiet": two_on_one_dof,
-        "a failure of other values": both(failing, found("mapping", local_dofs="luck")),
+        "a failure of other values": both(failing, found("mapping", dofs="luck")),
     },
     ("checks", "checks"): {
         "a value found off by a millionth": found(
@@ -496,8 +522,8 @@ GROUPS = {
         "a check left out": pop(MANIFEST, "predicate", "checks", -1),
     },
     ("digest", "failed"): {
-        "two joints on one DOF, and it says so": failing,
-        "two joints on one DOF, called passed": both(failing, manifest(
+        "a link too many, and it says so": failing,
+        "a link too many, called passed": both(failing, manifest(
             lambda m: [of.update(passed=True) for of in m["predicate"]["checks"]])),
     },
 }  # fmt: skip

@@ -8,6 +8,7 @@ from robo_genesis.evidence.bundle import (
     evidence_key,
     read_manifest,
 )
+from robo_genesis.evidence.copies import same_times
 
 
 @pytest.fixture
@@ -21,6 +22,11 @@ def test_differences_name_the_path_and_both_values():
     assert list(differences({"a": 0.1, "b": 11}, {"a": 0.1 + 1e-15, "b": 11.0}, agree)) == [
         ("b", 11, 11.0)
     ]
+
+
+def test_a_time_of_another_run_and_a_multiple_of_several_are_a_copy():
+    for a, b, copied in ((0.2, 0.3, False), (0.1, 0.3, True), (0.3, 0.6, True), (0.3, 1, False)):
+        assert same_times({"a": a, "b": b}, {"a": 0.1, "b": 0.2}) == copied
 
 
 @pytest.mark.parametrize("value", ["0" * 63, "A" * 64, "0" * 64 + "\n", None])

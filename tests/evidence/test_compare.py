@@ -185,7 +185,6 @@ LACKING = ("present", "missing")
         (same, without_g3, "Coverage",
          {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "missing")}),
         (without_g3, without_g3, "Coverage", {"case G3": ("missing", "missing")}),
-        (predicate(checks=[]), predicate(checks=[]), "Coverage", {"checks": ("none", "none")}),
         (same, pop("manifest.json", "predicate", "checks", -1), "Coverage",
          {"check posture": LACKING}),
         (same, put(METRICS, "G1", "overshoot", unit="degree"), "Coverage",
@@ -322,7 +321,7 @@ def test_the_report_is_worst_first_fetches_nothing_and_keeps_words_as_words(comp
     page = report.document(unlike).html()
     assert not re.search(r"<(script|link|img|iframe|a)\b|\b(src|href)=|@import|url\(", page)
     assert "&lt;b&gt;1 | 2&lt;/b&gt;" in page
-    assert page.count("<table>") == page.count('<div class="box" role="region"') == 7
+    assert page.count("<table>") == page.count('<div class="box" role="region"') == 6
     page = report.document(unlike).markdown()
     assert "- Engine warning gained: \\<b\\>1 \\| 2\\</b\\> \\# see https" in page
     table = [line for line in page.splitlines() if line.startswith("|")]

@@ -5,13 +5,7 @@ import yaml
 from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
 
 from robo_genesis.core.project import BOOK, ProjectError
-from robo_genesis.maintain.new_lesson import (
-    OUTCOME,
-    TEMPLATE,
-    add_lesson,
-    with_chapter,
-    with_entry,
-)
+from robo_genesis.maintain.new_lesson import OUTCOME, TEMPLATE, add_lesson, with_chapter, with_entry
 
 TOC, COURSE_MAP = (BOOK / name for name in ("_toc.yml", "course_map.yml"))
 ROWS = yaml.safe_load(COURSE_MAP.read_text())

@@ -7,10 +7,7 @@ from robo_genesis.core.project import ProjectError
 from robo_genesis.maintain.repin import set_pin, wanted_version
 
 
-@pytest.mark.parametrize(
-    ("given", "found"),
-    [("v1.4.0", "1.4.0"), ("2.0.0rc1", "2.0.0rc1")],
-)
+@pytest.mark.parametrize(("given", "found"), [("v1.4.0", "1.4.0"), ("2.0.0rc1", "2.0.0rc1")])
 def test_a_version_is_read_as_pip_reads_it(given, found):
     assert wanted_version(given, "1.3.3") == found
 

@@ -14,7 +14,7 @@ from tiny_book import commit, fails, git, wait_for
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
-from robo_genesis.maintain.repin import Repin, run_logged, run_repin
+from robo_genesis.maintain.repin import run_logged, run_repin
 
 OLD, NEW = engine_pin(), "99.1"
 FAILS = {"resolve": "99.2", "install": "99.3", "book": "99.4", "test": "99.5"}
@@ -36,11 +36,13 @@ open("requirements.lock", "w").write(lock)
 """
 
 MAKEFILE = """
+NAMED := timeout 20 sh -c 'until test -f named; do sleep 0.1; done'
 PIN := $(shell sed -n 's/^genesis-world==//p' requirements.lock)
 .PHONY: book test
 book:
 \t@echo "[    1.0 s] execute  2 pages"
-\t@test "$(PIN)" != %(book)s || { printf 'lab, code cell 3, line 7: rise()\\n  no rise'; false; }
+\t@test "$(PIN)" != %(book)s || { cat failed; $(NAMED) && \\
+\t  printf 'lab, code cell 3, line 7: rise()\\n  no rise'; false; }
 \t@test -n "$(PYTHON)" || test -f .venv/.installed
 \t@mkdir -p book/_build/html
 \t@echo '<p>Measured: 7$(PIN) m.</p><p>Same.</p>' > book/_build/html/index.html
@@ -49,8 +51,21 @@ book:
 \t@test "$(PIN)" != %(install)s
 \t@mkdir -p .venv && touch .venv/.installed
 test:
-\t@test "$(PIN)" != %(test)s
+\t@test "$(PIN)" != %(test)s || { cat failed; false; }
 """ % (FAILS | {"hangs": HANGS})
+
+
+FAILED = """\
+[    2.0 s] execute  lab  failed in 1 s: CheckFailed: [rise] 7 m, expected 6 m
+[    2.0 s] execute  lecture  failed in 1 s: AttributeError: no add_entity
+[    3.0 s] execute  deeper  refused: contact: a.npz: 0.0, expected 1.2e-05
+"""
+ROWS = [
+    "| page | result | reason | rule or engine? |",
+    "| lab | failed | CheckFailed: [rise] 7 m, expected 6 m | Rule, if the run",
+    "| lecture | failed | AttributeError: no add_entity | Engine, if its",
+    "| deeper | refused | contact: a.npz: 0.0, expected 1.2e-05 | Rule, if the run",
+]
 
 
 @pytest.fixture
@@ -63,6 +78,7 @@ def root(tmp_path) -> Path:
     (root / "Makefile").write_text(MAKEFILE)
     (root / "pyproject.toml").write_text(PROJECT.format(OLD))
     (root / "requirements.lock").write_text(LOCK.format(OLD))
+    (root / "failed").write_text(FAILED)
     (root / ".gitignore").write_text("/.cache\n/.venv\n/book/_build\n")
     (root / "book" / "index.md").write_text("committed\n")
     (root / "book" / "_toc.yml").write_text("format: jb-book\nroot: index\n")
@@ -71,8 +87,7 @@ def root(tmp_path) -> Path:
 
 
 def repin(root: Path, genesis: str, **changes) -> list[str]:
-    values = {"say": lambda line: None} | changes
-    return run_repin(Repin(genesis=genesis, root=root, cache=root / ".cache", **values))
+    return run_repin(genesis, root, root / ".cache", **{"say": lambda line: None} | changes)
 
 
 def state(root: Path) -> tuple[str, str, str]:
@@ -115,9 +130,9 @@ def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root):
 def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree_as_it_was(
     root, stage, why, packages
 ):
-    before = state(root)
-    with pytest.raises(ProjectError) as caught:
-        repin(root, FAILS[stage])
+    before, named = state(root), root / ".cache" / "repin" / "work" / "checkout" / "named"
+    with pytest.raises(ProjectError) as caught:  # the build ends when each page was named
+        repin(root, FAILS[stage], say=lambda line: "deeper  refused: " in line and named.touch())
     message = str(caught.value)
     remedy = f"The checkout still pins {OLD}. Give another version, or change what failed so that"
     places = re.findall("^(?:Log|Report): (.*)$", message, re.MULTILINE)
@@ -128,6 +143,9 @@ def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree_as_it_was(
         assert said in text
     assert packages in text
     assert "execute  2 pages" not in text
+    table = re.findall(r"^\| \w.*", text, re.MULTILINE)  # the tests print pages of other books
+    found = [line[: len(row)] for line, row in zip(table, ROWS, strict=False)]
+    assert (found == ROWS, "CheckFailed" in text) == (stage == "book", stage == "book")
     assert state(root) == before
     assert left(root) == ["lock", "logs"]
 
@@ -198,15 +216,14 @@ RUN = """
 import sys
 from pathlib import Path
 from robo_genesis.pipeline.command import run
-from robo_genesis.maintain.repin import Repin, run_repin
+from robo_genesis.maintain.repin import run_repin
 root = Path(sys.argv[1])
-sys.exit(run(lambda: run_repin(Repin(sys.argv[2], root, root / ".cache")), "changed"))
+sys.exit(run(lambda: run_repin(sys.argv[2], root, root / ".cache"), "changed"))
 """
 
 
 @pytest.mark.parametrize(
-    ("sent", "status"),
-    [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)],
+    ("sent", "status"), [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)]
 )
 def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(root, sent, status):
     before, sleeper = state(root), root / ".cache" / "repin" / "work" / "checkout" / "sleeper"

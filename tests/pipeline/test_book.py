@@ -1,6 +1,7 @@
 """`make book` on tiny books: what it publishes, and what stops it with the old site in place."""
 
 import os
+import re
 import signal
 from pathlib import Path
 from types import SimpleNamespace
@@ -27,13 +28,7 @@ from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.pages.book import PageError
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
-from robo_genesis.pipeline.stages import (
-    Build,
-    BuildError,
-    build_lock,
-    export_one,
-    run_build,
-)
+from robo_genesis.pipeline.stages import Build, BuildError, build_lock, run_build
 
 LAB = lab("cpu")
 NO_CAMERA = LAB.replace('"camera" if camera', '"skip" if camera')
@@ -105,17 +100,6 @@ def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built
     assert site.stat() == before
 
 
-def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
-    there = Build(book=built.folder / "book", cache=built.folder / "cache", say=[].append)
-    for name in ("lab", "lecture"):
-        export_one(name, tmp_path / "executed", there)
-    make_book(tmp_path, lab=LAB, lecture=notebook(cell("print('seen')")))
-    said: list[str] = []
-    assert "Pages: 0 executed, 2 reused." in build(tmp_path, said, executed=tmp_path / "executed")
-    assert (tmp_path / "book/_build/evidence/l04/cpu/manifest.json").is_file()
-    assert any("execute  lab  reused" in line for line in said)
-
-
 @pytest.mark.parametrize(
     ("page", "settings", "error", "said"),
     [
@@ -140,6 +124,17 @@ def test_a_build_that_is_refused_leaves_the_old_site(
     with pytest.raises(error, match=said):
         build(tmp_path, **settings)
     assert marker.read_text() == "the old site"
+
+
+def test_failed_and_refused_pages_are_named_at_once_and_reported_together(tmp_path):
+    make_book(tmp_path, lab=LAB, broken=notebook(cell("1 / 0")))
+    report = r"1 of 2 pages failed\.(?s:.*)ZeroDiv(?s:.*)\nlab: the bundle .* is refused: metrics"
+    for first in ("lab  executed", "lab  reused"):
+        said: list[str] = []
+        with pytest.raises(BuildError, match=report):
+            build(tmp_path, said, verify=refuse, jobs=1)
+        for event in (first, "lab  refused: metrics: metr", r"broken  failed in \d+ s: ZeroDiv"):
+            assert any(re.search(f"execute  {event}", line) for line in said), event
 
 
 def test_a_site_with_problems_is_rendered_from_nothing_the_next_time(tmp_path):

@@ -3,13 +3,16 @@
 import json
 import os
 import py_compile
+import shutil
 from pathlib import Path
 
 import pytest
-from tiny_book import commit, git
+from checkout import copy_checkout, run_in
+from tiny_book import cell, commit, git, make_book, notebook
 
 from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.fresh_checkout import FOLDER, release
+from robo_genesis.pipeline import fresh_checkout, npm
+from robo_genesis.pipeline.fresh_checkout import FOLDER, check_out, release
 
 SCRIPT = """\
 import json, os, sys
@@ -152,3 +155,26 @@ def test_a_changed_tree_is_refused(root, monkeypatch, spoil):
     spoil(root, monkeypatch)
     with pytest.raises(ProjectError, match=r"RELEASE=1 cannot be met\.\n.* 1 changed .*page\.md"):
         release([], root / ".cache", root)
+
+
+def test_a_release_of_executed_pages_runs_nothing_and_shows_what_they_printed(
+    tmp_path, monkeypatch
+):
+    """The page reads a file that is gone when the site is built."""
+    once = tmp_path / "once"
+    once.write_text("said once")
+    root = copy_checkout(tmp_path / "root")
+    shutil.rmtree(root / "book")
+    book = make_book(root, page=notebook(cell(f"print(open({str(once)!r}).read())")))
+    commit(root)
+    executed, cache = tmp_path / "executed", root / ".cache"
+    run_in(root, "env", "PAGE=page", f"TO={executed}", "python", "build_scripts/execute.py")
+    once.unlink()
+    (cache / "npm").symlink_to(npm.packages().parents[1])  # which a release fetches
+
+    def with_npm(root, folder, cache, shared):
+        return check_out(root, folder, cache, [*shared, "npm"])
+
+    monkeypatch.setattr(fresh_checkout, "check_out", with_npm)
+    assert release(["--to", str(book)], cache, root, executed) == 0
+    assert "said once" in (book / "_build/html/page.html").read_text()

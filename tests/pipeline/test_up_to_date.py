@@ -98,9 +98,7 @@ def test_each_other_change_is_work(root, change):
 def test_links_without_end_are_refused(root):
     for name in ("one", "two"):
         (root / "book" / "evidence" / name).symlink_to("..")
-    with pytest.raises(
-        ProjectError, match=r"evidence/(one|two) links to a folder that contains it"
-    ):
+    with pytest.raises(ProjectError, match=r"/(one|two) links to a folder that contains it"):
         digest(root)
 
 

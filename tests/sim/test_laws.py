@@ -5,12 +5,13 @@ import pytest
 from falling import falling
 
 from robo_genesis.sim import laws as rules
-from robo_genesis.sim.laws import REPEATED, apart, kept
+from robo_genesis.sim.laws import apart, kept
 
 RUN = falling(1.0)
 TILTED = replace(RUN, link_quat=RUN.link_quat * np.float32(1.001))
-MOVED = replace(RUN, link_pos=RUN.link_pos + np.float32(3 * REPEATED))
-NEARLY = replace(RUN, link_pos=RUN.link_pos + np.float32(REPEATED / 3))
+NEARLY = replace(RUN, link_pos=RUN.link_pos + np.float32(3e-5))
+FALL, SPEED = np.array([[0.0], [-0.2], [-0.6]]), np.array([[-1.0], [-3.0], [-5.0]])
+"""Positions [m] and velocities [m/s] every 0.1 s: the mean velocities are -2 and -4 m/s."""
 
 
 def codes(breaches):
@@ -26,11 +27,9 @@ def codes(breaches):
         (rules.unit_quaternions(RUN.link_quat), []),
         (rules.unit_quaternions(TILTED.link_quat), ["pose"]),
         (rules.unit_quaternions(0 * RUN.link_quat), ["pose"]),
-        (rules.computed_again(NEARLY, RUN), []),
-        (rules.computed_again(MOVED, RUN), ["second-engine"]),
-        (rules.computed_again(MOVED, RUN, {"link_pos": 4 * REPEATED}), []),
-        (rules.computed_again(NEARLY, RUN, {"link_pos": 1e-5}), ["second-engine"]),
-        (rules.computed_again(falling(1.0, steps=20), RUN), ["second-engine"] * 5),
+        (rules.mean_speed(FALL, SPEED, 0.1, 1e-9), []),
+        (rules.mean_speed(FALL * 2, SPEED, 0.1, 0.9), ["motion"]),
+        (rules.mean_speed(FALL * 2, SPEED, 0.1, 3.1), []),
         (rules.copied(RUN, {"short": falling(1.0, steps=20), "moved": NEARLY}), []),
         (rules.copied(RUN, {"same": falling(1.0)}), ["second-engine"]),
         (apart("a", "x", np.array([1.0, np.nan]), np.zeros(()), 2.0), ["a"]),

@@ -29,12 +29,7 @@ MAP = [
         "outcomes": ["read a `qpos`", "stop"],
         "featured": True,
     },
-    {
-        "id": "L06",
-        "title": "Six",
-        "page": "lessons/l06-six/lecture",
-        "outcomes": ["walk"],
-    },
+    {"id": "L06", "title": "Six", "page": "lessons/l06-six/lecture", "outcomes": ["walk"]},
 ]
 CARDS = "```{course-map}\n```\n"
 FEATURED = """

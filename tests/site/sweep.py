@@ -4,13 +4,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-import sweep_scripts as scripts
 from playwright.sync_api import Browser, Page
-from watching import MOVING, drawn, foreign, settle, violations, watch
+from watching import SCRIPTS, call, drawn, foreign, settle, violations, watch
 
 BUDGET = 490_000
 """Largest first visit before the reader asks for the viewer [bytes, compressed]. A page contains
 its drawings."""
+MEASURE = 40
+"""Longest line of running text, in letter heights; one holds about two letters."""
+MIDDLE_ROWS = "tr:nth-child(n+11):nth-last-child(n+11)"
+"""Neither gone through by Tab nor looked at by axe-core: a table shows with the ten rows at either
+end how it takes the focus, and what its cells are like."""
 STILL = 0.01
 """Largest cumulative layout shift; browsers call up to 0.1 good."""
 AXE = {
@@ -93,7 +97,7 @@ class Visit:
             viewport={"width": width, "height": height}, color_scheme=kind.scheme
         )
         self.wrong["messages"], self.wrong["foreign hosts"] = watch(page), foreign(page, base)
-        page.add_init_script(scripts.WATCH_SHIFTS)
+        page.add_init_script(path=SCRIPTS / "watch_shifts.js")
         page.goto(f"{base}/{name}")
         if "?q=" in name:
             page.wait_for_selector("#search-results li a")
@@ -101,8 +105,8 @@ class Visit:
         page.emulate_media(reduced_motion="reduce")
         page.clock.install()  # it runs as ever, and can be put forward
         self._resize(page, kind.narrow)
-        self.note("motion", page.evaluate(MOVING))
-        page.evaluate(scripts.ONE_OF_EACH)
+        self.note("motion", call(page, "moving"))
+        call(page, "one_of_each")
         self._with_closed_folds(page)
         self._with_open_folds(page)
         page.close()
@@ -121,23 +125,23 @@ class Visit:
             page.wait_for_load_state("networkidle")
         theme = page.evaluate("document.documentElement.dataset.theme")
         self.note("theme", [] if theme == self.kind.scheme else [f"shown in {theme}"])
-        loaded = page.evaluate(scripts.LOADED)
+        loaded = call(page, "loaded")
         weights = {entry["name"]: entry["bytes"] for entry in loaded}
         self.note("weight", [str(weights)] if sum(weights.values()) > BUDGET else [])
         blocking = [entry["name"] for entry in loaded if entry["blocking"]]
         self.note("blocking scripts", [file for file in blocking if not file.endswith(".css")])
         self.note("blocking scripts", [] if blocking else ["not even a style sheet: is it told?"])
         if "layout shift" in self.wrong:
-            page.evaluate(scripts.READ)
+            call(page, "read")
             shifts = page.evaluate("allShifts()")
             moved = sum(value for value, _ in shifts) > STILL
             self.note("layout shift", map(str, shifts) if moved else [])
-        self.note("images", page.evaluate(scripts.IMAGES))
+        self.note("images", call(page, "images"))
 
     def _with_closed_folds(self, page: Page) -> None:
-        self.note("tab order", page.evaluate(scripts.TAB_ORDER))
+        self.note("tab order", call(page, "tab_order"))
         if "focus" in self.wrong and (self.every_state or self.kind.narrow < 768):
-            hidden = f"{scripts.MIDDLE_ROWS} {{ display: none !important }}"
+            hidden = f"{MIDDLE_ROWS} {{ display: none !important }}"
             without = page.add_style_tag(content=hidden)
             settle(page)
             self.note("focus", focus_complaints(page))
@@ -155,17 +159,17 @@ class Visit:
             page.evaluate("document.documentElement.style.fontSize = '100%'")
 
     def _with_open_folds(self, page: Page) -> None:
-        page.evaluate(scripts.OPEN_FOLDS)
+        page.evaluate("document.querySelectorAll('details').forEach(fold => { fold.open = true; })")
         settle(page)
-        self.note("scroll boxes", page.evaluate(scripts.SCROLL_BOXES))
+        self.note("scroll boxes", call(page, "scroll_boxes"))
         for width in self.kind.widths:
             page.set_viewport_size({"width": width, "height": self.kind.size[1]})
             drawn(page)
-            layout = page.evaluate(scripts.LAYOUT)
+            layout = call(page, "layout", MEASURE)
             self.note("width", ["wider than the window"] if layout["wide"] else [], f"{width} px")
             self.note("width", layout["out"], f"{width} px")
             self.note("lines", layout["long"], f"{width} px")
-        page.eval_on_selector_all(scripts.MIDDLE_ROWS, "rows => rows.forEach(row => row.remove())")
+        page.eval_on_selector_all(MIDDLE_ROWS, "rows => rows.forEach(row => row.remove())")
         for width, options in self.kind.axe.items():
             self._resize(page, width)
             self.note("axe", violations(page, **options), f"{width} px")
@@ -173,7 +177,7 @@ class Visit:
 
 def focus_complaints(page: Page) -> list[str]:
     """Press Tab until the focus leaves the page or comes back; return the stops not seen."""
-    page.evaluate(scripts.NOTE_FOCUS)
+    call(page, "note_focus")
     for _ in range(100):
         for _ in range(15):
             page.keyboard.press("Tab")

@@ -7,37 +7,16 @@ from playwright.sync_api import Page
 
 from robo_genesis.pipeline import npm
 
+SCRIPTS = Path(__file__).with_name("scripts")
+"""Functions that tests call in a page, a file each."""
+
 RUN_AXE = """([part, options]) => axe.run(part, options).then(({ violations, passes }) => [
   violations.flatMap(rule => rule.nodes.map(node => `${rule.id}: ${node.target.join(" ")}`)),
   passes.length,
 ])"""
 SERVED_ONLY = {"404.html"}  # a server shows it for any address, so its own are absolute
-MOVING = """() => [...document.querySelectorAll("*")].filter(element => {
-  const style = getComputedStyle(element);
-  return parseFloat(style.transitionDuration) > 0 || style.animationName !== "none"
-    || style.scrollBehavior === "smooth";
-}).map(element => element.outerHTML.slice(0, 100))"""
 THEME_WAITS = 300
 """How long after a change the theme looks again which boxes scroll [ms of the page's clock]."""
-
-
-POSES = """() => {
-  const viewer = document.querySelector("model-viewer");
-  const scene = viewer[Object.getOwnPropertySymbols(viewer).find(s => s.description === "scene")];
-  scene.updateMatrixWorld(true);
-  let world;
-  scene.traverse(node => { if (node.name === "world") world = node; });
-  const back = world.matrixWorld.clone().invert();
-  const ghost = world.children.find(node => node.name === "target");
-  return Object.fromEntries([...world.children, ...ghost?.children ?? []].map(link => {
-    const inRecord = back.clone().multiply(link.matrixWorld);
-    return [link.name, {
-      position: [...link.position.clone().setFromMatrixPosition(inRecord)],
-      rotation: [...link.quaternion.clone().setFromRotationMatrix(inRecord)],
-    }];
-  }));
-}"""
-"""How the links stand in the running viewer, in the frame of the record: [m] and (x, y, z, w)."""
 
 
 def page_names(site: Path) -> list[str]:
@@ -45,6 +24,11 @@ def page_names(site: Path) -> list[str]:
     names = [path.relative_to(site).as_posix() for path in sorted(site.rglob("*.html"))]
     assert "index.html" in names
     return names
+
+
+def call(page: Page, script: str, *argument: Any) -> Any:
+    """Call the function of a file in a page."""
+    return page.evaluate((SCRIPTS / f"{script}.js").read_text(), *argument)
 
 
 def errors(page: Page) -> list[str]:

@@ -42,10 +42,7 @@ def doctor_table(run: Experiment) -> Iterator[dict[str, str]]:
     """Return one row for each step of the doctor: its result, and what a pass rules out."""
     for number, step in enumerate(machine.STEPS, start=1):
         verdict = "passes" if run.readings[machine.DOCTOR][step] else "does not pass"
-        yield {
-            "step": f"{number} `{step}` {verdict}",
-            "what passing rules out": RULES_OUT[step],
-        }
+        yield {"step": f"{number} `{step}` {verdict}", "what passing rules out": RULES_OUT[step]}
 
 
 def doctor_lines(steps: list[dict[str, str]]) -> str:
@@ -64,7 +61,7 @@ def start_table(run: Experiment) -> str:
     first, second = (sum(of) for of in zip(*rows.values(), strict=True))
     ratio = {"first divided by second": (f"{first / second:.1f}", "")}
     heads = {f"{start} start [s]": 3 for start in machine.STARTS}
-    return tables.number_table("part", heads, {**rows, "together": (first, second), **ratio})
+    return tables.timed_table("part", heads, {**rows, "together": (first, second), **ratio})
 
 
 def metric_table(run: Experiment) -> str:

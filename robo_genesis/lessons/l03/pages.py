@@ -8,13 +8,7 @@ from robo_genesis.core.checks import Finding
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import checks, spec, study, study_deeper, study_spec
-from robo_genesis.lessons.l03.metrics import (
-    BounceMetrics,
-    LandingMetrics,
-    SlideMetrics,
-    case_metrics,
-)
+from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_deeper, study_spec
 from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 
 MEASURES = False
@@ -41,7 +35,7 @@ LAB = MeasuringPage(
     kind=ContactTrace,
     links=(spec.LINK,),
     readings=readings(spec.CASES),
-    measure=case_metrics,
+    measure=metrics.case_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
@@ -75,9 +69,9 @@ MISTAKES = further("mistakes")
 LESSON = Lesson(
     spec=spec,
     metrics={
-        **dict.fromkeys(spec.LANDINGS, LandingMetrics),
-        **dict.fromkeys(spec.SLIDES, SlideMetrics),
-        **dict.fromkeys(spec.BOUNCES, BounceMetrics),
+        **dict.fromkeys(spec.LANDINGS, metrics.LandingMetrics),
+        **dict.fromkeys(spec.SLIDES, metrics.SlideMetrics),
+        **dict.fromkeys(spec.BOUNCES, metrics.BounceMetrics),
     },
     pages={
         "lab": LAB,

@@ -10,13 +10,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, body_schematic, legend_above, look, solid
-from robo_genesis.lessons.l03 import checks, spec, theory
-from robo_genesis.lessons.l03.metrics import (
-    BounceMetrics,
-    clearance,
-    conserved_energy,
-    total_energy,
-)
+from robo_genesis.lessons.l03 import checks, metrics, spec, theory
 from robo_genesis.sim.bodies.contacts import TOP
 
 MEASURES = False
@@ -68,7 +62,7 @@ def landings(run: Experiment) -> Figure:
     for name, (mark, samples) in LANDINGS.items():
         trace, case = run.traces[name], run.cases[name]
         label = f"{spec.LABELS[name]}, h = {1000 * case.h:g} ms"
-        clear = 1000 * clearance(trace, case)
+        clear = 1000 * metrics.clearance(trace, case)
         ax.plot(trace.t, clear, label=label, **solid(mark, **samples))
     ax.axhline(0, **LINE)
     ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
@@ -86,7 +80,7 @@ def contact_counts(run: Experiment) -> Figure:
     axes = figure.subplots(4, 1, sharex=True, sharey=True)
     for ax, (name, (mark, _)) in zip(axes, LANDINGS.items(), strict=True):
         t, counts = run.traces[name].t, run.traces[name].contacts[:, 0]
-        deepest = int(clearance(run.traces[name], run.cases[name]).argmin())
+        deepest = int(metrics.clearance(run.traces[name], run.cases[name]).argmin())
         ax.step(t, counts, where="post", **solid(mark))
         ax.plot(t[deepest], counts[deepest], marker="v", **solid(mark, markersize=8))
         ax.set(xlim=WINDOW, yticks=[0, 4], ylim=(-0.5, 4.8))
@@ -119,7 +113,7 @@ def slides(
     for name, mark in marks.items():
         trace, style = run.traces[name], solid(mark, **styles.get(name, {}))
         axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=labels[name], **style)
-        axes[1].plot(trace.t, 1000 * clearance(trace, run.cases[name]), **style)
+        axes[1].plot(trace.t, 1000 * metrics.clearance(trace, run.cases[name]), **style)
         axes[2].plot(trace.t, trace.link_ang[:, 0, 1], **style)
     heads = ("speed along x [m/s]", "clearance [mm]", "turning about y [rad/s]")
     for ax, head in zip(axes, heads, strict=True):
@@ -153,8 +147,8 @@ def ball_energies(run: Experiment) -> Figure:
     axes = figure.subplots(2, 1, sharex=True)
     for name, mark in BOUNCES_SHOWN.items():
         trace, case = run.traces[name], run.cases[name]
-        start, clear = total_energy(trace, case)[0], clearance(trace, case) > 0
-        for ax, energy in zip(axes, (total_energy, conserved_energy), strict=True):
+        start, clear = metrics.total_energy(trace, case)[0], metrics.clearance(trace, case) > 0
+        for ax, energy in zip(axes, (metrics.total_energy, metrics.conserved_energy), strict=True):
             share = np.where(clear, 100 * energy(trace, case) / start, np.nan)
             ax.plot(trace.t, share, label=spec.LABELS[name], **solid(mark, linewidth=1.5))
     for ax, title in zip(axes, ("Total energy", "Total energy − m g h v / 2"), strict=True):
@@ -168,7 +162,7 @@ def ball_energies(run: Experiment) -> Figure:
 def kept_by_step(run: Experiment) -> Figure:
     """Draw the energy that the ball keeps at its first bounce by solver step [%]."""
     figure, ax = plotting.axes(3.2)
-    balls = checks.measured(run, BounceMetrics)
+    balls = checks.measured(run, metrics.BounceMetrics)
     h = [1000 * run.cases[name].h for name in balls]
     shares = [found.first_kept for found in balls.values()]
     ax.semilogx(h, shares, marker="o", label="measured", **look("baseline"))

@@ -130,10 +130,7 @@ def hops_by_step(run: Experiment) -> Iterator[Row]:
     """Return the hops by solver step for both coefficients, with the formula of one step."""
     for cases in study_spec.HOP_STEP_CASES.values():
         case = next(iter(cases.values()))
-        row = {
-            "h": milliseconds(case.h),
-            "h / T": f"{case.h / theory.contact_seconds(case):.3g}",
-        }
+        row = {"h": milliseconds(case.h), "h / T": f"{case.h / theory.contact_seconds(case):.3g}"}
         for name, of in cases.items():
             mu = theory.pair_friction(of)
             row[f"μ = {mu:g}"] = millimetres(run.metrics[name].hop)

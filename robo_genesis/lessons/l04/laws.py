@@ -5,21 +5,22 @@ from collections.abc import Iterator
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import study_spec
-from robo_genesis.sim.arm.laws import assigned_path, driven_in_mujoco, driven_run
-from robo_genesis.sim.laws import computed_again, copied, kept, times
-from robo_genesis.sim.mujoco import joints as mujoco_joints
+from robo_genesis.sim.arm.laws import assigned_path, driven_in_mujoco, driven_run, model_joints
+from robo_genesis.sim.laws import copied, kept
 
 MEASURES = False
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """At each sample links, forces and velocities are those of the robot; MuJoCo runs repeat."""
+    """At each sample links, forces and velocities are those of the robot, also in MuJoCo."""
+    yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
         if name in study_spec.SECOND_RUNS:
             broken = in_mujoco(run, name)
+        elif name == study_spec.ASSIGNED:
+            broken = assigned_path(run.traces[name], case, run.links, run.traces.values())
         else:
-            rules = assigned_path if name == study_spec.ASSIGNED else driven_run
-            broken = rules(run.traces[name], case, run.links)
+            broken = driven_run(run.traces[name], case, run.links)
         yield from kept(name, broken)
 
 
@@ -27,10 +28,5 @@ def in_mujoco(run: Experiment, name: str) -> Iterator[Finding]:
     """Yield what a run in MuJoCo does not have."""
     trace, case, second = run.traces[name], run.cases[name], study_spec.SECOND_RUNS[name]
     by_genesis = {n: of for n, of in run.traces.items() if n not in study_spec.SECOND_RUNS}
-    yield from times(trace, case.steps, case.dt)
     yield from copied(trace, by_genesis)
-    if second.integrator == "Euler":
-        yield from driven_in_mujoco(trace, case, run.links, second.timestep, second.integrator)
-    else:
-        again = mujoco_joints.run_case(case, run.links, second.timestep, second.integrator)
-        yield from computed_again(trace, again)
+    yield from driven_in_mujoco(trace, case, run.links, second.timestep, second.integrator)

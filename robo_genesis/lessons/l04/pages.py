@@ -36,7 +36,7 @@ LECTURE = LAB.with_more(
     partial(study_spec.parameters, "lecture"),
     runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES) | {study_spec.ASSIGNED: ASSIGNED},
     {study.GROUP: Readings(study.GRAVITY)},
-    (study_checks.study_factors, *lecture_checks.LECTURE),
+    (study_checks.study_factors, study_checks.same_model, *lecture_checks.LECTURE),
 )
 FORMULA = MISTAKES.with_more(
     partial(study_spec.parameters, "formula"),
@@ -52,7 +52,7 @@ IN_MUJOCO = {
 INTEGRATOR = MISTAKES.with_more(
     partial(study_spec.parameters, "integrator"),
     runs_of(study_spec.SUBSTEP_CASES) | IN_MUJOCO,
-    {study.GROUP: Readings(study.AT_START | study.IN_MUJOCO)},
+    {study.GROUP: Readings(study.AT_START)},
     study_checks.INTEGRATOR,
 )
 GRID_NOTE = "in a scene with a copy of the robot for each run of the grid"

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import marks_of
-from robo_genesis.core.plotting import BAND, LIMIT, LINE, look, solid
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.plotting import BAND, LIMIT, LINE, solid
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
@@ -55,8 +55,8 @@ def assigned(run: Experiment) -> Figure:
         (written, 4, "set_dofs_position", crosses, (0.6, (10, -20))),
         (commanded, 1, "control_dofs_position", solid("baseline"), (0.27, (2, -18))),
     ):
-        ax.plot(trace.t[::every], trace.q[::every, ENTRY], **style)
-        _direct(ax, trace.t, trace.q[:, ENTRY], text, style["color"], label)
+        (line,) = ax.plot(trace.t[::every], trace.q[::every, ENTRY], **style)
+        _direct(ax, line, text, label)
     title = f"Assigned or commanded, {STEPPED_JOINT}"
     _finish(ax, title, "q [rad]", float(commanded.t[-1]))
     return figure
@@ -92,9 +92,9 @@ def _response(
             values = getattr(traces[name], field)[:, ENTRY]
             t = traces[name].t[-len(values) :]
             t, values = t[t <= until], values[t <= until]
-            ax.plot(t, values, marker=".", markersize=5, **solid(mark))
+            (line,) = ax.plot(t, values, marker=".", markersize=5, **solid(mark))
             if labels:
-                _direct(ax, t, values, name, look(mark)["color"], labels[panel][name])
+                _direct(ax, line, name, labels[panel][name])
         _finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel, until)
         ax.label_outer()
     return figure
@@ -108,8 +108,8 @@ def baseline_forces(run: Experiment) -> Figure:
         ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
         ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
     ):
-        ax.plot(trace.t_step, array[:, ENTRY], marker=".", markersize=5, **solid(mark))
-        _direct(ax, trace.t_step, array[:, ENTRY], name, solid(mark)["color"], label)
+        (line,) = ax.plot(trace.t_step, array[:, ENTRY], marker=".", markersize=5, **solid(mark))
+        _direct(ax, line, name, label)
     _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", until)
     return figure
 
@@ -136,14 +136,12 @@ def defined(run: Experiment) -> Figure:
     return figure
 
 
-def _direct(
-    ax: Axes, t: FloatArray, values: FloatArray, text: str, color: str, label: Label
-) -> None:
+def _direct(ax: Axes, line: Line2D, text: str, label: Label) -> None:
     """Write a name beside the sample of a curve that is nearest to a time."""
-    time, offset = label
+    (time, offset), (t, values) = label, np.array(line.get_data(), float)
     n = int(np.abs(t - time).argmin())
     ax.annotate(text, (float(t[n]), float(values[n])), offset, textcoords="offset points",
-                color=color, fontweight="bold")  # fmt: skip
+                color=line.get_color(), fontweight="bold")  # fmt: skip
 
 
 def _note(

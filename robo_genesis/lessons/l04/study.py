@@ -33,9 +33,6 @@ AT_START = {
 }  # fmt: skip
 """What Genesis reports of the start pose, with units. Gravity is the effort that holds it."""
 
-IN_MUJOCO = {"inertia_MuJoCo": "kg·m²", "gravity_at_start_MuJoCo": "N·m"}
-"""The same in MuJoCo."""
-
 MASSES = {f"mass_KV_{kv:g}": "kg·m²" for kv in COMPARED_KV}
 """Entry of the mass matrix at the start while a position is commanded with this KV."""
 
@@ -78,10 +75,14 @@ def read_gravity(
     return {name: float(of[spec.ENTRY]) for name, of in efforts.items()}
 
 
-def read_second_engine() -> dict[str, float]:
-    """Read inertia and gravity effort at the start in MuJoCo."""
-    at_rest = mujoco_joints.at_rest(spec.BASELINE.q_start)
-    return {name: float(of[spec.ENTRY]) for name, of in zip(IN_MUJOCO, at_rest, strict=True)}
+def by_model(traces: Mapping[str, Trace]) -> dict[str, float]:
+    """Return every value of `GROUP` by the model in MuJoCo, for the cases that have a trace."""
+    inertia, gravity = (float(of[spec.ENTRY]) for of in mujoco_joints.at_rest(spec.G1.q_start))
+    damping, h = float(mujoco_joints.passive_damping()[spec.ENTRY]), spec.G1.dt / spec.G1.substeps
+    found = dict(zip(AT_START, (damping, inertia, gravity), strict=True))
+    found |= {f"mass_KV_{kv:g}": inertia + h * (damping + kv) for kv in COMPARED_KV}
+    ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES if name in traces}
+    return found | {n: float(mujoco_joints.at_rest(q)[1][spec.ENTRY]) for n, q in ends.items()}
 
 
 def implicit_term(run: Experiment, kv: float) -> float:

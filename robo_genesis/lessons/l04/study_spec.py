@@ -100,11 +100,9 @@ final error, so this selects the cases that `gravity_support` checks."""
 GRAVITY_AGREEMENT = 0.01
 """Share within which KP × final error and gravity agree."""
 
-SAME_MODEL = 1e-3
-"""Share within which both engines must agree on inertia, and on gravity effort, at the start."""
-
-IMPLICIT_TERM = 1e-3
-"""Share of the inertia within which `get_mass_mat` less h (d + KV) must equal it."""
+SAME_MODEL = 3e-4
+"""Share within which the readings of the stepped joint agree with the model in MuJoCo; the largest
+difference is 1.1e-4, of gravity at an end."""
 
 SPREAD_SHARE = 0.2
 """Largest spread between the engines at the finest solver step, as a share of their spread at the

@@ -11,13 +11,11 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.kinematics import ARM, CHAIN, Pose, measured_hand
+from robo_genesis.sim.arm.reaching import ANSWERS
 from robo_genesis.sim.camera import geometry as cameras
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 MEASURES = False
-
-CLOSE = 5e-6
-"""Largest difference to a pose of the engine, which computes in float32 [m or rad]."""
 
 TINY = 1e-9
 """Largest difference that rounding explains in float64."""
@@ -31,12 +29,7 @@ ROUNDED = 1e-6
 SIZE = (32, 20)
 """Columns and rows of the invented cameras."""
 
-TURNED = np.array([
-    [0.6, -0.48, 0.64, 1.1],
-    [0.8, 0.36, -0.48, -0.7],
-    [0.0, 0.8, 0.6, 0.9],
-    [0.0, 0.0, 0.0, 1.0],
-])  # fmt: skip
+TURNED = cameras.looking((1.1, -0.7, 0.9), (0.46, -0.22, 0.3))
 """The pose of an invented camera that looks down, z backwards [m]."""
 
 CAMERAS = {
@@ -56,10 +49,12 @@ def forward(chain: Callable[..., Any], trace: Trace) -> Iterator[Finding]:
     """
     for state in (0, trace.steps // 8, trace.steps):
         q = trace.q[state, :ARM].astype(float)
-        yield from near(f"state_{state}", chain(q, CHAIN), measured_hand(trace, state), CLOSE)
+        yield from near(
+            f"state_{state}", chain(q, CHAIN), measured_hand(trace, state), spec.SAME_POSE[0]
+        )
     q = np.array([0.3, -0.4, 0.5, -1.6, 0.7, 1.1, -0.2])
     position, quat = mujoco_kinematics.link_poses(np.array([[*q, 0.0, 0.0]]), ["hand"])
-    yield from near("mujoco", chain(q, CHAIN), Pose(position[0, 0], quat[0, 0]), CLOSE)
+    yield from near("mujoco", chain(q, CHAIN), Pose(position[0, 0], quat[0, 0]), spec.SAME_POSE[0])
     poses = kinematics.link_poses(q)
     for count in (1, 4):
         expected = Pose(poses.position[count - 1], poses.quat[count - 1])
@@ -98,28 +93,12 @@ def step(damped: Callable[..., Any]) -> Iterator[Finding]:
     yield below("position_only.distance_left_m", float(np.linalg.norm(left)), 1e-3)
 
 
-ANSWERS: dict[str, tuple[tuple[float, ...], tuple[float, ...], bool]] = {
-    "exact": ((0.1,) * 9, (0.0,) * 6, True),
-    "within_both": ((0.1,) * 9, (3e-4, 0, 0, 0, 4e-3, 0), True),
-    "at_both_limits": ((0.1,) * 9, (5e-4, 0, 0, 0, 0, 5e-3), True),
-    "too_far": ((0.1,) * 9, (6e-4, 0, 0, 0, 0, 0), False),
-    "too_far_backwards": ((0.1,) * 9, (0, 0, -2.0, 0, 0, 0), False),
-    "too_far_along_the_diagonal": ((0.1,) * 9, (4e-4, 4e-4, 0, 0, 0, 0), False),
-    "turned_too_far": ((0.1,) * 9, (0, 0, 0, 0, -6e-3, 0), False),
-    "turned_too_far_about_two_axes": ((0.1,) * 9, (0, 0, 0, 4e-3, 4e-3, 0), False),
-    "opposite_errors": ((0.1,) * 9, (0.2, -0.2, 0, 0.2, -0.2, 0), False),
-    "joint_not_a_number": ((0.1,) * 8 + (np.nan,), (0.0,) * 6, False),
-    "joint_infinite": ((np.inf,) + (0.1,) * 8, (0.0,) * 6, False),
-    "residual_not_a_number": ((0.1,) * 9, (np.nan,) + (0.0,) * 5, False),
-}
-"""Joint positions, residual, and whether they may be commanded with the tolerances of `IK`."""
-
-
 @as_test
 def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` with invented answers."""
-    for name, (q, error, right) in ANSWERS.items():
-        found = accept(np.array(q), np.array(error, dtype=float), *spec.IK.tolerances)
+    for name, ((joint, value), error, right) in ANSWERS.items():
+        q = np.where(np.arange(9) == joint, value, 0.1)
+        found = accept(q, np.array(error, dtype=float), *spec.IK.tolerances)
         yield equal(name, bool(found), right)
     yield equal("looser_tolerances", bool(accept(np.zeros(9), np.full(6, 0.1), 0.2, 0.2)), True)
 

@@ -48,10 +48,7 @@ LAB = replace(
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
 ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
 SOLUTIONS = MOTION.with_more(
-    lambda: {"questions": case_inputs(spec.QUESTIONS)},
-    ANSWERS,
-    restarts.READINGS,
-    checks.SOLUTIONS,
+    lambda: {"questions": case_inputs(spec.QUESTIONS)}, ANSWERS, restarts.READINGS, checks.SOLUTIONS
 )
 """The page about many solutions, the map of targets and the target beyond reach."""
 

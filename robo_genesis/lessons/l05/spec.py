@@ -12,12 +12,17 @@ import numpy as np
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, read_only
 from robo_genesis.lessons.l05.run import ReachCase, SolveCase
-from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.engine_kinematics import IkSettings
+from robo_genesis.sim.arm import franka, reaching
 
 MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
+
+# What lessons about reaches have alike, under the names of a specification.
+IK, ONE_START, DOWN = reaching.IK, reaching.ONE_START, reaching.DOWN
+BEYOND_REACH, MARKER_RADIUS = reaching.BEYOND_REACH, reaching.MARKER_RADIUS
+RESOLUTION, TOLERANCES, REACHED = reaching.RESOLUTION, reaching.TOLERANCES, reaching.REACHED
+SAME_POSE, SAME_RESIDUAL = reaching.SAME_POSE, reaching.SAME_RESIDUAL
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
 
@@ -27,21 +32,8 @@ ARM_LIMITS = (
 )
 """Lower and upper limits (7,) of the arm's joints in the model file [rad]."""
 
-IK = IkSettings()
-"""Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each."""
-
-ONE_START = replace(IK, samples=1, iterations=100)
-"""The same without starts of the engine's choice, so that an answer depends on its start alone."""
-
-
 TARGET = read_only((0.45, 0.0, 0.35))
 """Target of the hand's origin in the world [m]."""
-
-DOWN = read_only((0.0, 1.0, 0.0, 0.0))
-"""Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
-
-BEYOND_REACH = read_only((2.0, 0.0, 2.0))
-"""A target that no posture of the arm comes near to [m]."""
 
 BASELINE = ReachCase(TARGET, DOWN, IK, steps=180)
 CASES = {
@@ -54,9 +46,6 @@ CASE_MARKS = {"baseline": "baseline", "kp_doubled": "first", "gravity_compensate
 
 LABELS = {name: name.replace("kp", "KP").replace("_", " ") for name in CASES}
 """Words of a reader for runs."""
-
-MARKER_RADIUS = 0.03
-"""Radius of the sphere that marks the target [m]; nothing collides with it."""
 
 VIEWED = "world"
 """The recorded view of the camera, before the first step."""
@@ -75,16 +64,15 @@ CUT = (1.65, 2.2)
 HAND_FOV = 60.0
 """Vertical field of view of the camera on the hand [degree]."""
 
-ON_HAND = (
-    (0.0, -1.0, 0.0, 0.05),
-    (-1.0, 0.0, 0.0, 0.0),
-    (0.0, 0.0, -1.0, 0.0),
-    (0.0, 0.0, 0.0, 1.0),
-)
+ON_HAND = ((0.0, -1, 0, 0.05), (-1, 0, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
 """The camera in the frame of the hand, z backwards: it looks along the fingers [m]."""
 
-VIEWS = (VIEWED, "cut", "hand")
-"""The views of the page about cameras: the first before the run, the others after it."""
+VIEWS: dict[str, dict[str, Any]] = {
+    VIEWED: VIEW,
+    "cut": VIEW | {"near": CUT[0], "far": CUT[1]},
+    "hand": {"fov": HAND_FOV, "near": 0.1, "far": 20.0},
+}
+"""The views of the page about cameras, and what the cameras are given, or have by default."""
 
 SEGMENTS = ("plane", "hand", "marker")
 """What is looked up in the segmentation."""
@@ -129,21 +117,6 @@ UNREACHABLE = SolveCase(BEYOND_REACH[None], DOWN, franka.Q_START[None], IK)
 
 QUESTIONS = REACH_MAP | {"many_starts": MANY_STARTS, "unreachable": UNREACHABLE}
 """Questions to the solver beyond those of the lab."""
-
-RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
-"""By unit: values that differ by no more than this are called equal, the noise floor."""
-
-TOLERANCES = {
-    "m": (1e-5, 1e-3), "rad": (1e-5, 1e-3), "rad/s": (1e-3, 1e-3), "N·m": (1e-2, 1e-3),
-    "N": (1e-2, 1e-3), "pixel": (1e-6, 0.0), "1": (1e-6, 0.0), "link_quat_wxyz": (1e-4, 0.0),
-}  # fmt: skip
-"""By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
-
-REACHED = (0.02, 0.05)
-"""The hand counts as arrived within these distances of its target [m] and [rad]."""
-
-SAME_POSE = (5e-6, 5e-6)
-"""Largest difference of a link's pose between two computations, one of them in float32 [m, rad]."""
 
 SAG_SHARE = 0.02
 """Share of the displacement that gravity, KP and the Jacobian may leave unexplained."""

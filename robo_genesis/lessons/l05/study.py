@@ -24,9 +24,7 @@ READINGS = {
     GROUP: Readings({"residual_m": "m", "residual_rad": "rad", "jacobian_difference": "m"}),
     REPEAT_GROUP: counts(["entries_that_differ"]),
 }
-"""Residuals of the baseline's answer; the largest difference of the engine's Jacobian from that of
-MuJoCo, in m/rad or without a unit; entries of q and residual that differ between two equal
-questions."""
+"""Residuals of an answer, difference of two engines' Jacobians, and of two equal questions."""
 
 
 def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
@@ -166,9 +164,9 @@ def families(solutions: FloatArray, target: Pose) -> list[tuple[FloatArray, list
     return sorted(found, key=lambda family: -len(family[1]))
 
 
+# Two steps along the curve, of which one may be missing at a joint limit.
 SAME_CURVE = 0.1
-"""A solution within this distance of a curve belongs to it [rad]: two steps along the curve, of
-which one may be missing at a joint limit."""
+"""A solution within this distance of a curve belongs to it [rad]."""
 
 
 def clusters(solutions: FloatArray, threshold: float) -> int:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm.franka import LINK_PARENTS
@@ -47,20 +46,13 @@ def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:
             f"{len(LINK_PARENTS)} of the robot and {world.switch} steps or more."
         )
     first, last = (Pose(world.positions[k], world.quat) for k in (0, -1))
-    command, angle = distance_and_angle(last, hand_pose(trace.target[-1]))
-    final, final_angle = distance_and_angle(last, measured_hand(trace, -1))
+    start, switched = (measured_hand(trace, k) for k in (0, world.switch))
     later = trace.link_pos[world.switch :, HAND].astype(np.float64)
-    return WorldMetrics(
-        start_distance=distance_and_angle(first, measured_hand(trace, 0))[0],
-        residual=command,
-        residual_angle=angle,
-        first_distance=distance_and_angle(first, measured_hand(trace, world.switch))[0],
-        final_distance=final,
-        final_angle=final_angle,
-        moved_later=farthest(later) if len(later) > 1 else None,
+    apart = np.linalg.norm(later - later[0], axis=1)
+    return WorldMetrics(  # in the order of its fields
+        distance_and_angle(first, start)[0],
+        *distance_and_angle(last, hand_pose(trace.target[-1])),
+        distance_and_angle(first, switched)[0],
+        *distance_and_angle(last, measured_hand(trace, -1)),
+        float(apart.max()) if len(apart) > 1 else None,
     )
-
-
-def farthest(positions: FloatArray) -> float:
-    """Return the largest distance of positions (n, 3) from the first [m]."""
-    return float(np.linalg.norm(positions - positions[0], axis=1).max())

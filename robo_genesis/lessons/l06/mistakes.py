@@ -39,8 +39,7 @@ def begin(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment
 
 def distances(trace: Trace, target: FloatArray) -> FloatArray:
     """Return the distance of the hand from a point in all states (n+1,) [m]."""
-    hand = [measured_hand(trace, k).position for k in range(trace.steps + 1)]
-    return np.asarray(np.linalg.norm(np.stack(hand) - target, axis=1))
+    return np.asarray(np.linalg.norm(measured_hand(trace, slice(None)).position - target, axis=1))
 
 
 def one_value_each(

@@ -47,8 +47,8 @@ MISTAKES = replace(LECTURE, runs={}, readings=MODEL, checks=(checks.mapping,), c
 
 def timed(page: MeasuringPage, protocol: throughput.Protocol) -> MeasuringPage:
     """Return a page that also measures a throughput."""
-    readings, work = protocol.readings(), (checks.equal_work,)
-    return page.with_more(protocol.parameters, readings=readings, checks=work)
+    of_times = checks.equal_work, checks.times_in_order
+    return page.with_more(protocol.parameters, readings=protocol.readings(), checks=of_times)
 
 
 LAB = timed(LECTURE, throughput.PROTOCOL)
@@ -58,12 +58,7 @@ THROUGHPUT = timed(MISTAKES, throughput.DEEPER)
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, WorldMetrics),
-    pages={
-        "lab": LAB,
-        "lecture": LECTURE,
-        "mistakes": MISTAKES,
-        "throughput": THROUGHPUT,
-    },
+    pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES, "throughput": THROUGHPUT},
     replays={
         "batch": Replay(
             tuple(spec.WORLDS),

@@ -60,8 +60,7 @@ def distance(run: Experiment) -> Figure:
 
 def variants(run: Experiment) -> Figure:
     """Draw the distance of the hand from one target in four robots."""
-    title = "One target, four robots"
-    return distances(run, spec.VARIANTS, title)[0]
+    return distances(run, spec.VARIANTS, "One target, four robots")[0]
 
 
 def alone(run: Experiment) -> Figure:

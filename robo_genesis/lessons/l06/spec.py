@@ -10,27 +10,22 @@ from typing import Any
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, read_only
 from robo_genesis.lessons.l06.run import Environment
-from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.engine_kinematics import IkSettings
+from robo_genesis.sim.arm import franka, reaching
 
 MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 
+# What lessons about reaches have alike, under the names of a specification.
+IK, ONE_START, DOWN = reaching.IK, reaching.ONE_START, reaching.DOWN
+BEYOND_REACH, MARKER_RADIUS = reaching.BEYOND_REACH, reaching.MARKER_RADIUS
+RESOLUTION, TOLERANCES, REACHED = reaching.RESOLUTION, reaching.TOLERANCES, reaching.REACHED
+SAME_POSE, SAME_RESIDUAL = reaching.SAME_POSE, reaching.SAME_RESIDUAL
+
 EXPECTED_MODEL = franka.MODEL_COUNTS
 
 HAND_MASS = 0.73
 """Mass of the hand in the model file [kg]."""
-
-IK = IkSettings()
-"""Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each."""
-
-ONE_START = replace(IK, samples=1, iterations=100)
-"""The same without starts of the engine's choice, so that an answer depends on its start alone."""
-
-
-DOWN = read_only((0.0, 1.0, 0.0, 0.0))
-"""Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
 
 TARGETS = read_only(
     [(0.42, -0.12, 0.35), (0.48, -0.04, 0.4), (0.48, 0.06, 0.32), (0.4, 0.14, 0.38)]
@@ -45,9 +40,6 @@ SWITCH, STEPS = 180, 360
 
 RESET_AFTER = 30
 """Outer steps until the partial reset, while all arms are moving."""
-
-BEYOND_REACH = read_only((2.0, 0.0, 2.0))
-"""A target that no posture of the arm comes near to [m]."""
 
 MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
 """Targets of which one is refused [m]."""
@@ -110,12 +102,9 @@ SPACING = 1.0
 PLACES = ((-0.81, -0.75), (-0.54, 0.09), (0.34, -0.09), (0.61, 0.75))
 """Where the replay draws the environments [m]: from left to right, none hides another."""
 
-MARKER_RADIUS = 0.03
-"""Radius of the spheres that mark targets in the replay [m]."""
-
+# The engine places it in the world of environment 0, which pictures show at a corner of the group.
 VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
-"""The lesson's camera: all environments, side by side. The engine places it in the world
-of environment 0, which pictures show at a corner of the group."""
+"""The lesson's camera: all environments, side by side."""
 
 RELATIONS = (
     (("plain_robot", "stiff_robot"), "final_distance", "lower", 1e-3),
@@ -124,28 +113,12 @@ RELATIONS = (
 )
 """Written down before the runs: how the second case of a pair compares with the first [m]."""
 
-RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
-"""By unit: values that differ by no more than this are called equal, the noise floor."""
-
-TOLERANCES = {
-    "m": (1e-5, 1e-3), "rad": (1e-5, 1e-3), "rad/s": (1e-3, 1e-3), "N·m": (1e-2, 1e-3),
-    "N": (1e-2, 1e-3), "kg": (1e-6, 0.0), "1": (1e-6, 0.0), "link_quat_wxyz": (1e-4, 0.0),
-}  # fmt: skip
-"""By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
-
-REACHED = (0.02, 0.05)
-"""The hand counts as arrived within these distances of its target [m] and [rad]."""
-
-SAME_POSE = (5e-6, 5e-6)
-"""Largest difference of a pose between two computations, one of them in float32 [m, rad]."""
-
+# Both are computed in float32.
 SAME_RUN = {"q": 5e-6, "qd": 5e-5, "control_force": 2e-2}
-"""By array: largest difference between a row of a batch and the same run alone [rad or m, rad/s or
-m/s, N·m or N]. Both are computed in float32."""
+"""Largest difference of a row from the same run alone [rad or m, rad/s or m/s, N·m or N]."""
 
 HELD = 0.05
-"""Largest difference of a torque at rest from gravity and load by MuJoCo, and from KP times the
-distance of the joint from its command [N·m]."""
+"""Largest difference of a torque at rest from gravity and load, and from KP times error [N·m]."""
 
 
 def parameters() -> dict[str, Any]:

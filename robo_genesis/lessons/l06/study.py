@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.experiment import Readings, counts
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import ask, reach, reset_some, start
@@ -14,22 +15,15 @@ from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.batch import set_link_mass
 from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR
 from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.joints import resolve_joints
-
-MIXED = {f"row_{k}_m": "m" for k in spec.ENVS}
-"""Position residuals of a question with one target beyond reach."""
-
-MASSES = dict.fromkeys(spec.VARIANTS, "kg")
-"""Mass of each hand, as it reads back."""
-
+from robo_genesis.sim.arm.joints import JointMap, resolve_joints
 
 READINGS = {
     "model": counts(spec.EXPECTED_MODEL),
-    "mixed": Readings(MIXED),
+    "mixed": Readings({f"row_{k}_m": "m" for k in spec.ENVS}),
     "mixed_accepted": counts(spec.WORLDS),
-    "hand_mass": Readings(MASSES),
+    "hand_mass": Readings(dict.fromkeys(spec.VARIANTS, "kg")),
 }
-"""The groups of the engine's values on the lesson's pages."""
+"""Counts, residuals and verdicts of a question with a target beyond reach, and masses of hands."""
 
 
 def read_mixed(page: Any, robot: Any) -> None:
@@ -39,8 +33,24 @@ def read_mixed(page: Any, robot: Any) -> None:
     answer = ask(robot, page.joints, worlds)
     apart, _ = kinematics.distances(answer.error)
     verdicts = kinematics.accepted(answer.q, answer.error, *spec.ONE_START.tolerances)
-    page.readings["mixed"] = dict(zip(MIXED, map(float, apart), strict=True))
+    page.readings["mixed"] = dict(zip(READINGS["mixed"].units, map(float, apart), strict=True))
     page.readings["mixed_accepted"] = dict(zip(spec.WORLDS, map(int, verdicts), strict=True))
+
+
+def residual(position: FloatArray, joints: JointMap) -> float:
+    """Return the distance that our damped least squares leaves from a target of `spec.MIXED` [m].
+
+    It has the settings of the engine's solver, and ends where that does.
+    """
+    settings, target = spec.ONE_START, kinematics.Pose(position, spec.DOWN)
+    q, limits = spec.FIRST.q_start[:7], (joints.lower[:7], joints.upper[:7])
+    for _ in range(settings.iterations):
+        error = kinematics.pose_error(target, kinematics.hand_pose(q))
+        if kinematics.accepted(q, error, *settings.tolerances):
+            break
+        q = kinematics.solve(target, q, *limits, iterations=1, damping=settings.damping,
+                             largest=settings.largest_step)  # fmt: skip
+    return kinematics.distance_and_angle(target, kinematics.hand_pose(q))[0]
 
 
 def record(page: Any, scene: Any, robot: Any, camera: Any) -> None:
@@ -74,7 +84,7 @@ def record_variants(page: Any, scene: Any, robot: Any) -> None:
     loaded = [row for row, world in enumerate(worlds) if world.load]
     heavy = np.array([spec.HAND_MASS + worlds[row].load for row in loaded])
     masses = set_link_mass(robot, END_EFFECTOR, heavy, loaded)
-    page.readings["hand_mass"] = dict(zip(MASSES, map(float, masses), strict=True))
+    page.readings["hand_mass"] = dict(zip(spec.VARIANTS, map(float, masses), strict=True))
     page.traces |= dict(zip(spec.VARIANTS, reach(scene, robot, page.joints, worlds), strict=True))
     set_link_mass(robot, END_EFFECTOR, np.full(len(loaded), spec.HAND_MASS), loaded)
 

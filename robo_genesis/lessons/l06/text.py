@@ -191,7 +191,7 @@ def throughput_table(run: Experiment) -> str:
         rate = three(size / step)
         rows[f"{size}"] = ms(step), three(step / first), f"**{rate}**" if size == best else rate
     heads = ("one step [ms]", "times the first", "steps per second, all")
-    return tables.number_table("environments", dict.fromkeys(heads, 0), rows)
+    return tables.timed_table("environments", dict.fromkeys(heads, 0), rows)
 
 
 def throughput_details(run: Experiment) -> str:
@@ -201,7 +201,7 @@ def throughput_details(run: Experiment) -> str:
         of = [found[f"{name}_{size}"] for name in ("fastest", "slowest", "build", "memory")]
         rows[f"{size}"] = f"{ms(of[0])} to {ms(of[1])}", three(DT / step), *of[2:]
     heads = ("fastest to slowest [ms]", "simulated s per s, each", "build [s]", "memory [MiB]")
-    return tables.number_table("environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows)
+    return tables.timed_table("environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows)
 
 
 def fitted(run: Experiment) -> Model:
@@ -216,7 +216,7 @@ def model_table(run: Experiment) -> str:
         expected, name = float(model.step_time(size)), f"{size}{', fitted' * (size in FITTED)}"
         rows[name] = ms(step), ms(expected), step / expected
     heads = {"measured [ms]": 0, "model [ms]": 0, "ratio": 2}
-    return tables.number_table("B", heads, rows)
+    return tables.timed_table("B", heads, rows)
 
 
 def constants_table(run: Experiment) -> str:
@@ -230,7 +230,7 @@ def constants_table(run: Experiment) -> str:
             f"{three(model.fixed / model.each)} environments"
         ),
     }
-    return tables.number_table("constant", {"fit": 0}, {name: (of,) for name, of in rows.items()})
+    return tables.timed_table("constant", {"fit": 0}, {name: (of,) for name, of in rows.items()})
 
 
 def content_table(run: Experiment) -> str:
@@ -239,7 +239,7 @@ def content_table(run: Experiment) -> str:
     for size in (1, 256):
         sphere, robot = (run.readings[GROUP][f"step_{of}{size}"] for of in ("sphere_", ""))
         rows[f"{size}"] = ms(sphere), ms(robot), three(robot / sphere)
-    return tables.number_table("B", dict.fromkeys(("sphere [ms]", "robot [ms]", "ratio"), 0), rows)
+    return tables.timed_table("B", dict.fromkeys(("sphere [ms]", "robot [ms]", "ratio"), 0), rows)
 
 
 def cache_table(run: Experiment) -> str:
@@ -253,4 +253,4 @@ def cache_table(run: Experiment) -> str:
         "the first divided by the second": three(one / four),
         "memory of each environment": f"{three(grown)} MiB",
     }
-    return tables.number_table("what", {"measured": 0}, {name: (of,) for name, of in rows.items()})
+    return tables.timed_table("what", {"measured": 0}, {name: (of,) for name, of in rows.items()})

@@ -16,14 +16,16 @@ from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.throughput import Calls, Clock, calls_of
 
 GROUP, EQUAL = "throughput", "rows_that_differ"
-"""Groups of a bundle's metrics: elapsed times and memory of each number of environments, and how
-many environments missed the commanded angles or ended in another state than the first."""
+"""Groups of a bundle's metrics: times and memory, and how many environments did other work."""
 
 RAISED = 0.1
 """Angle by which the timed command turns each arm joint from its start [rad]."""
 
 NEAR = RAISED / 5
 """Largest distance of an arm joint from its commanded angle at the end [rad], sag included."""
+
+STEP, BUILD, MEMORY = (1e-4, 10.0), (0.1, 300.0), (0.0, 2.0**14)
+"""Limits, with hardware of today, of the time of a step and a build [s], and of memory [MiB]."""
 
 Build = Callable[[int], tuple[Any, ...]]
 """Returns a built scene with so many environments, its robot, and what else it has."""
@@ -50,18 +52,18 @@ class Protocol:
         return {GROUP: asdict(self) | lists | {"raised": RAISED}}
 
     def readings(self) -> dict[str, Readings]:
-        """Return the groups of readings. No check judges a time."""
+        """Return the groups of readings."""
         names = [*map(str, self.sizes), *self.others]
-        units = {f"{what}_{name}": "s" for name in names for what in timing.KEPT}
+        limits = {f"{what}_{name}": STEP for name in names for what in timing.KEPT}
         for size in self.sizes:
-            units |= {f"build_{size}": "s", f"memory_{size}": "MiB"}
-        return {GROUP: Readings(units, "performance"), EQUAL: counts(map(str, self.sizes))}
+            limits |= {f"build_{size}": BUILD, f"memory_{size}": MEMORY}
+        units = {name: "MiB" if name.startswith("memory") else "s" for name in limits}
+        return {GROUP: Readings(units, "performance", limits), EQUAL: counts(map(str, self.sizes))}
 
 
 PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
 DEEPER = Protocol((1, 4, 16, 64, 256, 512, 1024), ("sphere_1", "sphere_256", "four_scenes"))
-"""The same with one more size; with a sphere in place of the robot, and with four scenes of 256
-environments in place of one of 1024."""
+"""The same with one more size, with a sphere in place of the robot, and with four scenes of 256."""
 
 FITTED = (1, 16, 64)
 """Numbers of environments from which the model is fitted. It predicts the others."""

@@ -1,6 +1,6 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from robo_genesis.core.files import derived_value
@@ -10,7 +10,7 @@ from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown
-from robo_genesis.pipeline.pages.folder import RECORD, stored_notebook
+from robo_genesis.pipeline.pages.folder import MARK, RECORD, stored_notebook
 from robo_genesis.pipeline.pages.printed import declared
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
@@ -18,14 +18,18 @@ from robo_genesis.pipeline.pages.store import Verify
 
 
 def verify_results(
-    verify: Verify, results: Sequence[PageResult], progress: Progress
+    verify: Verify, results: Iterable[PageResult], progress: Progress, stage: str = "verify"
 ) -> tuple[dict[str, Any], list[str]]:
-    """Verify the bundles of a build, and compare what the pages show with them.
+    """Verify the bundles of pages, and compare what the pages show with them.
+
+    A refused page of the store is marked, so that it is executed again. One that was executed now
+    is verified once more by the next build, because the rule may be wrong.
 
     Args:
         verify: verifies one bundle.
-        results: of all executed pages, of which none failed.
-        progress: prints a line for each accepted bundle.
+        results: of pages that did not fail.
+        progress: prints a line for each bundle.
+        stage: the stage that the lines name.
 
     Returns:
         The accepted manifests by page name, and a line for each refused bundle.
@@ -41,9 +45,14 @@ def verify_results(
             require_contract(manifest.predicate, contract)
             compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
-            progress("verify", result.page.docname, f"accepted, {compared} outputs compared")
+            progress(stage, result.page.docname, f"accepted, {compared} outputs compared")
         except BundleRefused as error:
-            refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
+            progress(stage, result.page.docname, f"refused: {error}")
+            line = f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
+            if result.status == "reused":
+                (result.folder / MARK).write_text(line, "utf8")
+                line += " The next build executes the page again."
+            refused.append(line)
     return manifests, refused
 
 

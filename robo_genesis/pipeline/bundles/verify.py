@@ -5,6 +5,9 @@ An accepted bundle has the evidence key of the current checkout.
 
 import json
 import os
+import shutil
+import tempfile
+from datetime import datetime
 from functools import lru_cache, partial
 from glob import glob
 from pathlib import Path
@@ -12,17 +15,24 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.comparison import differences
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, derived_value
+from robo_genesis.core.git import git, git_or_none
 from robo_genesis.core.project import PUBLISHED
 from robo_genesis.core.scene import SEED
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, bundle_files, manifest_rules
 from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.manifest_rules import CLOCKS, MANIFEST
 from robo_genesis.evidence.recompute import as_judged_today, recompute
-from robo_genesis.evidence.refusals import BundleRefused, expect
+from robo_genesis.evidence.refusals import BundleRefused, expect, unexpected
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources, syntax
 from robo_genesis.sim import session
+
+DECIDING = ("book", "robo_genesis", "pyproject.toml", "requirements.lock")
+"""The files of a commit that decide `question`."""
+
+SQUASHED = "Merge the branch that recorded it without squashing, or record the bundle again."
 
 
 def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
@@ -56,10 +66,7 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
         },
         "seed": SEED,
         "parameters": json.loads(json.dumps(measuring.parameters())),
-        "source": {
-            "page": digest,
-            "modules": sources.measuring_modules(lesson, imports, root),
-        },
+        "source": {"page": digest, "modules": sources.measuring_modules(lesson, imports, root)},
     }
 
 
@@ -136,6 +143,50 @@ def check_current(manifest: Manifest, root: Path, book: Path) -> None:
     )
 
 
+def check_commit(manifest: Manifest, root: Path) -> None:
+    """Require that the commit that a bundle names is older than the run, and has its code.
+
+    Code of a tree with changes is that of no commit. A shallow clone lacks older commits, and each
+    clone those of a student's run on the CPU: these cannot be compared. A run of an accelerator is
+    recorded at a commit of this repository.
+
+    Raises:
+        BundleRefused: `commit`; `time` for a run that ended before its commit.
+    """
+    predicate, recorded = manifest.predicate, manifest.predicate.git
+    if recorded is None:
+        return
+    commit = recorded.commit
+    shown = "--no-patch", "--format=format:%cI"
+    made = git_or_none(root, "show", *shown, f"{commit}^{{commit}}", "--")
+    if made is None:
+        shallow = git_or_none(root, "rev-parse", "--is-shallow-repository")
+        if shallow == "false\n" and predicate.backend.actual != "cpu":
+            known = "one in the history of this repository"
+            raise unexpected("commit", MANIFEST, "git.commit", commit, known, SQUASHED)
+        return
+    if datetime.fromisoformat(predicate.ended) < datetime.fromisoformat(made) - CLOCKS:
+        raise unexpected("time", MANIFEST, "ended", predicate.ended, f"after its commit, {made}")
+    if not recorded.dirty:
+        inputs = [commit, predicate.evidence_key]
+        found = derived_value("commit", inputs, lambda: _changed_since(commit, manifest, root))
+        expect("commit", MANIFEST, f"list of what differs from commit {commit}", found, [])
+
+
+def _changed_since(commit: str, manifest: Manifest, root: Path) -> list[str]:
+    """Return what is `changed` in a bundle since a commit."""
+    if git_or_none(root, "diff", "--quiet", commit, "--", *DECIDING) is not None:
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        archive, tree = Path(folder, "tree.zip"), Path(folder, "tree")
+        try:
+            git(root, "archive", "-0", f"--output={archive}", commit, "--", *DECIDING)
+            shutil.unpack_archive(archive, tree)
+            return [path for path, *_ in changed(manifest, tree, tree / "book") or ()]
+        except project.ProjectError as error:
+            return [str(error)]
+
+
 def verify_bundle(
     folder: Path,
     run_id: str | None = None,
@@ -177,6 +228,7 @@ def verify_bundle(
     manifest_rules.check_circumstances(folder, manifest.predicate)
     manifest_rules.check_log(folder, manifest, root)
     check_current(manifest, root, book)
+    check_commit(manifest, root)
     if once:
         contents = [(folder / name).read_bytes() for name in sorted(present)]
         inputs = [json.dumps(sorted(present)).encode(), *contents, _code()]

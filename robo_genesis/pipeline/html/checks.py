@@ -25,6 +25,8 @@ SERVICES = re.compile(
     re.IGNORECASE,
 )
 FILE_NAME = re.compile(r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.IGNORECASE)
+QUOTING = ["evidence-panel", "run-block", "lesson-status", "measured", "page-history"]
+"""Classes of elements that quote bundles or commits, whose text no markup of a page makes."""
 LEFTOVERS = re.compile(r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size ")
 
 
@@ -210,7 +212,8 @@ def _leftovers(page: BeautifulSoup) -> Iterator[str]:
         yield repr(tag.get_text(" ", strip=True)[:80])
     article = page.find("article")
     for text in (article if isinstance(article, Tag) else page).find_all(string=LEFTOVERS):
-        if not text.find_parent(["pre", "code", "script", "style"]):
+        quoted = text.find_parent(["pre", "code", "script", "style"])
+        if not (quoted or text.find_parent(class_=QUOTING)):
             yield repr(text.strip()[:80])
 
 

@@ -11,7 +11,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -37,14 +37,7 @@ SHOWN_LINES = 2
 
 INTERVAL = 0.1
 """Seconds between two looks at the files; a look takes milliseconds."""
-RELOAD = b"""<script>(() => {
-  let seen;
-  setInterval(async () => {
-    const state = await (await fetch("/live-reload")).text();
-    if (seen !== undefined && seen !== state) location.reload();
-    seen = state;
-  }, 500);
-})()</script></body>"""
+RELOAD = Path(__file__).with_name("live_reload.html").read_bytes()
 """A page asks for the name of the shown state, and reloads when it is another."""
 
 Seen = dict[Path, tuple[int, int]]
@@ -57,21 +50,14 @@ class LiveEndedError(project.ProjectError):
 class Live:
     """A book that is rendered again after each change.
 
-    One thread calls the methods; another may call `stop`. `say` prints a line. `execute` runs the
-    pages that changed, with `timeout` seconds for a cell; otherwise they are shown with the outputs
-    of their last run.
+    One thread calls the methods; another may call `stop`. `execute` runs the pages that changed,
+    with `timeout` seconds for a cell; otherwise they are shown with the outputs of their last run.
     """
 
     def __init__(
-        self,
-        book: Path,
-        cache: Path,
-        say: Callable[[str], None] = say,
-        execute: bool = False,
-        timeout: int = TIMEOUT,
+        self, book: Path, cache: Path, execute: bool = False, timeout: int = TIMEOUT
     ) -> None:
-        self.book, self.cache, self.say = book, cache, say
-        self.execute, self.timeout = execute, timeout
+        self.book, self.cache, self.execute, self.timeout = book, cache, execute, timeout
         self.folder = cache / FOLDER
         self.work, self.site = self.folder / "work", self.folder / "site" / "html"
         self.sphinx: SphinxProcess | None = None
@@ -120,8 +106,8 @@ class Live:
             complaints = str(error).splitlines()
         if not self.is_ended:
             more = len(complaints) - SHOWN_LINES
-            self.say("\n".join(complaints[:SHOWN_LINES]) + (f"  (+{more} lines)" * (more > 0)))
-            self.say("The browser keeps the last good state.")
+            say("\n".join(complaints[:SHOWN_LINES]) + (f"  (+{more} lines)" * (more > 0)))
+            say("The browser keeps the last good state.")
         return False
 
     def built(self, pages: Sequence[Page]) -> BuiltPages:
@@ -137,7 +123,7 @@ class Live:
                 if self.execute:
                     self.run_page(page)
                 else:
-                    self.say(
+                    say(
                         f"{page.docname}: its code, or code that it imports, changed after its "
                         "last run, whose outputs are shown. make live EXECUTE=1 runs it."
                     )
@@ -164,7 +150,7 @@ class Live:
 
     def run_page(self, page: Page) -> None:
         """Execute a page as `make execute` does, and report a failure."""
-        self.say(f"{page.docname}: runs ...")
+        say(f"{page.docname}: runs ...")
         command = [sys.executable, str(project.ROOT / "build_scripts" / "execute.py")]
         command += ["--book", str(self.book), "--cache", str(self.cache)]
         command += ["--timeout", str(self.timeout)]
@@ -179,8 +165,8 @@ class Live:
         self.note(running)
         _, report = running.communicate()
         if running.returncode and not self.is_ended:
-            self.say(report.partition("\n\nFAILED: ")[0].strip())
-            self.say(
+            say(report.partition("\n\nFAILED: ")[0].strip())
+            say(
                 f"{page.docname}: the outputs of its last run are shown. It runs again when its "
                 "code changes, or code that it imports."
             )
@@ -286,11 +272,11 @@ async def serve(live: Live, port: int) -> None:
 def watch(live: Live, port: int) -> None:
     """Render a book, say where it is served, and render it after each change until it is ended."""
     live.update(set())
-    live.say(f"http://localhost:{port}/ Ctrl-C ends it.")
+    say(f"http://localhost:{port}/ Ctrl-C ends it.")
     while not live.is_ended:
         time.sleep(INTERVAL)
         paths = live.changed()
         if paths and live.update(paths):
             State.shown = time.time_ns()
             live.remember()
-            live.say(f"Shown: {', '.join(sorted(path.name for path in paths))}")
+            say(f"Shown: {', '.join(sorted(path.name for path in paths))}")

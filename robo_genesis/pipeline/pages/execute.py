@@ -5,8 +5,9 @@ import os
 import tempfile
 import time
 import uuid
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
@@ -18,10 +19,8 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
 from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
 from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
-from robo_genesis.pipeline.pages.store import last_record, stored_result
+from robo_genesis.pipeline.pages.store import failed_mark, last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
-
-HEARTBEAT = 30.0
 
 
 @dataclass(slots=True)
@@ -39,25 +38,6 @@ class Underway:
     log: Path | None = None
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
-    cell_begin: float = 0.0
-
-    def reach(self, cell: int) -> None:
-        """Note that a cell starts."""
-        self.cell, self.cell_begin = cell, time.monotonic()
-
-    def left(self, now: float) -> float | None:
-        """Return the estimated seconds to the end of the last cell, None without an earlier run.
-
-        Cells that wait are expected to take as long as last time. If the page has another number
-        of cells now, the estimate is for the whole page.
-        """
-        if self.last is None:
-            return None
-        seconds = self.last.cell_seconds
-        if self.cell == 0 or len(seconds) != self.cells:
-            return max(0.0, self.last.seconds - (now - self.begin))
-        this_cell = max(0.0, seconds[self.cell - 1] - (now - self.cell_begin))
-        return this_cell + sum(seconds[self.cell :])
 
     def started(self) -> str:
         """Return what the line at its start says."""
@@ -68,16 +48,16 @@ class Underway:
     def state(self, now: float) -> str:
         """Return cell, elapsed time and estimated remaining time."""
         cell = f"cell {self.cell} of {self.cells}" if self.cell else "kernel starts"
-        left = self.left(now)
-        estimate = "" if left is None else f", ~{left:.0f} s left"
-        return f"{cell}, {now - self.begin:.0f} s{estimate}"
+        elapsed = now - self.begin
+        left = f", ~{max(0.0, self.last.seconds - elapsed):.0f} s left" if self.last else ""
+        return f"{cell}, {elapsed:.0f} s{left}"
 
 
 class Lines:
     """Reports pages as lines: each start and end, and now and then how far the pages are."""
 
     def __init__(
-        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = HEARTBEAT
+        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = 30.0
     ) -> None:
         """Report to `say`, which takes a page's name and an event, or the running pages and "".
 
@@ -118,11 +98,13 @@ def execute_pages(
     environment: Mapping[str, str] | None = None,
     logs: Path | None = None,
     report: Lines | None = None,
+    accept: Callable[[PageResult], bool] = lambda result: True,
 ) -> list[PageResult]:
-    """Execute the pages that the store does not have yet; try all of them, the longest first.
+    """Execute the pages that the store does not have yet; try all of them.
 
-    A page that declares `alone` runs when no other page does. While the engine's cache is empty,
-    the first page runs alone until it has saved kernels: others would compile the same ones.
+    Those whose last run with this engine failed start first, then the longest. A page that declares
+    `alone` runs when no other page does. While the engine's cache is empty, the first page runs
+    alone until it has saved kernels: others would compile the same ones.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -139,6 +121,8 @@ def execute_pages(
             default it is not kept.
         report: gets each event, and shows how far the running pages are; by default nothing
             is shown.
+        accept: called once for each page that was executed and did not fail, before the next page
+            starts; returns whether the page counts as one that did not fail.
 
     Returns:
         One result for each page, in the order of `pages`.
@@ -149,7 +133,9 @@ def execute_pages(
     report, environment = report or Lines(), environment or {}
     results = _reused(pages, places, report) if reuse else {}
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
-    waiting = longest_first((page for page in pages if page.docname not in results), last)
+    waiting = [page for page in pages if page.docname not in results]
+    failed = [page.docname for page in waiting if failed_mark(places[page.docname]).exists()]
+    waiting = in_order(waiting, last, failed)
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
@@ -158,13 +144,13 @@ def execute_pages(
         try:
             while waiting or running:
                 cold = not (results or _has_kernels(environment))
-                while waiting and len(running) < (1 if cold or waiting[0].alone else jobs):
+                while waiting and len(running) < (1 if cold or _alone(waiting, running) else jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
-                    kept = log if logs else None
-                    underway = Underway(page.docname, cells, last[page.docname], kept)
+                    before, kept = last[page.docname], log if logs else None
+                    underway = Underway(page.docname, cells, before, kept)
                     report.say(page.docname, underway.started())
                     _start(run, underway, running)
                 for connection in wait(list(running), timeout=report.pause()):
@@ -173,7 +159,12 @@ def execute_pages(
                         continue
                     del running[connection]
                     results[result.page.docname] = result
-                    report.say(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
+                    report.say(result.page.docname, result.ended)
+                    mark = failed_mark(result.folder)
+                    if result.failure or not accept(result):
+                        mark.touch()
+                    else:
+                        mark.unlink(missing_ok=True)
                 report.show([underway for *_, underway in running.values()])
         finally:
             kill_with_descendants(process.pid for process, *_ in running.values())
@@ -202,23 +193,29 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
     }
 
 
-def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> list[Page]:
-    """Return pages in the order in which they start.
-
-    Those that run alone come last, so no other page starts beside them.
+def in_order(
+    pages: Iterable[Page], last: Mapping[str, Record | None], failed: Collection[str] = ()
+) -> list[Page]:
+    """Return pages in the order in which they start: the longest first, those alone last.
 
     Args:
         pages: the pages to execute.
-        last: the record of the last execution of each page, by name. Pages without one come first,
-            and among them those with the most cells.
+        last: the record of the last execution of each page, by name. Pages without one come before
+            the others, and among them those with the most cells.
+        failed: the names of pages that come before all others.
     """
+    seconds = {name: record.seconds for name, record in last.items() if record}
 
-    def sooner(page: Page) -> tuple[bool, float, int]:
-        record = last[page.docname]
-        seconds = -record.seconds if record else float("-inf")
-        return page.alone, seconds, -len(page.code.sources)
+    def sooner(page: Page) -> tuple[bool, bool, float, int]:
+        name = page.docname
+        return name not in failed, page.alone, -seconds.get(name, inf), -len(page.code.sources)
 
     return sorted(pages, key=sooner)
+
+
+def _alone(waiting: Sequence[Page], running: Running) -> bool:
+    """Return whether the next page, or one that runs, must have no other beside it."""
+    return waiting[0].alone or any(run.page.alone for _, run, _ in running.values())
 
 
 def _reused(
@@ -231,11 +228,11 @@ def _reused(
             result = stored_result(page, places[page.docname])
         except PageRefused as refused:
             reason = str(refused).splitlines()[0]
-            report.say(page.docname, f"changed since it was stored; executed again ({reason})")
+            report.say(page.docname, f"its stored run is not used; executed again ({reason})")
             continue
         if result is not None:
             results[page.docname] = result
-            report.say(page.docname, result.status)
+            report.say(page.docname, result.ended if result.failure else result.status)
     return results
 
 
@@ -259,7 +256,7 @@ def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) ->
     try:
         received = connection.recv()
         if isinstance(received, int):
-            underway.reach(received)
+            underway.cell = received
             return None
         seconds, failure = received
     except EOFError:

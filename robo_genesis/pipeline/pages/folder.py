@@ -27,6 +27,8 @@ from robo_genesis.pipeline.pages.printed import keep_outputs
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
+MARK = "refused-by-a-build.txt"
+"""Is added to a folder of the store whose bundle was refused: `require_this_page` refuses it."""
 SIZE_LIMIT = 64 * 2**20
 """Bytes of one file; those of a lesson have under 2 MiB."""
 FILES_LIMIT = 500
@@ -65,7 +67,6 @@ def write_page(
     page: Page,
     notebook: NotebookNode,
     left: Path,
-    *,
     run_id: str,
     seconds: float,
     cell_seconds: Sequence[float],
@@ -122,16 +123,11 @@ def plain_files(folder: Path) -> list[str]:
             found, name = path.lstat(), path.relative_to(folder).as_posix()
             if stat.S_ISDIR(found.st_mode):
                 continue
-            if not stat.S_ISREG(found.st_mode):
-                raise PageRefused(
-                    "files", f"{name} is a link or device. Only plain files are accepted."
-                )
+            reason = "" if stat.S_ISREG(found.st_mode) else "is a link or device, no plain file"
             if found.st_size > SIZE_LIMIT or len(names) == FILES_LIMIT:
-                raise PageRefused(
-                    "files",
-                    f"{name} exceeds a limit: at most {FILES_LIMIT} files, of at most {SIZE_LIMIT} "
-                    "bytes each. Let the page leave less.",
-                )
+                reason = f"exceeds a limit: at most {FILES_LIMIT} files, each of {SIZE_LIMIT} bytes"
+            if reason:
+                raise PageRefused("files", f"{name} {reason}. Let the page leave only plain files.")
             names.append(name)
     return names
 
@@ -140,8 +136,9 @@ def read_record(place: Path) -> Record:
     """Return what the record of an executed page says.
 
     Raises:
-        PageRefused: it is missing or not what `write_page` writes.
+        PageRefused: it is missing or not what `write_page` writes, or a file is not a plain one.
     """
+    plain_files(place)  # before any is read
     try:
         return Record.model_validate_json((place / RECORD).read_bytes())
     except (OSError, ValidationError) as error:
@@ -178,6 +175,10 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
         nbformat.validate(notebook)
     except Exception as error:  # nbformat passes on a dozen kinds of exceptions
         raise PageRefused("notebook", f"{NOTEBOOK} is not a notebook: {error}") from error
+    timed = sum(bool(cell.source.strip()) for cell in notebook.cells if cell.cell_type == "code")
+    if len(record.cell_seconds) != timed:
+        seconds = len(record.cell_seconds)
+        raise PageRefused("record", f"it has the times of {seconds} cells, expected {timed}.")
     cells = code_and_kernel(notebook) == code_and_kernel(page.notebook)
     if not cells or record.code != code_digest(page):
         raise PageRefused("code", f"its code cells are not those of {page.path}.")

@@ -6,7 +6,7 @@ import shutil
 import signal
 import subprocess
 import threading
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,6 @@ import psutil  # type: ignore[import-untyped]
 from jupyter_client.kernelspec import KernelSpecManager
 from jupyter_client.manager import AsyncKernelManager
 from jupyter_core.paths import jupyter_runtime_dir
-from traitlets import default
 
 from robo_genesis.core.project import ENGINE_PREFIXES
 
@@ -24,15 +23,8 @@ from robo_genesis.core.project import ENGINE_PREFIXES
 MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
 ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 
-# ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run last:
-# one that is registered right after them runs right before them, after the engine's, and ends it.
-END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)"
-# Pages import the engine before the course, which would only spare the searches that are left then.
-COMPILER = "__import__('robo_genesis.sim.compiler', fromlist=['compiler'])"
-SPARE_SEARCHES = f"{COMPILER}.spare_searches()"
-SAVE_KERNELS = f"get_ipython().events.register('post_run_cell', {COMPILER}.save_kernels)"
-LINES = (END_BEFORE_IPYKERNEL, SPARE_SEARCHES, SAVE_KERNELS)
-ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in LINES]
+START = "__import__('robo_genesis.pipeline.pages.opened', fromlist=['start']).start()"
+ARGUMENTS = [f"--IPKernelApp.exec_lines={START}"]
 
 
 class CleanKernelManager(AsyncKernelManager):
@@ -44,28 +36,18 @@ class CleanKernelManager(AsyncKernelManager):
 
     busy = False
 
-    @default("shutdown_wait_time")
-    def _time_to_save(self) -> float:
-        """Return the seconds for a kernel's exit; SIGTERM comes after the first half of them.
+    def __init__(self, **given: Any) -> None:
+        """Set what differs from a usual kernel.
 
-        The engine saves what it compiled in its exit handler, and the usual 5 s are too short.
+        The engine saves what it compiled in its exit handler, for which the usual 5 s are too
+        short; SIGTERM comes after the first half. The sockets are files, because kernels that start
+        at the same time can draw the same TCP port; their path is absolute, because kernels run in
+        other folders.
         """
-        return 120.0
-
-    @default("transport")
-    def _sockets_as_files(self) -> str:
-        """Return ipc: kernels that start at the same time can draw the same TCP port."""
-        return "ipc"
-
-    @default("ip")
-    def _place_of_sockets(self) -> str:
-        """Return an absolute path: the default is relative, and kernels run in other folders."""
-        return str(Path(jupyter_runtime_dir()) / "kernel")
-
-    @default("kernel_spec_manager")
-    def _no_installed_kernelspecs(self) -> KernelSpecManager:
-        """Return a manager that finds no folder, so that only the native kernel is left."""
-        return KernelSpecManager(kernel_dirs=[])
+        sockets = {"transport": "ipc", "ip": str(Path(jupyter_runtime_dir()) / "kernel")}
+        no_specs = KernelSpecManager(kernel_dirs=[])  # so that only the native kernel is left
+        own = {"shutdown_wait_time": 120.0, "kernel_spec_manager": no_specs}
+        super().__init__(**given | sockets | own)
 
     async def shutdown_kernel(  # type: ignore[override]
         self, now: bool = False, restart: bool = False
@@ -92,8 +74,7 @@ def clean_environment(
     """
     folders = {
         "IPYTHONDIR": home / "ipython",
-        "JUPYTER_CONFIG_DIR": home / "jupyter-config",
-        "JUPYTER_DATA_DIR": home / "jupyter-data",
+        **dict.fromkeys(("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR"), home / "jupyter"),
         "JUPYTER_RUNTIME_DIR": runtime,
     }
     for folder in folders.values():
@@ -103,9 +84,12 @@ def clean_environment(
         **{name: str(path) for name, path in folders.items()},
         "JUPYTER_NO_CONFIG": "1",
         "JUPYTER_PREFER_ENV_PATH": "1",
+        "LC_ALL": "C.UTF-8",
         "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+        "PYTHONHASHSEED": "0",
         "PYTHONNOUSERSITE": "1",
         "PYTHONPATH": str(root),
+        "TZ": "UTC",
         **extra,
     }
 
@@ -123,10 +107,20 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def wait_or_kill(process: subprocess.Popen[bytes]) -> int:
-    """Wait for a process and return its exit status; an exception kills it and all below it."""
+def wait_or_kill(
+    process: subprocess.Popen[bytes], meanwhile: Callable[[], object] = lambda: None
+) -> int:
+    """Wait for a process and return its exit status; an exception kills it and all below it.
+
+    Args:
+        process: see above.
+        meanwhile: called each second.
+    """
     try:
-        return process.wait()
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                return process.wait(timeout=1)
+            meanwhile()
     finally:
         if process.poll() is None:
             kill_with_descendants([process.pid])

@@ -12,12 +12,13 @@ from nbformat import NotebookNode
 
 from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
+from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.guards import contradicted
 
 LOG_LINES = 15
-Status = Literal["executed", "reused", "failed"]
+Status = Literal["executed", "reused", "taken over", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 KINDS = PICTURES | {"text/plain", "text/markdown"}
 """What a cell may put out. HTML could hide or imitate what the site says about its evidence."""
@@ -43,14 +44,17 @@ class Failure:
     source: str = ""
     log: tuple[str, ...] = ()
 
+    def __str__(self) -> str:
+        return f"{self.error}: {self.message}"
+
 
 @dataclass(frozen=True, slots=True)
 class PageResult:
     """The result of one page in one build.
 
-    `bundle` is None if the page declares none. `folder` is the page's folder in the store, where a
-    failed page may be absent. `log` is the file with all that an executed page wrote, None if that
-    is not kept.
+    `bundle` is None if the page declares none. `folder` is the page's folder: in the store, where a
+    failed page may be absent, or outside if it is taken over from another machine. `log` is the
+    file with all that an executed page wrote, None if that is not kept.
     """
 
     page: Page
@@ -61,6 +65,12 @@ class PageResult:
     failure: Failure | None = None
     folder: Path = Path()
     log: Path | None = None
+
+    @property
+    def ended(self) -> str:
+        """What the line at its end says; a failure in one line."""
+        why = f": {printable(' '.join(str(self.failure).split()))}" if self.failure else ""
+        return f"{self.status} in {self.seconds:.0f} s{why}"
 
 
 def find_bundle(left: Path, run_id: str) -> Path | None:
@@ -73,7 +83,7 @@ def find_bundle(left: Path, run_id: str) -> Path | None:
     for manifest in sorted(left.glob("*/manifest.json")):
         try:
             found = json.loads(manifest.read_text("utf8"))["predicate"]["run_id"]
-        except (ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             continue
         if found == run_id:
             return manifest.parent
@@ -217,8 +227,7 @@ def failure_report(results: Sequence[PageResult]) -> str:
         place = page.docname
         if failure.cell is not None:
             place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
-        message = f"{failure.error}: {failure.message}".splitlines()
-        lines += ["", place, *(f"    {line}" for line in message)]
+        lines += ["", place, *(f"    {line}" for line in str(failure).splitlines())]
         if failure.log:
             whole = f" of {log}" if log else ""
             lines += [f"    last lines{whole}:", *(f"    | {line}" for line in failure.log)]

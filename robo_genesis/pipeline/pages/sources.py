@@ -10,14 +10,17 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property, partial
+from importlib.machinery import BYTECODE_SUFFIXES, EXTENSION_SUFFIXES
 from itertools import accumulate
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
-from robo_genesis.core.files import json_digest
+from robo_genesis.core.files import NO_SOURCE, files_below, json_digest
 from robo_genesis.core.project import (
     PAGE_IMPORTS,
     ROOT,
+    ProjectError,
     environment_contract,
     installed,
     lock_digest,
@@ -28,9 +31,7 @@ from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_name
 if TYPE_CHECKING:  # a verification loads no Jupyter
     from robo_genesis.pipeline.pages.book import Page
 
-DATA_SUFFIXES = (
-    ".json", ".toml", ".yaml", ".yml", ".csv", ".xml", ".urdf", ".obj", ".stl"
-)  # fmt: skip
+USED_BY_NO_PAGE = ("maintain", "site")
 
 COMPUTING = ("core", "sim", "lessons")
 """The sub-packages with modules that measure."""
@@ -92,32 +93,66 @@ class Tree:
 
     @cached_property
     def data(self) -> dict[Path, str]:
-        """The digest of each data file."""
-        files = (self.root / PACKAGE).rglob("*")
-        return {path: sha256(path) for path in files if path.suffix in DATA_SUFFIXES}
+        """The digest of each file that is not a module, except in what no page can import."""
+        files = files_below(self.root / PACKAGE, USED_BY_NO_PAGE, NO_SOURCE)
+        return {path: sha256(path) for path in files if path.suffix != ".py"}
 
-    def data_for(self, lesson: str | None) -> dict[str, str]:
-        """Return the digests of the data files by name, except those of other lessons."""
+    def data_for(self, used: Iterable[Path]) -> dict[str, str]:
+        """Return digests by names below the package: of a lesson only if a file of it is used.
+
+        Args:
+            used: the files of modules, or any others.
+        """
         lessons = self.root / PACKAGE / "lessons"
-        others = {init.parent for init in lessons.glob("*/__init__.py")} - {lessons / f"{lesson}"}
+        others = {init.parent for init in lessons.glob("*/__init__.py")}
+        others.difference_update(*(path.parents for path in used))
         return {
-            path.relative_to(self.root).as_posix(): digest
+            path.relative_to(lessons.parent).as_posix(): digest
             for path, digest in self.data.items()
             if others.isdisjoint(path.parents)
         }
 
+    def behind(self, page: "Page") -> dict[str, Path]:
+        """Return the modules that a page imports, and all of its lesson."""
+        own = lesson_modules(page.lesson, self.root) if page.lesson else []
+        return self.closure([*page.code.imports, *own])
+
 
 def lesson_modules(lesson: str, root: Path) -> list[str]:
-    """Return the modules in the folder of a lesson."""
-    folder = root / PACKAGE / "lessons" / lesson
-    return [f"{PACKAGE}.lessons.{lesson}.{path.stem}" for path in sorted(folder.glob("*.py"))]
+    """Return the modules below the folder of a lesson."""
+    files = sorted(files_below(root / PACKAGE / "lessons" / lesson, left_out=NO_SOURCE))
+    names = (path.relative_to(root).with_suffix("") for path in files if path.suffix == ".py")
+    return [".".join(name.parts) for name in names]
+
+
+def require_keyed_imports(root: Path) -> None:
+    """Require that Python runs what the keys of pages cover; the checkout is its PYTHONPATH.
+
+    Raises:
+        ProjectError: naming each importable file or package beside the course's package, and each
+            file in it that Python would run in the place of a module's source.
+    """
+    found = [module.name for module in iter_modules([str(root)]) if module.name != PACKAGE]
+    found += [
+        path.relative_to(root).as_posix()
+        for path in files_below(root / PACKAGE)
+        if path.name.endswith((*EXTENSION_SUFFIXES, *BYTECODE_SUFFIXES))
+        or (path.name == "__init__.py" and path.parent.with_suffix(".py").is_file())
+    ]
+    if found:
+        raise ProjectError(
+            f"Python would import {', '.join(sorted(found))} in {root}, which no key of a page "
+            f"covers. Valid is the folder {PACKAGE}, where each module is one .py file. Move the "
+            "others to another folder or delete them."
+        )
 
 
 def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) -> dict[str, str]:
-    """Return the modules that decide what a page measures, with the digests of their syntax.
+    """Return the modules and data that decide what a page measures, with their digests.
 
     They are all modules of the lesson that measure, what its `__init__.py` imports from `sim`, what
-    the page itself imports, and what these import; see `Tree.measures`.
+    the page itself imports, and what these import; see `Tree.measures`. The digest of a module is
+    that of its syntax. With them go the data files of the lesson and of `core` and `sim`.
 
     Args:
         lesson: the name of its folder.
@@ -125,17 +160,18 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
         root: the checkout.
 
     Returns:
-        Module without the package's name, such as `core.trace`, to digest.
+        Module without the package's name, such as `core.trace`, or data file, such as
+        `lessons/l04/arm.xml`, to digest.
     """
     own, tree = f"{PACKAGE}.lessons.{lesson}", Tree(root)
-    init = tree.module(own)
-    given = imported_names(tree.text(init), own) if init else ()
+    given = imported_names(tree.text(init), own) if (init := tree.module(own)) else ()
     of_sim = [name for name in given if name.startswith(f"{PACKAGE}.sim.")]
     modules = tree.closure([*lesson_modules(lesson, root), *of_sim, *imports], tree.measures)
+    data = tree.data_for([*modules.values(), root / PACKAGE / "lessons" / lesson / "__init__.py"])
     return {
         name.removeprefix(f"{PACKAGE}."): syntax_digest(tree.text(path))
         for name, path in sorted(modules.items())
-    }
+    } | {name: digest for name, digest in data.items() if name.partition("/")[0] in COMPUTING}
 
 
 def running_modules(lesson: str) -> dict[str, str]:
@@ -152,7 +188,7 @@ def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | 
     It covers the lock, all installed versions, the version of Python, the environment contract,
     whether the page is executed alone, the syntax of the page's cells, of the modules that they
     import and of the modules of its lesson, the claims of checks in them, and the data files of the
-    package, except those of other lessons.
+    package, except those of lessons from which nothing is imported.
 
     Args:
         page: an executed page.
@@ -162,8 +198,7 @@ def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | 
     Returns:
         20 hex digits.
     """
-    own = lesson_modules(page.lesson, tree.root) if page.lesson else []
-    modules = tree.closure([*page.code.imports, *own])
+    modules = tree.behind(page)
     parts = {
         "lock": lock_digest(tree.root),
         "installed": sorted({name for _, name, _ in installed(sys.path)}),
@@ -172,7 +207,7 @@ def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | 
         "cells": page.code.digests,
         "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
         "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
-        "data": tree.data_for(page.lesson),
+        "data": tree.data_for(modules.values()),
         "alone": page.alone,
     }
     return json_digest(parts)[:20]

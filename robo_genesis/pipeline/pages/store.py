@@ -6,29 +6,23 @@ Each folder holds one executed page; see `page_folder`.
 import shutil
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.files import put, require_replaceable, require_writable
-from robo_genesis.core.project import ROOT, ProjectError
-from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.core.files import require_replaceable, require_writable
+from robo_genesis.core.project import ENGINE, ROOT, ProjectError, installed_version
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import (
     OUTPUTS,
     RECORD,
     PageRefused,
     Record,
-    plain_files,
     read_record,
     require_this_page,
 )
-from robo_genesis.pipeline.pages.results import (
-    PageResult,
-    Status,
-    find_bundle,
-    unexpected_outcome,
-)
-from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint
+from robo_genesis.pipeline.pages.results import PageResult, find_bundle, unexpected_outcome
+from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint, require_keyed_imports
 
 Verify = Callable[[Path, str], Any]
 """Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""
@@ -51,7 +45,11 @@ def places(
         store: the folder of all executed pages.
         root: the checkout.
         environment: variables, by default those of this process.
+
+    Raises:
+        ProjectError: Python would run files of the checkout that no fingerprint covers.
     """
+    require_keyed_imports(root)
     store, tree = store.absolute(), Tree(root)
     return {
         page.docname: store / _folder(page) / page_fingerprint(page, tree, environment)
@@ -69,29 +67,30 @@ def stored_result(page: Page, place: Path) -> PageResult | None:
 
     Args:
         page: the page now.
-        place: the page's folder.
+        place: the page's folder. A link or a file in its place is removed.
 
     Raises:
-        PageRefused: the folder is there, but has changed since it was written.
+        PageRefused: the folder is there, but it is not this page.
     """
-    return result_of(page, place, place.name) if place.is_dir() else None
+    if place.is_symlink() or not place.is_dir():
+        place.unlink(missing_ok=True)
+        return None
+    return result_of(page, place, place.name)
 
 
 def result_of(page: Page, place: Path, fingerprint: str) -> PageResult:
     """Return the result of a page from a folder that holds it as this checkout executes it.
 
-    The tags and expected exceptions of the page are compared with the outputs; where they
-    contradict each other, the page has failed.
-
     Raises:
-        PageRefused: the folder is not this page.
+        PageRefused: the folder is not this page, or its outputs contradict the tags and expected
+            exceptions of the page.
     """
     record = read_record(place)
     notebook = require_this_page(place, record, page, fingerprint)
-    outcome = unexpected_outcome(page, notebook)
+    if outcome := unexpected_outcome(page, notebook):
+        raise PageRefused("outcome", f"{outcome.error}: {outcome.message}")
     bundle = find_bundle(place / OUTPUTS, record.run_id)
-    status: Status = "failed" if outcome else "reused"
-    return PageResult(page, status, 0.0, record.run_id, bundle, outcome, place)
+    return PageResult(page, "reused", 0.0, record.run_id, bundle, folder=place)
 
 
 def folders(store: Path, page: Page) -> list[Path]:
@@ -107,18 +106,30 @@ def last_record(store: Path, page: Page) -> Record | None:
     return None
 
 
-def forget(store: Path, results: Iterable[PageResult]) -> None:
-    """Remove the pages that the book no longer has, and all but the newest folders of the others.
+def failed_mark(place: Path) -> Path:
+    """Return the file that says that a page's last run with this engine failed or was refused.
+
+    Args:
+        place: the page's folder, where a failed page is absent.
+    """
+    return place.with_name(f"failed-{installed_version(ENGINE)}")
+
+
+def forget(store: Path, pages: Iterable[Page], into: Mapping[str, Path]) -> None:
+    """Remove the pages that the book no longer has, and old folders of the others.
 
     Args:
         store: the folder of all executed pages.
-        results: those of a build that succeeded, one for each executed page of the book.
+        pages: those of the book.
+        into: the folder of each; see `places`. It is kept with the newest others of its page, even
+            if these have times in the future.
     """
     kept: set[Path] = set()
-    for result in results:
-        result.folder.touch()
-        kept |= {*folders(store, result.page)[:KEPT]}
-    kept |= {place.parent for place in kept}
+    for page in pages:
+        place = into[page.docname]
+        place.touch()
+        others = [path for path in folders(store, page) if path != place]
+        kept |= {place.parent, place, *others[: KEPT - 1]}
     for path in [*store.glob("*/"), *store.glob("*/*/")]:
         if path not in kept and path.exists():
             shutil.rmtree(path)
@@ -136,19 +147,16 @@ def exported(page: Page, to: Path) -> Path:
     return place
 
 
-def import_pages(
-    source: Path, pages: Sequence[Page], into: Mapping[str, Path], verify: Verify
-) -> None:
-    """Put executed pages into the store, so that none has to run.
+def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -> list[PageResult]:
+    """Return the results of pages that another machine executed, in the order of `pages`.
 
-    All of them are compared with this checkout first. The names and paths that they state are
-    compared, never followed, and their bundles are verified as any other.
+    All of them are compared with this checkout. The names and paths that they state are compared,
+    never followed. Nothing is stored: their bundles and outputs are not verified yet.
 
     Args:
         source: holds the folders of `exported`, at any depth.
         pages: the pages of the book.
-        into: where the store will have each page; see `places`.
-        verify: verifies the bundles.
+        into: where the store would have each page; see `places`.
 
     Raises:
         ProjectError: it names each page that is missing, or each refused one with code and reason.
@@ -158,34 +166,27 @@ def import_pages(
             f"EXECUTED={source} is not a folder. Name the one that `make execute TO=folder` filled."
         )
     known = {page.docname: page for page in pages}
-    found: dict[str, Path] = {}
+    found: dict[str, PageResult] = {}
     problems = []
     for place in exported_folders(source):
         try:
-            plain_files(place)  # before any is read
             name = read_record(place).docname
             if name not in known:
                 valid = ", ".join(known)
                 raise PageRefused("page", f"its page is {name!r}. Pages of this book: {valid}.")
             result = result_of(known[name], place, into[name].name)
-            if result.failure:
-                raise PageRefused("outcome", f"{result.failure.error}: {result.failure.message}")
-            if result.bundle:
-                verify(result.bundle, result.run_id)
             if name in found:
-                raise PageRefused("twice", f"{name} is in {found[name]} as well. Remove one.")
-            found[name] = place
+                other = found[name].folder
+                raise PageRefused("twice", f"{name} is in {other} as well. Remove one.")
+            found[name] = replace(result, status="taken over")
         except PageRefused as error:
             problems.append(f"{place}: {error}")
-        except BundleRefused as error:
-            problems.append(f"{place}: bundle: its bundle is refused: {error}")
     if not problems:  # a refused page would be reported as missing as well
         problems = [f"{name} is not among them." for name in known if name not in found]
     if problems:
         first = f"The executed pages in {source} are refused."
         raise ProjectError("\n".join([first, *problems, AGAIN]))
-    for name, place in found.items():
-        put(place, into[name])
+    return [found[name] for name in known]
 
 
 def exported_folders(source: Path) -> list[Path]:

@@ -5,11 +5,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import resolve_name
+from itertools import groupby
 from typing import Any
 
 from robo_genesis.core.files import derived_value, json_digest
 
 PACKAGE = "robo_genesis"
+NOT_CODE = ("kind", "type_comment")
+"""Fields of a syntax tree that decide nothing."""
 
 
 @lru_cache(maxsize=1024)
@@ -89,25 +92,19 @@ def cell_digest(source: str) -> str:
 def _canonical(node: Any) -> Any:
     """Return a syntax tree as nested lists, the same in each version of Python."""
     if isinstance(node, list):
-        return [_canonical(each) for each in node]
+        return [_canonical(each) for each in node if not is_text(each)]
     if isinstance(node, ast.Constant):
         return ["Constant", type(node.value).__name__, ascii(node.value)]
     if not isinstance(node, ast.AST):
         return node
     fields = dict(ast.iter_fields(node))
-    fields.pop("kind", None)
-    fields.pop("type_comment", None)
     if isinstance(node, ast.JoinedStr):
         fields["values"] = list(_joined(node.values))
-    for name in ("body", "orelse", "finalbody"):
-        if isinstance(fields.get(name), list):
-            fields[name] = [s for s in fields[name] if not is_text(s)]
-    filled = {
-        name: _canonical(value)
-        for name, value in fields.items()
-        if value is not None and value != []
-    }
-    return [type(node).__name__, filled]
+    found = {n: _canonical(value) for n, value in fields.items() if n not in NOT_CODE}
+    return [
+        type(node).__name__,
+        {n: value for n, value in found.items() if value not in (None, [])},
+    ]
 
 
 def is_text(statement: ast.AST) -> bool:
@@ -118,17 +115,11 @@ def is_text(statement: ast.AST) -> bool:
 
 def _joined(parts: Iterable[ast.expr]) -> Iterator[ast.expr]:
     """Yield the parts of an f-string with adjacent constants joined and empty ones left out."""
-    text = ""
-    for part in parts:
-        if isinstance(part, ast.Constant) and isinstance(part.value, str):
-            text += part.value
-            continue
-        if text:
+    for constant, group in groupby(parts, lambda part: isinstance(part, ast.Constant)):
+        if not constant:
+            yield from group
+        elif text := "".join(part.value for part in group):  # type: ignore[attr-defined]
             yield ast.Constant(text)
-        text = ""
-        yield part
-    if text:
-        yield ast.Constant(text)
 
 
 def _ends_with_semicolon(source: str, statements: Sequence[ast.stmt]) -> bool:

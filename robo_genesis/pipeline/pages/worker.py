@@ -22,6 +22,7 @@ from robo_genesis.pipeline.pages.kernels import (
     clean_environment,
     die_with_parent,
 )
+from robo_genesis.pipeline.pages.opened import unkeyed_files
 from robo_genesis.pipeline.pages.results import (
     Failure,
     at_cell,
@@ -29,6 +30,7 @@ from robo_genesis.pipeline.pages.results import (
     missing_bundle,
     unexpected_outcome,
 )
+from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +118,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     def cell_starts(cell: NotebookNode, cell_index: int) -> None:
         CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
-        before = notebook.cells[: cell_index + 1]
-        on_cell(sum(cell.cell_type == "code" for cell in before))
+        on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False
@@ -139,22 +140,30 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
             error = caught
     elapsed = time.monotonic() - begin
-    failure = _failure(run, error, list(begins))
+    failure = _failure(run, error, list(begins)) or _unkeyed(run)
     if failure is None:
         notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
         try:
-            write_page(
-                run.place,
-                run.page,
-                notebook,
-                run.left,
-                run_id=run.run_id,
-                seconds=elapsed,
-                cell_seconds=seconds,
-            )
+            write_page(run.place, run.page, notebook, run.left, run.run_id, elapsed, seconds)
         except (PageRefused, OSError, ValueError) as caught:
             failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return failure
+
+
+def _unkeyed(run: PageRun) -> Failure | None:
+    """Return the failure of a page that read files on which no key depends."""
+    tree = Tree()
+    modules = tree.behind(run.page).values()
+    data = (ROOT / PACKAGE / name for name in tree.data_for(modules))
+    names = unkeyed_files([*modules, *data, ROOT / "pyproject.toml", ROOT / "requirements.lock"])
+    if not names:
+        return None
+    return Failure(
+        "FileNotKeyed",
+        f"the page read {', '.join(names[:20])}. It would not be executed again if they changed. "
+        "Valid are files of its lesson's folder, of imported modules and packages, and its own. "
+        f"Move them into {PACKAGE}/lessons/{run.page.lesson or '…'}.",
+    )
 
 
 def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failure | None:

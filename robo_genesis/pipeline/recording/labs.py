@@ -187,9 +187,7 @@ def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Pa
     folder = recording.cache / project.RECORDING  # new each time: nothing is ever reused
     shutil.rmtree(folder, ignore_errors=True)
     try:
-        bundle, run_id = _execute(recording, page, folder, progress)
-        facts = _accepted(recording, bundle, run_id)
-        progress("verify", page.docname, "accepted")
+        bundle, facts = _run(recording, page, folder, progress)
         place = recording.evidence / str(page.lesson) / bundle.name
         require_replaceable(place, MANIFEST)
         put(bundle, place)
@@ -199,10 +197,8 @@ def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Pa
     return place, facts
 
 
-def _execute(
-    recording: Recording, page: Page, folder: Path, progress: Progress
-) -> tuple[Path, str]:
-    """Run the lab in a clean kernel; return the folder of its bundle and the id of the run."""
+def _run(recording: Recording, page: Page, folder: Path, progress: Progress) -> tuple[Path, Any]:
+    """Run the lab in a clean kernel; return its bundle, and what its manifest says, verified."""
     contract = recording.contract
     progress("execute", page.docname, f"{BACKEND}={contract[BACKEND]}")
     environment = kernel_environment(recording.root, recording.cache, COMMAND, **contract)
@@ -214,34 +210,27 @@ def _execute(
         logs=recording.cache / project.LOGS,
         report=Lines(partial(progress, "execute")),
     )
-    if failure := result.failure:
-        report = failure_report([result])
-        raise project.ProjectError(f"{failure.error}: {failure.message}\n\n{report}")
+    if result.failure:
+        raise project.ProjectError(f"{result.failure}\n\n{failure_report([result])}")
     assert result.bundle is not None  # a lab without a bundle has failed
-    return result.bundle, result.run_id
-
-
-def _accepted(recording: Recording, bundle: Path, run_id: str) -> Any:
-    """Return what the manifest of a bundle says, after verifying that it is the requested run's."""
     try:
-        facts = recording.verify(bundle, run_id).predicate
-        require_contract(facts, recording.contract)
+        facts = recording.verify(result.bundle, result.run_id).predicate
+        require_contract(facts, contract)
         expect("command", "manifest.json", "command", facts.command, COMMAND)
     except BundleRefused as error:
         raise project.ProjectError(f"The bundle of this run is refused: {error}") from error
     require_expected(recording, facts.backend.actual)
-    return facts
+    progress("verify", page.docname, "accepted")
+    return result.bundle, facts
 
 
 def require_expected(recording: Recording, actual: str) -> None:
     """Raise ProjectError if the backend found is not the expected one."""
-    if actual in (ACCELERATORS if recording.expected is None else (recording.expected,)):
+    if actual in ((recording.expected,) if recording.expected else ACCELERATORS):
         return
     expected = recording.expected or f"none given, so one of {', '.join(ACCELERATORS)}"
-    remedy = "Check driver, device and Torch build"
-    if actual in BACKENDS:
-        remedy += f", or record {actual} on purpose with BACKEND={actual}"
+    on_purpose = f", or record {actual} on purpose with BACKEND={actual}" * (actual in BACKENDS)
     raise project.ProjectError(
-        f"Expected backend: {expected}; {BACKEND}={recording.contract[BACKEND]} finds "
-        f"{actual!r}. Nothing is relabelled. {remedy}."
+        f"Expected backend: {expected}; {BACKEND}={recording.contract[BACKEND]} finds {actual!r}. "
+        f"Nothing is relabelled. Check driver, device and Torch build{on_purpose}."
     )

@@ -65,5 +65,4 @@ def _row(outcome: Outcome, backend: str) -> tuple[str, ...]:
         device = printable(facts.backend.device_name)
         checks = f"{sum(check.passed for check in facts.checks)} of {len(facts.checks)}"
     seconds = "–" if outcome.seconds is None else f"{outcome.seconds:.0f}"
-    where = printable(outcome.where)
-    return outcome.lesson, backend, device, outcome.state, checks, seconds, where
+    return outcome.lesson, backend, device, outcome.state, checks, seconds, printable(outcome.where)

@@ -7,7 +7,7 @@ import os
 import stat
 import subprocess
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,7 +78,12 @@ def commands(host: Host) -> list[list[str]]:
                 f"book/evidence of this checkout. Leave {name} out, or record without the "
                 f"container: {WITHOUT}"
             )
-    engine = _engine(host)
+    engine = next(filter(host.find, ENGINES), None)
+    if engine is None:
+        raise ContainerError(
+            f"PATH has neither {' nor '.join(ENGINES)}. Install one of them, or record without it: "
+            f"{WITHOUT}"
+        )
     for device in host.devices:
         if not device.exists():
             raise ContainerError(
@@ -87,33 +92,16 @@ def commands(host: Host) -> list[list[str]]:
                 "another machine."
             )
     build = [engine, "build", "--tag", IMAGE, "--file", DOCKERFILE, "."]
-    run = [engine, "run", "--rm", "--security-opt", "seccomp=unconfined"]
+    run = [engine, "run", "--rm", "--security-opt=seccomp=unconfined"]
     run += [f"--device={device}" for device in host.devices]
     if engine == "podman":
-        run += ["--group-add", "keep-groups", "--userns", "keep-id"]
+        run += ["--group-add=keep-groups", "--userns=keep-id"]
     else:
-        run += [word for group in _groups(host.devices) for word in ("--group-add", str(group))]
-        run += ["--user", f"{os.getuid()}:{os.getgid()}"]
-    run += ["--volume", f"{host.root}:{PLACE}", "--workdir", PLACE]
-    run += ["--env", "HOME=/tmp", "--env", "USER=course"]
-    passed = sorted(name for name in host.environment if name.startswith(PASSED))
-    run += [word for name in passed for word in ("--env", name)]
-    if lesson := host.environment.get("LESSON"):
-        run += ["--env", f"LESSON={lesson}"]
+        nodes = [node for device in host.devices for node in (device, *device.glob("*"))]
+        groups = {node.stat().st_gid for node in nodes if stat.S_ISCHR(node.stat().st_mode)}
+        run += [f"--group-add={group}" for group in sorted(groups)]
+        run += [f"--user={os.getuid()}:{os.getgid()}"]
+    run += [f"--volume={host.root}:{PLACE}", f"--workdir={PLACE}"]
+    passed = sorted(n for n in host.environment if n.startswith(PASSED) or n == "LESSON")
+    run += [f"--env={given}" for given in ("HOME=/tmp", "USER=course", *passed)]
     return [build, [*run, IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]]
-
-
-def _engine(host: Host) -> str:
-    for name in ENGINES:
-        if host.find(name):
-            return name
-    raise ContainerError(
-        f"PATH has neither {' nor '.join(ENGINES)}. Install one of them, or record without it: "
-        f"{WITHOUT}"
-    )
-
-
-def _groups(devices: Iterable[Path]) -> list[int]:
-    """Return the groups that own the device nodes."""
-    nodes = [node for device in devices for node in (device, *device.glob("*"))]
-    return sorted({node.stat().st_gid for node in nodes if stat.S_ISCHR(node.stat().st_mode)})

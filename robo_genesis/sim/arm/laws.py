@@ -8,7 +8,7 @@ used: a page measures without it.
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
 | `LIMIT_TOLERANCE` of a start | 5e-8 rad | 1e-6 rad |
-| `LAW`, control force | 4e-4 N·m | 5e-3 N·m |
+| `LAW`, control force: float32 in KP times a position error | 4e-4 N·m | 5e-3 N·m |
 | `POSE`, link positions and quaternions | 3e-7 m, 2e-7 | 5e-6 |
 | `NET_FORCE`, internal force of the arm | 9e-4 N·m | 1e-2 N·m |
 | `NET_FORCE`, of the fingers | 6e-3 N | 6e-2 N |
@@ -17,7 +17,7 @@ used: a page measures without it.
 | `MEAN`, mean velocity beyond those of the two samples | 0.07 rad/s | 0.7 rad/s |
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,34 +25,24 @@ import numpy as np
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import per_joint
+from robo_genesis.sim.arm.franka import JOINT_TYPES, per_joint
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
-from robo_genesis.sim.laws import ZERO, apart, broken, times, unit_quaternions
+from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.laws import ZERO, apart, broken, mean_speed, times, unit_quaternions
 
 MEASURES = False
 
-LAW = 5e-3
-"""Tolerance of a control force [N·m or N]: float32 in KP times a position error."""
-
-POSE = 5e-6
-"""Tolerance of link positions [m] and of quaternions."""
+LAW, POSE, STEPPED, MEAN, NEXT = 5e-3, 5e-6, 2e-3, 0.7, (2e-6, 6e-4)
 
 NET_FORCE = per_joint(*(1e-2,) * 7, *(6e-2,) * 2)
 """Tolerance of the internal force [N·m or N]. The fingers also have a force between them, which the
 rule does not know."""
 
-STEPPED, MEAN = 2e-3, 0.7
-"""Tolerances of velocities [rad/s or m/s]: of the one before the last solver step, and of the mean
-of several solver steps beyond the velocities at both samples."""
-
-
-NEXT = 2e-6, 6e-4
-"""Tolerances of position [rad or m] and velocity [rad/s or m/s] after one outer step in MuJoCo."""
-
 
 def driven_run(
-    trace: Trace, case: ControlCase, links: Sequence[str], net_force: FloatArray = NET_FORCE
-) -> Iterator[Finding]:
+    trace: Trace, case: ControlCase, links: Sequence[str],
+    net_force: FloatArray = NET_FORCE, load: float = 0.0,
+) -> Iterator[Finding]:  # fmt: skip
     """Yield what no run of `joint_control.run_case` has.
 
     Args:
@@ -60,9 +50,10 @@ def driven_run(
         case: its settings; the target is one for all steps, (d,), or one for each, (n, d).
         links: names of the links of the trace.
         net_force: (d,) tolerances of the internal force [N·m or N].
+        load: what is added to the mass of the hand [kg].
     """
     yield from commanded(trace, case, links)
-    yield from dynamics(trace, case, net_force)
+    yield from dynamics(trace, case, net_force, load)
 
 
 def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
@@ -78,23 +69,32 @@ def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator
     yield from poses(trace, links)
 
 
-def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
-    """Yield what no run of `joint_control.assign_path` has; the arguments are as before."""
-    yield from assigned_postures(trace, case, links)
+def assigned_path(
+    trace: Trace, case: ControlCase, links: Sequence[str], runs: Iterable[Trace]
+) -> Iterator[Finding]:
+    """Yield what no run of `joint_control.assign_path` has; the arguments are as below."""
+    yield from assigned_postures(trace, case, links, runs)
     path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
     yield from apart("start", "target [rad or m]", trace.target, path, 0.0)
 
 
-def assigned_postures(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
-    """Yield what no run of `joint_control.assign_postures` has; the arguments are as before."""
+def assigned_postures(
+    trace: Trace, case: ControlCase, links: Sequence[str], runs: Iterable[Trace]
+) -> Iterator[Finding]:
+    """Yield what no run of `joint_control.assign_postures` has; the arguments are as before.
+
+    Nothing is stepped, so the internal force remains that of the step before: it is the last of one
+    of the page's `runs` whose force changes.
+    """
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
     yield from apart("start", "q [rad or m]", trace.q[1:], trace.target, LIMIT_TOLERANCE)
     yield from apart("motion", "qd [rad/s or m/s]", trace.qd, ZERO, 0.0)
     yield from apart("law", "control_force [N·m or N]", trace.control_force, ZERO, 0.0)
     yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, ZERO, 0.0)
-    first = trace.internal_force[0]  # of the last step that the engine took, whenever that was
-    yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, first, 0.0)
+    ends = [of.internal_force[-1] for of in runs if np.ptp(of.internal_force, axis=0).any()]
+    force = min(ends, key=lambda end: float(np.abs(trace.internal_force - end).max()))
+    yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, force, 0.0)
     yield from poses(trace, links)
 
 
@@ -127,12 +127,26 @@ def poses(trace: Trace, links: Sequence[str]) -> Iterator[Finding]:
     yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
 
 
+def model_joints(joints: JointMap) -> Iterator[Finding]:
+    """Yield an index, a limit or a type that the joint of the model does not have."""
+    from robo_genesis.sim.mujoco.kinematics import bare_robot
+
+    model, _, q_at, dof_at = bare_robot()
+    own = [model.joint(name).id for name in joints.names]
+    lower, upper = model.jnt_range[own].T
+    expected = {"dofs_idx_local": dof_at, "qs_idx_local": q_at, "lower": lower, "upper": upper}
+    for name, values in expected.items():
+        yield from apart("labels", name, getattr(joints, name), np.array(values), LIMIT_TOLERANCE)
+    if joints.types != JOINT_TYPES:
+        yield broken("labels", "list of types", joints.types, JOINT_TYPES)
+
+
 def dynamics(
-    trace: Trace, case: ControlCase, net_force: FloatArray = NET_FORCE
+    trace: Trace, case: ControlCase, net_force: FloatArray, load: float
 ) -> Iterator[Finding]:
     """Yield an internal force that is not the net force, and motion that the samples do not have.
 
-    `net_force` (d,) are the tolerances of the first [N·m or N].
+    `net_force` and `load` are as of `driven_run`.
 
     Semi-implicit Euler gives the state before the last solver step from the state after it: the
     position is q − h q̇, and the velocity is q̇ − h a with (M + h D) a = f, the internal force, where
@@ -142,28 +156,25 @@ def dynamics(
     speeds = np.vstack([trace.start_qd, trace.qd]).astype(np.float64)
     q = trace.q.astype(np.float64)
     q_before = q[1:] - h * speeds[1:]
-    qd_before, force = last_step(trace, case, q_before)
+    qd_before, force = last_step(trace, case, q_before, load)
     name = "internal_force [N·m or N]"
     yield from apart("motion", name, trace.internal_force, force, net_force)
     if n <= 2:  # then the step began at a sample, or the only other step did
         middle = (q_before - q[:-1]) / h if n == 2 else speeds[:-1]
         name = "velocity before the last solver step [rad/s or m/s]"
         yield from apart("motion", name, qd_before, middle, STEPPED)
-    mean, middle = np.diff(q, axis=0) / case.dt, (speeds[1:] + speeds[:-1]) / 2
-    beyond = np.maximum(np.abs(mean - middle) - np.abs(np.diff(speeds, axis=0)) / 2, 0)
-    name = "mean velocity beyond those of both samples [rad/s or m/s]"
-    yield from apart("motion", name, beyond, ZERO, MEAN)
+    yield from mean_speed(q, speeds, case.dt, MEAN)
 
 
 def last_step(
-    trace: Trace, case: ControlCase, q_before: FloatArray
+    trace: Trace, case: ControlCase, q_before: FloatArray, load: float = 0.0
 ) -> tuple[FloatArray, FloatArray]:
     """Return velocity and net force, each (n, d), at the positions (n, d) before the last step."""
     import mujoco
 
     from robo_genesis.sim.mujoco.kinematics import bare_robot
 
-    (model, data, q_at, dof_at), h = bare_robot(), case.dt / case.substeps
+    (model, data, q_at, dof_at), h = bare_robot(load), case.dt / case.substeps
     damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
     states, impulses, speeds, bias = np.zeros((4, len(q_before), model.nv))
     states[:, q_at], speeds[:, dof_at] = q_before, trace.qd

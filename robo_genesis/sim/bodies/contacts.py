@@ -202,9 +202,7 @@ def time_constant(world: World) -> float:
 
 
 def record_world(
-    world: World,
-    traces: dict[str, ContactTrace],
-    settings: dict[str, dict[str, float]],
+    world: World, traces: dict[str, ContactTrace], settings: dict[str, dict[str, float]]
 ) -> None:
     """Run a world; add its traces and its `SETTINGS`, which are read back, to those of others."""
 

@@ -69,11 +69,7 @@ def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
     return BodyTrace(times(case), *stacked(states))
 
 
-def record_states(
-    step: Callable[[], object],
-    steps: int,
-    read: Callable[[], Read],
-) -> list[Read]:
+def record_states(step: Callable[[], object], steps: int, read: Callable[[], Read]) -> list[Read]:
     """Read the state, then step and read again, `steps` times; return the steps + 1 states.
 
     Args:

@@ -4,8 +4,9 @@ Each yields findings about one `View`; the label of a view keeps several apart. 
 pictures passes the checks of pictures with the note SKIP.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -27,18 +28,14 @@ SAME_POSE = 2e-6
 FEWEST_PIXELS = 200
 """A surface with fewer pixels is not judged by its picture."""
 
+# A mask has whole pixels. At random places, the centroid of a disc of 200 pixels is up to 0.14
+# pixels from the centre of the disc.
 CENTROID = 0.15
-"""Largest distance of a centroid from the centre of the computed silhouette [pixel].
+"""Largest distance of a centroid from the centre of the computed silhouette [pixel]."""
 
-A mask has whole pixels. At random places, the centroid of a disc of 200 pixels is up to 0.14 pixels
-from the centre of the disc.
-"""
-
+# The engine draws a sphere as 1280 triangles, whose centres are 0.45 % nearer to its middle.
 MESH_SHARE = 0.006
-"""Largest distance of a point from a sphere's surface, as a share of the radius.
-
-The engine draws a sphere as 1280 triangles, whose centres are 0.45 % nearer to its middle.
-"""
+"""Largest distance of a point from a sphere's surface, as a share of the radius."""
 
 PLANE = 1e-4
 """Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]."""
@@ -59,10 +56,21 @@ class Marker:
     radius: float
 
 
-def camera_matrix(label: str, view: View, fov: float) -> Iterator[Finding]:
-    """Require the engine's camera matrix to be that of the vertical field of view [degree]."""
-    apart = np.abs(view.intrinsics - cameras.intrinsics(fov, view.size)).max()
+def camera_matrix(label: str, view: View, given: Mapping[str, Any]) -> Iterator[Finding]:
+    """Require the camera matrix of the vertical field of view, and the pose and the limits given.
+
+    Args:
+        label: of the view.
+        view: as it was read.
+        given: to `add_camera`: `fov` [degree], `near` and `far` [m], and, of a camera that is not
+            on a link, `pos` and `lookat` [m].
+    """
+    apart = np.abs(view.intrinsics - cameras.intrinsics(given["fov"], view.size)).max()
     yield at_most(f"{label}.intrinsics_error_px", float(apart), SAME_MATRIX)
+    yield equal(f"{label}.limits_m", view.limits, (given["near"], given["far"]))
+    if "pos" in given:
+        turned = view.transform - cameras.looking(given["pos"], given["lookat"])
+        yield at_most(f"{label}.pose_error", float(np.abs(turned).max()), SAME_POSE)
 
 
 def mounted_camera(
@@ -80,8 +88,8 @@ def mounted_camera(
     link = np.eye(4)
     link[:3, :3], link[:3, 3] = rotate(quat, np.eye(3)).T, position
     apart = np.abs(view.transform - link @ offset)
-    yield at_most(f"{label}.position_error_m", float(apart[:3, 3].max()), SAME_POSE)
-    yield at_most(f"{label}.axes_error", float(apart[:3, :3].max()), SAME_POSE)
+    yield at_most(f"{label}.position_error_m", float(apart[:, 3].max()), SAME_POSE)
+    yield at_most(f"{label}.axes_error", float(apart[:, :3].max()), SAME_POSE)
 
 
 def computed(view: View, marker: Marker) -> tuple[FloatArray, FloatArray]:

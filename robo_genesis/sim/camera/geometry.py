@@ -7,6 +7,7 @@ the world as the engine reports it: x right, y up, z backwards (OpenGL) [m]. The
 x right, y down, z forwards (OpenCV). Depth is the distance along the optical axis [m].
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,20 @@ def intrinsics(fov: float, size: tuple[int, int]) -> FloatArray:
 def other_axes(transform: FloatArray) -> FloatArray:
     """Return the pose (4, 4) of a camera with OpenCV axes from one with OpenGL axes, or back."""
     return np.asarray(transform, dtype=float) @ FLIP
+
+
+def looking(pos: Sequence[float], at: Sequence[float]) -> FloatArray:
+    """Return the pose (4, 4) of an upright camera at a place: x right, y up, z backwards [m].
+
+    Args:
+        pos: (3,) its place [m].
+        at: (3,) the point in the middle of its picture, not straight above or below [m].
+    """
+    z = np.subtract(pos, at) / np.linalg.norm(np.subtract(pos, at))
+    x = np.cross((0, 0, 1), z) / np.linalg.norm(np.cross((0, 0, 1), z))
+    transform = np.eye(4)
+    transform[:3] = np.column_stack([x, np.cross(z, x), z, pos])
+    return transform
 
 
 def extrinsics(transform: FloatArray) -> FloatArray:

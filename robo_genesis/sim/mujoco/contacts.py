@@ -96,8 +96,13 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
     return ContactTrace(times(case), *stacked(states))
 
 
-def each_step(trace: BodyTrace, case: ContactCase) -> dict[str, FloatArray]:
-    """Return what follows from each state of a run but the last in one outer step, by array."""
+def each_step(
+    trace: BodyTrace, case: ContactCase, own_defaults: bool = False
+) -> dict[str, FloatArray]:
+    """Return what follows from each state of a run but the last in one outer step, by array.
+
+    The arguments are as of `run_case`.
+    """
     import mujoco
     from mujoco import rollout
 
@@ -105,7 +110,7 @@ def each_step(trace: BodyTrace, case: ContactCase) -> dict[str, FloatArray]:
     position, quat, velocity, spin = states.values()
     spin = rotate(quat * [1, -1, -1, -1], spin)  # MuJoCo has it in the body's axes
     begin = np.hstack([np.zeros((len(quat), 1)), position, quat, velocity, spin])
-    model = load(case)
+    model = load(case, own_defaults)
     ends, _ = rollout.rollout(model, [mujoco.MjData(model)], begin, nstep=case.substeps)
     _, position, quat, velocity, spin = np.split(np.asarray(ends)[:, -1], (1, 4, 8, 11), axis=1)
     return dict(zip(MOTION, (position, quat, velocity, rotate(quat, spin)), strict=True))

@@ -16,13 +16,16 @@ from robo_genesis.sim.session import asset
 
 
 @cache
-def bare_robot() -> tuple[Any, Any, list[int], list[int]]:
+def bare_robot(load: float = 0.0) -> tuple[Any, Any, list[int], list[int]]:
     """Return the model without shapes and actuators, its data, and the joints in qpos and qvel.
 
-    The data are made once, because that takes as long as a hundred states. Every use sets all of
-    `qpos` and `qvel` that it reads.
+    `load` is added to the mass of the hand [kg]; its centre of mass and inertia remain. The data
+    are made once, because that takes as long as a hundred states. Every use sets all of `qpos` and
+    `qvel` that it reads.
     """
-    return with_data(bare_spec().compile())
+    spec = bare_spec()
+    spec.body("hand").mass += load
+    return with_data(spec.compile())
 
 
 def bare_spec() -> Any:
@@ -89,13 +92,11 @@ def gravity_effort(q: FloatArray, load: float = 0.0) -> FloatArray:
     """
     import mujoco
 
-    model, data, q_at, dof_at = bare_robot()
+    model, data, q_at, dof_at = bare_robot(load)
     data.qpos[q_at], data.qvel[:] = q, 0.0
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     mujoco.mj_comVel(model, data)
-    effort, rows = np.zeros(model.nv), np.zeros((3, model.nv))
+    effort = np.zeros(model.nv)
     mujoco.mj_rne(model, data, 0, effort)
-    mujoco.mj_jacBodyCom(model, data, rows, None, model.body("hand").id)
-    effort -= load * model.opt.gravity @ rows
     return np.asarray(effort[dof_at])

@@ -3,15 +3,14 @@
 The store of executed pages holds the seconds of each cell.
 """
 
-import os
 from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
 
 from robo_genesis.core import tables
-from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_record
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import page_record
 from robo_genesis.site.pages import PageDirective
 
 
@@ -21,29 +20,18 @@ class CellTimes(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the table."""
         pages = find_pages(Path(self.env.srcdir))
-        rows = [row(page.docname, cell_seconds(page)) for page in pages]
+        rows = [row(page.docname, page_record(page.docname).cell_seconds) for page in pages]
         return self.parse_text_to_nodes(tables.markdown(rows))
 
 
-def cell_seconds(page: Page) -> list[float]:
-    """Return the elapsed seconds of each code cell, from the run whose outputs the page shows.
+def row(docname: str, seconds: list[float]) -> dict[str, str | int]:
+    """Return one row of the table; cells are counted from 1, times are in seconds.
 
     Raises:
-        LookupError: the store lacks the page, or the time of one of its cells.
+        LookupError: there is no time.
     """
-    seconds = page_record(page.docname).cell_seconds
-    code = (cell.source for cell in page.notebook.cells if cell.cell_type == "code")
-    cells = sum(bool(source.strip()) for source in code)
-    if not seconds or (len(seconds) != cells and LAST_OUTPUTS not in os.environ):
-        raise LookupError(
-            f"{page.docname} has {cells} code cells and {len(seconds)} recorded times. A page "
-            "needs one time for each of at least one cell. Execute it again: make clean book."
-        )
-    return seconds
-
-
-def row(docname: str, seconds: list[float]) -> dict[str, str | int]:
-    """Return one row of the table; cells are counted from 1, times are in seconds."""
+    if not seconds:
+        raise LookupError(f"{docname} has no cell with code. Write one, or remove its empty cells.")
     slowest = max(range(len(seconds)), key=seconds.__getitem__)
     return {
         "page": f"[](/{docname}.md)",

@@ -50,15 +50,7 @@ from robo_genesis.site.evidence.plain_nodes import html, image
 from robo_genesis.site.figures.posture_model import glb, with_target
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls
-from robo_genesis.site.replay.directive import (
-    bundle_inputs,
-    bundle_of,
-    leave_model,
-    origin_html,
-    replay_folder,
-    shape_file,
-    stage,
-)
+from robo_genesis.site.replay import directive as replays
 
 
 class ExplorerDirective(PageDirective):
@@ -70,7 +62,7 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        recorded = Recorded(lesson_page.split("/")[0], bundle_of(lesson_page))
+        recorded = Recorded(lesson_page.split("/")[0], replays.bundle_of(lesson_page))
         return [explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)]
 
 
@@ -92,7 +84,7 @@ class Recorded:
             ShownError: the lesson has no explorer.
         """
         found = find(f"robo_genesis.lessons.{self.lesson}.explorer.explored")
-        inputs = [repr((self.lesson, name)).encode(), *bundle_inputs(self.folder)]
+        inputs = [repr((self.lesson, name)).encode(), *replays.bundle_inputs(self.folder)]
         made = derived("explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name)))
         data: dict[str, Any] = pickle.loads(made)
         return data
@@ -142,9 +134,7 @@ def panel(data: Mapping[str, Any], first: str = "") -> nodes.Node:
     chooser = sliders(data["size"]) if "size" in data else selects(data)
     plots = '<div class="plots"></div>' * ("curves" in data)
     lines = "".join(map(controls.term, data["columns"]))
-    return html(
-        f'<div class="panel" hidden>{first}{chooser}{plots}<dl>{lines}</dl></div></div>',
-    )
+    return html(f'<div class="panel" hidden>{first}{chooser}{plots}<dl>{lines}</dl></div></div>')
 
 
 def selects(data: Mapping[str, Any]) -> str:
@@ -203,7 +193,7 @@ def picture(
     with Image.open(folder / f"{name}_rgb.png") as frame:  # to look at: other frames have numbers
         frame.convert("RGB").save(content, "JPEG", quality=85, optimize=True)
     shown = image(directive.env, f"{file}.jpg", content.getvalue(), alt)
-    return stage(shown, '<span class="cross" hidden></span>', caption, file)
+    return replays.stage(shown, '<span class="cross" hidden></span>', caption, file)
 
 
 def postures(
@@ -227,12 +217,12 @@ def postures(
     from robo_genesis.site.replay.scenery import fitted  # it loads slowly
 
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
-    shape = shape_file(recorded.lesson, replay.thing)
+    shape = replays.shape_file(recorded.lesson, replay.thing)
     traces = {case: with_target(run.traces[case], of) for case, of in targets.items()}
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
-    inputs = [name.encode(), shape.read_bytes(), *bundle_inputs(recorded.folder)]
+    inputs = [name.encode(), shape.read_bytes(), *replays.bundle_inputs(recorded.folder)]
     alt = f"The {replay.thing} at the start, drawn from the recorded poses."
-    files, weight, still = leave_model(
+    files, weight, still = replays.leave_model(
         env, name, inputs, lambda: glb(shape, run.links, traces, camera, replay.credit), camera, alt
     )
     words = files | {"orbit": camera.orbit, "target": camera.target}
@@ -240,11 +230,11 @@ def postures(
     yield opening("with-model", data, **words)
     over = controls.over_the_picture("Show in 3D")
     caption = f"Recorded postures of the {replay.thing}. Yellow cross: the target."
-    yield stage(still, over, caption, f"{name}-model")
+    yield replays.stage(still, over, caption, f"{name}-model")
     loads = f'<p role="status">Show in 3D loads the {escape(replay.thing)}: {weight} kB.</p>'
     yield panel(data, loads)
     yield from fold(directive, found)
-    yield html(origin_html(name, recorded.folder, replay_folder(env), replay.credit))
+    yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 
 
 def setup(app: Sphinx) -> None:

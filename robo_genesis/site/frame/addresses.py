@@ -5,6 +5,7 @@ written; a server shows it at any depth, so its links begin at the site's root.
 """
 
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from sphinx.application import Sphinx
@@ -12,17 +13,7 @@ from sphinx.config import Config
 
 from robo_genesis.pipeline.html.address import site_address, site_root
 
-NOT_FOUND = """\
-<h1>There is no such page</h1>
-<p>The address may be mistyped, or the page has moved. Search, or start from one of the pages
-below.</p>
-<form class="lost" role="search" action="{root}search.html" method="get">
-<label for="lost-words">Search all pages</label>
-<input id="lost-words" type="search" name="q" autocomplete="off"/>
-<button type="submit">Search</button>
-</form>
-<ul>{links}</ul>
-"""
+NOT_FOUND = Path(__file__).with_name("not_found.html").read_text("utf8")
 WAYS_ON = {
     "index": "the course map: every lesson, published and planned",
     "glossary": "the words of the field",

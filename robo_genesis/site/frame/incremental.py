@@ -32,8 +32,8 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.nodes import clean_astext
 
+from robo_genesis.core.git import history
 from robo_genesis.pipeline.html.kept import UNFIT
-from robo_genesis.pipeline.up_to_date import history
 from robo_genesis.site.text.glossary import glossary_terms
 
 REPLAYS, TAKEAWAYS = "replay", "takeaways"
@@ -222,11 +222,10 @@ def remove_others(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Remove the files that no page writes any more, and folders that become empty."""
     noted = set().union(*(page.get(FILES, ()) for page in env.metadata.values()))
     for folder in (Path(app.outdir) / REPLAYS, Path(app.outdir) / TAKEAWAYS):
-        for path in sorted(folder.rglob("*"), reverse=True):
+        for path in sorted([*folder.rglob("*"), folder], reverse=True):  # a folder comes last
             if path.is_file() and str(path) not in noted:
                 path.unlink()
-        for path in sorted([*folder.rglob("*/"), folder], reverse=True):
-            if path.is_dir() and not any(path.iterdir()):
+            elif path.is_dir() and not any(path.iterdir()):
                 path.rmdir()
     return []
 

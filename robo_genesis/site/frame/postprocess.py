@@ -40,13 +40,8 @@ NEEDED_NOWHERE = {"fontawesome.js"}
 NAMED = re.compile(r"[.#]([\w-]+)")
 """Classes and identifiers in a selector."""
 
-# Files of the theme that no page loads.
-UNUSED = (
-    "_static/**/*.map",
-    "_static/*webpack-macros.html",
-    "_static/locales",
-    "_static/scripts/fontawesome.js*",
-)
+UNUSED = ("**/*.map", "*webpack-macros.html", "locales", "scripts/fontawesome.js*")
+"""Files of the theme in `_static` that no page loads."""
 
 OPTIONS = "DOCUMENTATION_OPTIONS"
 """The object that Sphinx's scripts set; the file `documentation_options.js` defines it."""
@@ -186,7 +181,7 @@ def place_images(page: BeautifulSoup, folder: Path) -> None:
 def drop_unused_files(html: Path) -> None:
     """Remove the theme's files that no page of the site's folder loads."""
     for pattern in UNUSED:
-        for path in list(html.glob(pattern)):
+        for path in list((html / "_static").glob(pattern)):
             shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 

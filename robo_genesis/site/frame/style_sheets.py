@@ -18,25 +18,15 @@ from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.command import output_of
 
-PARTS = ("print", "calm", "course", "explorer", "replay", "look", "plot")
-SHEETS = (
-    "_static/basic.css",
-    "_static/styles/pydata-sphinx-theme.css",
-    "_static/pygments.css",
-    "_static/styles/sphinx-book-theme.css",
-    "_static/palette.css",
-    "_static/togglebutton.css",
-    "_static/copybutton.css",
-    "_static/mystnb.*.css",
-    "_static/sphinx-design.min.css",
-    *(f"_static/{name}.css" for name in PARTS),
-    "_static/home.css",
-)
+OWN = ("print", "calm", "course", "explorer", "replay", "look", "plot", "home")
+THEME = ("basic", "styles/pydata-sphinx-theme", "pygments", "styles/sphinx-book-theme")
+EXTENSIONS = ("palette", "togglebutton", "copybutton", "mystnb.*", "sphinx-design.min")
+SHEETS = tuple(f"_static/{name}.css" for name in (*THEME, *EXTENSIONS, *OWN))
 """The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only
 pages with formulas load it."""
 IMPORTING = "_static/styles/theme.css"
 """A sheet of the theme that imports the first one and has no rule."""
-TRIMMED = (*SHEETS[:4], "_static/mystnb.*.css", "_static/sphinx-design.min.css")
+TRIMMED = (*SHEETS[:4], *SHEETS[7:9])
 """The sheets of the theme and its extensions that have rules for other sites."""
 JOINED = "_static/styles/site.css"
 

@@ -120,7 +120,7 @@ def replay_block(
     if shown.moves:
         block += bullets(*map(marked, shown.moves.values()))
     block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
-    origin = origin_html(name, folder, replay_folder(env), replay.credit)
+    origin = origin_html(name, folder, env, replay.credit)
     block += html(f"</details>{origin}")
     return block
 
@@ -195,16 +195,16 @@ def bundle_inputs(folder: Path) -> Iterator[bytes]:
         yield path.read_bytes()
 
 
-def origin_html(name: str, folder: Path, up: str, credit: str | None) -> str:
+def origin_html(name: str, folder: Path, env: BuildEnvironment, credit: str | None) -> str:
     """Return the line that names the run and the origin of the shape.
 
     Args:
         name: of the replay.
         folder: of the bundle.
-        up: address of the replay's files.
+        env: of the page that shows it.
         credit: of the shape, None for shapes of the scene itself.
     """
-    run = bundle.read_manifest(folder).predicate
+    run, up = bundle.read_manifest(folder).predicate, replay_folder(env)
     links = f'<a href="{up}/{NOTICE}">notice</a>, '
     links += f'<a href="{up}/{VIEWER_LICENCE}">licence</a>'
     shape = f"{credit} ({links})." if credit else f"shapes of the scene itself. Viewer: {links}."

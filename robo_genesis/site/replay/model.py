@@ -79,10 +79,7 @@ class Binary:
 
 
 def glb(
-    scenery: Scenery,
-    links: Sequence[str],
-    traces: Mapping[str, Run],
-    credit: str | None = None,
+    scenery: Scenery, links: Sequence[str], traces: Mapping[str, Run], credit: str | None = None
 ) -> bytes:
     """Return the model with one animation a case.
 
@@ -142,13 +139,8 @@ def _mesh(
         faces = np.asarray(mesh.faces).ravel()
         small = np.uint16 if len(mesh.vertices) < 2**16 else np.uint32
         indices = binary.add(faces.astype(small), "SCALAR", gltf.ELEMENT_ARRAY_BUFFER)
-        primitives.append(
-            gltf.Primitive(
-                attributes=attributes,
-                indices=indices,
-                material=_material(model, colour or part.rgb),
-            )
-        )
+        look = {"indices": indices, "material": _material(model, colour or part.rgb)}
+        primitives.append(gltf.Primitive(attributes=attributes, **look))
     if not primitives:
         return None
     model.meshes.append(gltf.Mesh(name=link, primitives=primitives))

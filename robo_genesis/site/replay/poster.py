@@ -82,12 +82,8 @@ def drawn(corners: FloatArray, colours: FloatArray) -> tuple[FloatArray, FloatAr
     (right, down), (across, below) = (b - a).T, (c - a).T
     faces_camera = right * below - down * across < -1e-6  # y points down
     edges = np.concatenate([corners[..., :2], np.ones((*corners.shape[:2], 1))], axis=2)
-    for corner, colour, edge in zip(
-        corners[faces_camera],
-        colours[faces_camera],
-        np.linalg.inv(edges[faces_camera]),
-        strict=True,
-    ):
+    visible = corners[faces_camera], colours[faces_camera], np.linalg.inv(edges[faces_camera])
+    for corner, colour, edge in zip(*visible, strict=True):
         low = np.maximum(np.floor(corner[:, :2].min(axis=0)).astype(int), 0)
         high = np.minimum(np.ceil(corner[:, :2].max(axis=0)).astype(int), near.shape[::-1])
         if (low >= high).any():

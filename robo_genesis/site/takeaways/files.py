@@ -21,20 +21,16 @@ from nbformat import NotebookNode
 from sphinx.config import Config
 
 from robo_genesis.core import project
-from robo_genesis.core.files import derived, write_whole
+from robo_genesis.core.files import NO_SOURCE, derived, files_below, write_whole
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.sources import Tree
+from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
-from robo_genesis.site.takeaways.notebooks import (
-    executed_notebook,
-    student_notebook,
-    version_check,
-)
+from robo_genesis.site.takeaways.notebooks import executed_notebook, student_notebook, version_check
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
 ENVIRONMENT = "course"
@@ -54,8 +50,6 @@ DEBIAN = ("python3-venv", "libegl1", "libgl1")
 """Packages of Debian that a fresh system lacks."""
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
-PACKAGE = "robo_genesis"
-CACHED = "__pycache__"
 EPOCH = "315532800"
 """1980-01-01, the oldest time that a zip can hold."""
 
@@ -250,19 +244,19 @@ def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -
     Raises:
         ProjectError: setuptools failed; the message contains its output.
     """
-    files = [root / source for source in SOURCES]
-    files += sorted(p for p in (root / PACKAGE).rglob("*") if p.is_file() and CACHED not in p.parts)
+    files = [
+        *(root / source for source in SOURCES),
+        *sorted(files_below(root / PACKAGE, left_out=NO_SOURCE)),
+    ]
     inputs = [part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes())]
     inputs.append(repository.encode())
-    built = derived("wheel", inputs, lambda: built_wheel(root, repository))
-    name, _, content = built.partition(b"\n")
-    wheel = folder / name.decode()
-    write_whole(wheel, content)
+    wheel = folder / f"{PACKAGE}-{package_facts()['version']}-py3-none-any.whl"
+    write_whole(wheel, derived("wheel", inputs, lambda: built_wheel(root, repository)))
     return wheel
 
 
 def built_wheel(root: Path, repository: str = "") -> bytes:
-    """Return the name of the wheel, a line end and its content; `root` stays as it is."""
+    """Return the content of the wheel; `root` stays as it is."""
     with tempfile.TemporaryDirectory() as name:
         copy = Path(name)
         for source in SOURCES:
@@ -270,10 +264,10 @@ def built_wheel(root: Path, repository: str = "") -> bytes:
         if repository:
             with (copy / SOURCES[0]).open("a", encoding="utf8") as facts:
                 facts.write(f"\n[project.urls]\nRepository = {json.dumps(repository)}\n")
-        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(CACHED))
+        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(*NO_SOURCE))
         for path in copy.rglob("*"):
             path.chmod(0o755 if path.is_dir() else 0o644)  # whatever the user's umask
         settings = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}
         command, refusal = [sys.executable, "-c", BUILD, "."], "The package's wheel cannot be built"
         name = output_of(command, refusal, cwd=copy, env=settings).splitlines()[-1]
-        return f"{name}\n".encode() + (copy / name).read_bytes()
+        return (copy / name).read_bytes()

@@ -28,7 +28,6 @@ A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from types import MappingProxyType
 from typing import Any
 
 from docutils import nodes
@@ -226,11 +225,7 @@ def declared_margin(lesson: str, metric: str) -> float:
 
 
 def options(
-    unit: str,
-    order: str | None,
-    resolution: str,
-    causes: Mapping[str, str] = MappingProxyType({}),
-    margin: float = 0.0,
+    unit: str, order: str | None, resolution: str, causes: Mapping[str, str], margin: float
 ) -> list[tuple[str, bool, str]]:
     """Return each option, whether it was measured, and its cause; exactly one is true.
 

@@ -3,30 +3,12 @@
 from functools import partial
 
 import pytest
-import torch
 from lessons.exercise_cells import solutions
+from lessons.fake_scenes import FakeBody, FakeScene
 
 from robo_genesis.lessons.l01 import exercises, spec
 
 SOLVED = solutions("l01")
-
-
-class FallingSphere:
-    """A sphere, and a scene that steps it by semi-implicit Euler."""
-
-    def __init__(self):
-        self.reset()
-
-    def reset(self):
-        self.z, self.v = spec.BASELINE.height, 0.0
-
-    def step(self):
-        for _ in range(spec.BASELINE.substeps):
-            self.v -= 9.81 * spec.BASELINE.h
-            self.z += self.v * spec.BASELINE.h
-
-    def get_pos(self):
-        return torch.tensor([0.0, 0.0, self.z], dtype=torch.float64)
 
 
 def height(z0, g, h, n, *, extra=1, school=False):
@@ -63,7 +45,8 @@ CASES = {
 
 @pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in CASES.items() for how in of])
 def test_only_the_right_solution_passes(name, how):
-    sphere = FallingSphere()
-    more = {"fall": (sphere, sphere)}.get(name, ())
+    sphere = FakeBody(1.0, spec.BASELINE.height)
+    scene = FakeScene(sphere, dt=spec.BASELINE.dt, substeps=spec.BASELINE.substeps)
+    more = {"fall": (scene, sphere)}.get(name, ())
     (check,) = getattr(exercises, name)(CASES[name][how], *more)
     assert check.passed == (how == "right"), check.detail

@@ -1,10 +1,8 @@
 """Bundles of bodies on a surface, with contacts: accepted, compared, tabulated, refused."""
 
 import shutil
-from pathlib import Path
 
 import pytest
-from bundles import written
 from lessons.lesson_bundles import in_archive, judged_again, metric, refused, table
 from spoilers import ARRAYS, pop, predicate
 
@@ -12,41 +10,21 @@ from robo_genesis.core.comparison import same_arrays
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.lessons.l03 import LESSON, spec, study_spec
-from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.lessons.l03 import spec, study_spec
 
 
-@pytest.fixture(scope="module")
-def bundles(tmp_path_factory, engine, experiments) -> dict[str, Path]:
-    """The bundles of all pages, by page, with MuJoCo in the place of both engines."""
-    outputs = tmp_path_factory.mktemp("landed")
-    return {page: written(engine, outputs, "l03", page, run) for page, run in experiments.items()}
-
-
-@pytest.fixture
-def copy(bundles, tmp_path):
-    """Return a function that copies the bundle of a page, to spoil it."""
-    return lambda page: Path(shutil.copytree(bundles[page], tmp_path / "l03" / page / "cpu"))
-
-
-@pytest.mark.parametrize("page", LESSON.pages)
-def test_a_sound_one_is_accepted(bundles, page):
-    names = [check.name for check in verify_bundle(bundles[page]).predicate.checks]
-    assert names == [check.__name__ for check in LESSON.pages[page].checks]
-
-
-def test_contacts_are_read_as_they_were_recorded(bundles, contact_traces):
-    found = read_any_trace(bundles["lab"], bundle.read_arrays(bundles["lab"]), "baseline")
+def test_contacts_are_read_as_they_were_recorded(sound, contact_traces):
+    found = read_any_trace(sound["lab"], bundle.read_arrays(sound["lab"]), "baseline")
     assert same_arrays(found, contact_traces["baseline"])
-    rows = table(bundles["lab"], "dt20_sub1")
+    rows = table(sound["lab"], "dt20_sub1")
     assert len(rows) == 76
     assert rows[-1]["contacts body [1]"] == "4"
     assert float(rows[-1]["penetration body [m]"]) > 0
 
 
 @pytest.mark.parametrize(("page", "claims"), [("lab", 2), ("lecture", 1), ("energy", 0)])
-def test_a_page_compares_with_itself_by_its_own_cases(bundles, page, claims):
-    found = compare(bundles[page], bundles[page])
+def test_a_page_compares_with_itself_by_its_own_cases(sound, page, claims):
+    found = compare(sound[page], sound[page])
     assert found.state == "equal"
     assert sum(len(of.rows) for of in found.sections if of.title == "Relations") == claims
 

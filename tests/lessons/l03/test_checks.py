@@ -7,7 +7,7 @@ import pytest
 from lessons.body_runs import body_at, slide_on_corners
 from lessons.changed_runs import case, copied, failed, frames, put, reading, shift, trace
 
-from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, text
+from robo_genesis.lessons.l03 import spec, study, study_spec, text
 from robo_genesis.lessons.l03.metrics import case_metrics
 
 REST = spec.BASELINE.rest_height
@@ -142,11 +142,6 @@ FAILING = {
             moved("release_10ms_10000", 0.01, first=270), {"stiff_contacts_rebound"}),
     },
 }  # fmt: skip
-
-
-@pytest.mark.parametrize("page", LESSON.pages)
-def test_a_sound_run_passes_every_check(experiments, page):
-    assert [check.name for check in experiments[page].outcomes() if not check.passed] == []
 
 
 @pytest.mark.parametrize(("page", "name"), [(p, name) for p, of in FAILING.items() for name in of])

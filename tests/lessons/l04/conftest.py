@@ -10,7 +10,6 @@ from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.lessons.l04 import study as studies
 from robo_genesis.lessons.l04 import study_spec
 from robo_genesis.lessons.l04.pages import LECTURE, LESSON
-from robo_genesis.sim.arm.franka import Q_START
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 
@@ -50,25 +49,22 @@ def study_runs(joints, frames) -> Experiment:
     for name, run in study_spec.SECOND_RUNS.items():
         case = l04.CASES[run.case]
         traces[name] = mujoco_joints.run_case(case, LINKS, run.timestep, run.integrator)
-    traces[study_spec.ASSIGNED] = assigned(l04.BASELINE, LINKS)
-    inertia, gravity = (float(v[l04.ENTRY]) for v in mujoco_joints.at_rest(Q_START))
-    of_joint = {"passive_damping": 1.0}
-    h = l04.G1.dt / l04.G1.substeps
-    of_joint |= {f"mass_KV_{kv:g}": inertia + h * (1.0 + kv) for kv in studies.COMPARED_KV}
-    of_joint |= {f"inertia_{name}": inertia for name in ("Genesis", "MuJoCo")}
-    of_joint |= {f"gravity_at_start_{name}": gravity for name in ("Genesis", "MuJoCo")}
-    for name in l04.CASES:
-        _, effort = mujoco_joints.at_rest(traces[name].q[-1])
-        of_joint[f"gravity_{name}"] = float(effort[l04.ENTRY])
+    traces[study_spec.ASSIGNED] = assigned(l04.BASELINE, LINKS, traces["baseline"])
     return Experiment(
         page=page,
         traces={name: traces[name] for name in every},
         links=LINKS,
-        readings={"model": l04.EXPECTED_MODEL, studies.GROUP: of_joint},
+        readings={"model": l04.EXPECTED_MODEL, studies.GROUP: studies.by_model(traces)},
         frames=frames,
         rendered=True,
         joints=joints,
     )
+
+
+@pytest.fixture(scope="session")
+def experiments(study_runs) -> dict[str, Experiment]:
+    """What each of these pages measured."""
+    return {name: of_page(study_runs, name) for name in PAGES}
 
 
 @pytest.fixture(scope="module")

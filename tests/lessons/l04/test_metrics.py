@@ -48,11 +48,7 @@ def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, 
 
 
 @pytest.mark.parametrize(
-    ("target", "message"),
-    [
-        (0.0, "positive step"),
-        ([0.25, 0.3], "target changes"),
-    ],
+    ("target", "message"), [(0.0, "positive step"), ([0.25, 0.3], "target changes")]
 )
 def test_what_cannot_be_measured_is_refused(make_trace, target, message):
     with pytest.raises(ValueError, match=message):

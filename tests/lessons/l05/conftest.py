@@ -22,9 +22,9 @@ def reaches(joints) -> Experiment:
     refused = answer(spec.BEYOND_REACH, Q_START, 20).q.astype(float)[None]
     apart, angle = kinematics.distances(found.error)
     solver = {"residual_m": float(apart), "residual_rad": float(angle), "jacobian_difference": 0.0}
-    runs["unreachable"] = assigned(spec.UNREACHABLE.start, LINKS, refused)
+    runs["unreachable"] = assigned(spec.UNREACHABLE.start, LINKS, runs["baseline"], refused)
     many = np.repeat(refused, spec.RESTARTS, axis=0)
-    runs["many_starts"] = assigned(spec.MANY_STARTS.start, LINKS, many)
+    runs["many_starts"] = assigned(spec.MANY_STARTS.start, LINKS, runs["baseline"], many)
     return Experiment(
         page=replace(SOLUTIONS, runs={name: SOLUTIONS.runs[name] for name in runs}),
         traces=runs,
@@ -49,5 +49,6 @@ def solved(reaches):
         q = kinematics.solve(
             target, case.starts[:, :7], *spec.ARM_LIMITS, iterations=100, damping=0.01
         )
-        traces[name] = assigned(case.start, LINKS, np.hstack([q, case.starts[:, 7:]]))
+        postures = np.hstack([q, case.starts[:, 7:]])
+        traces[name] = assigned(case.start, LINKS, traces["baseline"], postures)
     return replace(reaches, traces=traces)

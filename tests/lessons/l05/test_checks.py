@@ -5,12 +5,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import failed, put, reading, shift, trace
+from lessons.changed_runs import copied, failed, put, reading, shift, trace
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import restarts, spec, study
 from robo_genesis.lessons.l05.laws import laws_of_motion
 from robo_genesis.lessons.l05.metrics import reach_metrics
+from robo_genesis.lessons.l05.pages import SOLUTIONS
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
@@ -37,6 +38,7 @@ CHANGES = [
     ("mapping", lambda run: replace(run, links=(*run.links[:8], "flange", *run.links[9:]))),
     ("stamps", trace("baseline", t=lambda t: 2 * t)),
     ("acceptance", reading("ik", "residual_m", 6e-4)),
+    ("acceptance", reading("ik", "residual_m", 2e-5)),
     ("forward_kinematics", moved_hand("kp_doubled", 1e-5)),
     ("second_engine", reading("ik", "jacobian_difference", 1e-4)),
     ("arrived", moved_hand("kp_doubled", 0.05)),
@@ -75,10 +77,17 @@ def test_the_record_of_answers_has_the_dt_of_its_case():
     assert (case.start.dt, case.start.steps) == (0.5, 1)
 
 
-def test_a_link_out_of_place_breaks_a_law(reaches):
-    moved = moved_hand("unreachable", 1e-4)(reaches)
-    wrong = [finding for finding in laws_of_motion(moved) if not finding.passed]
-    assert ["link_pos" in finding.label for finding in wrong] == [True]
+@pytest.mark.parametrize(
+    ("change", "label"),
+    [
+        (moved_hand("unreachable", 1e-4), "link_pos"),
+        (trace("many_starts", internal_force=shift(..., 1e-6)), "internal_force"),
+        (copied("vertical", "horizontal"), "share of answers"),
+    ],
+)
+def test_a_run_that_breaks_a_law_is_found(solved, change, label):
+    found = laws_of_motion(change(replace(solved, page=SOLUTIONS)))
+    assert [label in one.label for one in found if not one.passed] == [True]
 
 
 def test_an_answer_that_is_not_accepted_is_not_commanded():

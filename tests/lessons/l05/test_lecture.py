@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_views import PLANE, closed_view, looking
+from closed_views import PLANE, closed_view
 from lessons.changed_runs import reading
 from lessons.lesson_bundles import accepted_then_refused, in_archive, metric
 from spoilers import coords
@@ -15,6 +15,7 @@ from robo_genesis.lessons.l05 import checks, plots, spec, text
 from robo_genesis.lessons.l05.pages import LAB
 from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.checks import Marker
+from robo_genesis.sim.camera.geometry import looking
 
 SPHERE = Marker(13, spec.TARGET, spec.MARKER_RADIUS)
 
@@ -82,6 +83,7 @@ SPOILED = {
         "baseline", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))),
     "a residual that was written": ("checks", metric("ik", "residual_m", 1.0)),
     "a camera that was moved": ("checks", metric("view_world", "transform_03", 1.6)),
+    "a far limit that was written": ("checks", metric("view_world", "far", 21.0)),
     "another hand": ("pose", coords(
         link=lambda links: [*links[:8], "flange", *links[9:]])),
 }  # fmt: skip

@@ -12,7 +12,6 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import checks, spec, study
 from robo_genesis.lessons.l06.pages import LECTURE
 from robo_genesis.lessons.l06.run import Environment
-from robo_genesis.sim.mujoco.kinematics import gravity_effort
 
 ROUNDING = np.float32(1.2e-7)
 
@@ -22,13 +21,7 @@ def run_of(world: Environment) -> Trace:
     first, last = (answer(world.positions[k], world.q_start, 50).q for k in (0, -1))
     targets = np.repeat(first[None].astype(float), world.steps, axis=0)
     targets[world.switch :] = last
-
-    def weight(q):
-        if not world.load:
-            return np.zeros(len(q))
-        return gravity_effort(q, world.load) - gravity_effort(q)
-
-    return driven(world.commanding(targets), LINKS, weight)
+    return driven(world.commanding(targets), LINKS, world.load)
 
 
 @pytest.fixture(scope="session")
@@ -43,14 +36,14 @@ def worlds(joints) -> Experiment:
     for name, world in spec.COPIES.items():
         runs[name] = beginning(runs[f"env_{name[-1]}"], world.steps)
     masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}
-    residuals = [2.3 if (t == spec.BEYOND_REACH).all() else 1e-4 for t in spec.MIXED]
+    residuals = [study.residual(position, joints) for position in spec.MIXED]
     return Experiment(
         page=replace(LECTURE, checks=checks.WITHOUT_CAMERA),
         traces={name: runs[name] for name in LECTURE.runs},
         links=LINKS,
         readings={
             "model": spec.EXPECTED_MODEL,
-            "mixed": dict(zip(study.MIXED, residuals, strict=True)),
+            "mixed": dict(zip(study.READINGS["mixed"].units, residuals, strict=True)),
             "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
             "hand_mass": masses,
         },

@@ -7,6 +7,7 @@ import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l06 import spec
+from robo_genesis.lessons.l06.laws import laws_of_motion
 from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.run import commands
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
@@ -31,6 +32,7 @@ CHANGES = [
     ("mapping", reading("model", "dofs", 8)),
     ("stamps", trace("env_3", t=lambda t: 2 * t)),
     ("acceptance_per_row", reading("mixed_accepted", "env_2", 1)),
+    ("acceptance_per_row", reading("mixed", "row_2_m", 2.4)),
     # an answer that was commanded beyond its tolerance
     ("acceptance_per_row", trace(LOADED, target=shift(..., 1e-2))),
     ("arrived", moved_hand("alone_1", 0.05, slice(-1, None))),
@@ -59,6 +61,13 @@ def test_each_check_of_the_page_has_such_a_change(worlds):
     assert failed(worlds) == set()
     names = {check.__name__ for check in worlds.page.checks}
     assert names == {name for name, _ in CHANGES} | {"laws_of_motion"}
+
+
+@pytest.mark.parametrize("by", [0.0, 0.1])
+def test_the_law_of_a_loaded_robot_knows_its_load(worlds, by):
+    page = replace(worlds.page, runs={LOADED: worlds.page.runs[LOADED]})
+    run = trace(LOADED, internal_force=shift((40, 1), by))(replace(worlds, page=page))
+    assert ["internal_force" in found.label for found in laws_of_motion(run)] == [by > 0]
 
 
 def test_the_lab_says_which_checks_fail_if_two_rows_are_swapped(worlds):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l06 import mistakes, text, throughput
+from robo_genesis.lessons.l06 import checks, mistakes, text, throughput
 from robo_genesis.lessons.l06.exercises import Machine
 from robo_genesis.lessons.l06.throughput import Protocol
 from robo_genesis.sim.throughput import Model
@@ -57,7 +57,11 @@ def test_building_and_stepping_are_timed_apart_and_after_a_warm_up(measured, siz
     assert {n: found[f"{n}_{size}"] for n in expected} == pytest.approx(expected)
     assert scenes[size].steps == (SHORT.warm_up + SHORT.steps) * SHORT.repeats
     assert differ[str(size)] == 0
-    assert SHORT.readings()[throughput.GROUP].kind == "performance"  # which no check judges
+    for share in (1.0, 1.2, 0.8):
+        run = SimpleNamespace(
+            readings={throughput.GROUP: found | {"step_4": share * found["step_4"]}}
+        )
+        assert all(of.passed for of in checks.times_in_order(run)) == (share == 1)
 
 
 def test_a_row_that_ends_elsewhere_or_did_not_move_is_counted():

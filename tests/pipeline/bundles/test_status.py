@@ -14,6 +14,7 @@ from spoilers import (
     manifest,
     measured_elsewhere,
     modules,
+    older_compiler,
     on,
     own_run_id,
     part,
@@ -53,7 +54,7 @@ OLD_ENGINE = f"Genesis 1.2.0; this site uses {project.engine_pin()}."
 OLD_COMPILER = f"Quadrants 1.2.9; this site uses {QUADRANTS}."
 STATES = [
     ("missing", None, shutil.rmtree, ""),
-    ("stale", "stale", part("engine", quadrants_version="1.2.9"), OLD_COMPILER),
+    ("stale", "stale", older_compiler, OLD_COMPILER),
     ("stale", "stale", SPOILED["an older engine"][2], OLD_ENGINE),
     ("stale", "stale", part("source", page="0" * 64), "The lab's code changed since."),
     ("stale", "stale", modules(metrics="0" * 64), "The course's code changed since."),

@@ -5,7 +5,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from spoilers import SPOILED, moved, on, part, seal
+from spoilers import SPOILED, TORCH, both, moved, on, packages, part, predicate, seal
+from tiny_book import commit, git
 
 import robo_genesis
 from robo_genesis.core import project
@@ -29,14 +30,15 @@ def codes():
         for call in ast.walk(tree)
         if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Name)
-        and call.func.id in ("BundleRefused", "expect", "unexpected", "broken", "apart")
+        and call.func.id
+        in ("BundleRefused", "expect", "expect_equal", "unexpected", "broken", "apart")
         and isinstance(call.args[0], ast.Constant)
     }
 
 
 def test_every_code_has_a_spoiler():
     reached = {code for *both, _ in SPOILED.values() for code in both if code}
-    apart = {"run-id", "copy"} | OF_BODIES  # the first two need a second run
+    apart = {"run-id", "copy", "commit"} | OF_BODIES  # these need a second run, or a repository
     assert reached | apart == codes() | {FAILED}
 
 
@@ -73,7 +75,7 @@ def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, mo
         (lambda folder: folder, "cpu"),
         (on("amdgpu"), "amdgpu"),
         (on("cuda"), "cuda"),
-        (part("backend", requested="auto", cuda_version="13.0"), "cpu"),  # Torch for another one
+        (both(part("backend", **TORCH["cuda"]), packages(torch="2.13.0")), "cpu"),
     ],
 )
 def test_a_sound_bundle_of_each_backend_is_accepted(folder, change, actual):
@@ -135,6 +137,15 @@ HARMLESS = [
     (SPEC, '"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'),
     ("robo_genesis/core/plotting.py", '"""\n', '"""\n\nMORE = 1\n'),
 ]
+UNKNOWN = "1" * 40
+MEASURED = (METRICS, "float(qd[-1])", "float(abs(qd[-1]))")
+
+
+def edit(checkout, name, old, new):
+    """Edit a file of a checkout."""
+    source = (checkout / name).read_text("utf8")
+    assert old in source
+    (checkout / name).write_text(source.replace(old, new, 1), "utf8")
 
 
 @pytest.mark.parametrize(
@@ -145,14 +156,43 @@ HARMLESS = [
         ([("requirements.lock", "\nquadrants==", "\nquadrants==9.")],
          ["engine.quadrants_version"]),
         ([(LAB, "page.facts()", "pass")], ["source.page"]),
-        ([(METRICS, "float(qd[-1])", "float(abs(qd[-1]))")],
+        ([MEASURED],
          ["source.modules.lessons.l04.metrics"]),
     ],
 )  # fmt: skip
 def test_an_edit_makes_stale_what_it_decides_and_nothing_else(folder, checkout, edits, stale):
-    for name, old, new in edits:
-        source = (checkout / name).read_text("utf8")
-        assert old in source
-        (checkout / name).write_text(source.replace(old, new, 1), "utf8")
+    for change in edits:
+        edit(checkout, *change)
     found = changed(bundle.read_manifest(folder), checkout, checkout / "book") or []
     assert [path for path, *_ in found] == stale
+
+
+def test_a_commit_is_older_than_the_run_and_has_its_code(folder, checkout, tmp_path):
+    gpu = on("amdgpu")(Path(shutil.copytree(folder, tmp_path / "gpu" / "cpu")))
+    edit(checkout, *MEASURED)
+    commit(checkout)
+    other = git(checkout, "rev-parse", "HEAD").strip()
+    edit(checkout, METRICS, *MEASURED[:0:-1])
+    commit(checkout)
+    head = git(checkout, "rev-parse", "HEAD").strip()
+
+    def verified(at, named, dirty=False, **times):
+        predicate(git={"commit": named, "dirty": dirty}, **times)(at)
+        verify_bundle(at, root=checkout, book=checkout / "book")
+
+    for at in (folder, gpu):
+        verified(at, head)
+        verified(at, other, dirty=True)
+        with pytest.raises(
+            BundleRefused, match=rf"^commit: .*{other} is source\.modules\.lessons\.l04"
+        ):
+            verified(at, other)
+    edit(checkout, *HARMLESS[0])
+    verified(folder, head)
+    verified(folder, UNKNOWN)  # as of a student's own clone
+    with pytest.raises(BundleRefused, match=r"^commit: .*expected one in the history"):
+        verified(gpu, UNKNOWN, dirty=True)
+    (checkout / ".git" / "shallow").write_text(f"{head}\n")
+    verified(gpu, UNKNOWN)
+    with pytest.raises(BundleRefused, match=r"^time: .*expected after its commit"):
+        verified(folder, head, started="2020-01-01T00:00:00Z", ended="2020-01-01T00:00:00Z")

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.pipeline.html.checks import Site, run_checks
+from robo_genesis.pipeline.html.checks import QUOTING, Site, run_checks
 
 PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article id='top-of-page'>{body}</article>"
 GOOD = """\
@@ -11,6 +11,7 @@ GOOD = """\
 <a href="#">top</a> <a href="sub/">folder</a>
 <img src="picture.png" alt="Joint angle over time, three cases">
 <pre>{eval}`x` in code is fine</pre>"""
+GOOD += "".join(f"<ul class='a {name}'><li>{{a}}`b` $$ [[1 2]]</li></ul>" for name in QUOTING)
 
 
 def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
@@ -58,12 +59,7 @@ LINKED = (
     ('<img srcset="picture.png 1x, gone.png 2x" alt="A picture">', "'gone.png' leads to no"),
     ('<p style="background: url(gone.svg)">x</p>', "'gone.svg' leads to no file"),
 )
-ALT_TEXTS = (
-    "",
-    'alt=""',
-    'alt="figure.png"',
-    'alt="picture"',
-)
+ALT_TEXTS = ("", 'alt=""', 'alt="figure.png"', 'alt="picture"')
 LOADED = (
     '<script src="https://cdn.example.org/x.js"></script>',
     '<link rel="stylesheet" href="https://fonts.example.org/a.css">',

@@ -18,6 +18,7 @@ from tiny_book import cell, fails, make_book, notebook, start
 
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import STORE
+from robo_genesis.pipeline.html import live as live_module
 from robo_genesis.pipeline.html.live import Live, LiveEndedError
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.folder import write_page
@@ -181,14 +182,21 @@ def run_of(folder: Path, place: Path, code: str) -> None:
     write_page(place, page, page.notebook, folder, **run)
 
 
+@pytest.fixture
+def said(monkeypatch) -> list[str]:
+    """The lines that are printed."""
+    lines: list[str] = []
+    monkeypatch.setattr(live_module, "say", lines.append)
+    return lines
+
+
 @pytest.mark.parametrize(
     ("stored", "shown"),
     [({}, None), ({"a": "2"}, "a"), ({"a": "1", "b": "2"}, "a"), ({"a": "3", "b": "2"}, "b"),
      ({"a": "1", "here": "1", "b": "1"}, "here")],
     ids=["nothing", "other code", "its code, older", "the newest", "nothing changed"],
 )  # fmt: skip
-def test_the_run_of_the_same_code_is_shown_and_else_the_newest(tmp_path, stored, shown):
-    said: list[str] = []
+def test_the_run_of_the_same_code_is_shown_and_else_the_newest(said, tmp_path, stored, shown):
     book = make_book(tmp_path, page=notebook(cell("1")))
     pages = find_pages(book)
     place = places(pages, tmp_path / "cache" / STORE)["page"]
@@ -196,18 +204,17 @@ def test_the_run_of_the_same_code_is_shown_and_else_the_newest(tmp_path, stored,
         folder = place if name == "here" else place.with_name(name)
         run_of(tmp_path / "other", folder, code)
         os.utime(folder, (second, second))
-    found = Live(book, tmp_path / "cache", said.append).built(pages).folders.get("page")
+    found = Live(book, tmp_path / "cache").built(pages).folders.get("page")
     assert (found and ("here" if found == place else found.name)) == shown
     assert ["EXECUTE=1 runs it" in line for line in said] == [True] * (shown != "here")
 
 
-def test_a_page_that_fails_is_reported_once_and_its_last_run_is_shown(tmp_path):
-    said: list[str] = []
+def test_a_page_that_fails_is_reported_once_and_its_last_run_is_shown(said, tmp_path):
     book = make_book(tmp_path, page=notebook(cell("a = 1\nraise OSError('no robot')")))
     pages = find_pages(book)
     last = tmp_path / "cache" / STORE / "page" / "last"
     run_of(tmp_path / "other", last, "2")
-    live = Live(book, tmp_path / "cache", said.append, execute=True)
+    live = Live(book, tmp_path / "cache", execute=True)
     assert [live.built(pages).folders for _ in range(2)] == [{"page": last}] * 2
     begin, report, end = said
     assert begin == "page: runs ..."

@@ -12,13 +12,15 @@ from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raisin
 
 from robo_genesis.core.project import (
     COMPILED_KERNELS,
+    ROOT,
     engine_cache_environment,
     engine_cache_folder,
 )
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import Lines, execute_pages, longest_first
+from robo_genesis.pipeline.pages.execute import Lines, execute_pages, in_order
+from robo_genesis.pipeline.pages.folder import PageRefused
 from robo_genesis.pipeline.pages.results import failure_report
-from robo_genesis.pipeline.pages.store import places, stored_result
+from robo_genesis.pipeline.pages.store import failed_mark, places, stored_result
 
 CHECK = """\
 import sys
@@ -128,51 +130,20 @@ def test_a_run_that_fails_with_the_same_code_keeps_the_page(tmp_path):
     assert execute(tmp_path)["page"].run_id == before
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("# Page", "# Another title", None),
-        ("ValueError: no", "ValueError: yes", "expected was 'ValueError: yes'"),
-    ],
-)
-def test_an_edit_of_prose_or_metadata_is_checked_without_a_run(lab, old, new, said):
+def test_an_edit_of_prose_or_metadata_is_checked_without_a_run(lab):
     page = lab / "book/lab.md"
     text = page.read_text()
-    assert old in text
-    page.write_text(text.replace(old, new))
-    try:
-        (now,) = find_pages(lab / "book")
-        result = stored_result(now, places([now], lab / "store")["lab"])
-    finally:
-        page.write_text(text)
-    assert result.status == ("failed" if said else "reused")
-    assert not said or said in result.failure.message
-
-
-MANIFEST, NOTEBOOK, RECORD = "outputs/cpu/manifest.json", "executed.ipynb", "page.json"
-
-
-@pytest.mark.parametrize(
-    ("name", "content"),
-    [
-        (MANIFEST, '{"predicate": {"run_id": "of another run"}}'),
-        (NOTEBOOK, None),
-        (RECORD, "{"),
-    ],
-)
-def test_a_page_that_changed_since_it_was_stored_is_executed_again_with_one_line(
-    lab, name, content
-):
-    before, said = execute(lab)["lab"], []
-    path = before.folder / name
-    path.unlink()
-    if content:
-        path.write_text(content)
-    result = execute(lab, report=Lines(lambda *words: said.append(words)))["lab"]
-    assert result.status == "executed"
-    assert result.run_id != before.run_id
-    assert said[0][1].startswith("changed since it was stored; executed again (")
-    assert execute(lab)["lab"].status == "reused"
+    places_now = places(find_pages(lab / "book"), lab / "store")
+    for old, new in (("# Page", "# Another title"), ("ValueError: no", "ValueError: no way")):
+        assert old in text
+        page.write_text(text.replace(old, new))
+        [now] = find_pages(lab / "book")
+        assert stored_result(now, places_now["lab"]).status == "reused"
+    page.write_text(text.replace("ValueError: no", "ValueError: yes"))
+    [now] = find_pages(lab / "book")
+    with pytest.raises(PageRefused, match=r"outcome: .* expected was 'ValueError: yes', but"):
+        stored_result(now, places_now["lab"])
+    page.write_text(text)
 
 
 MEET_AND_SAVE = """\
@@ -221,13 +192,17 @@ def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
     make_book(
         tmp_path, a=notebook(cell(WRITE_BUNDLE), front=alone), b=notebook(pause), c=notebook(pause)
     )
-    said = []
-    results = execute(tmp_path, jobs=2, report=Lines(lambda *words: said.append(words)))
+    said, report = [], Lines(lambda name, event: event and said.append((name, event[:7])))
+    settings = {"jobs": 2, "report": report}
+    results = execute(tmp_path, **settings, accept=lambda result: result.bundle is None)
     assert {result.status for result in results.values()} == {"executed"}
-    begun_or_ended = [(name, event.split()[0]) for name, event in said]
-    assert begun_or_ended[:2] == [("b", "started:"), ("c", "started:")]
-    assert begun_or_ended[-2:] == [("a", "started:"), ("a", "executed")]
-    assert len(begun_or_ended) == 6
+    marks = [failed_mark(result.folder).exists() for result in results.values()]
+    assert marks == [True, False, False]  # `a` was not accepted, so it is the first to run again
+    execute(tmp_path, **settings, reuse=False)
+    assert not failed_mark(results["a"].folder).exists()
+    alone, others = [("a", "started"), ("a", "execute")], [("b", "started"), ("c", "started")]
+    assert (said[:2], said[4:8], sorted(said[8:10])) == (others, alone * 2, others)
+    assert len(said) == 12
 
 
 def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
@@ -249,12 +224,12 @@ def test_what_cannot_be_stored_fails_its_page(tmp_path):
     assert results["good"].status == "executed"
 
 
-def test_the_longest_page_starts_first_and_before_it_new_ones_with_many_cells_first(tmp_path):
+def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest(tmp_path):
     cells = {"a": 1, "b": 1, "c": 1, "d": 9, "e": 2}
     make_book(tmp_path, **{name: notebook(*[cell("1")] * n) for name, n in cells.items()})
     last = {name: SimpleNamespace(seconds=s) for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))}
-    found = longest_first(find_pages(tmp_path / "book"), {"b": None, "e": None} | last)
-    assert [page.docname for page in found] == ["e", "b", "c", "d", "a"]
+    found = in_order(find_pages(tmp_path / "book"), {"b": None, "e": None} | last, ["a"])
+    assert [page.docname for page in found] == ["a", "e", "b", "c", "d"]
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):
@@ -280,6 +255,40 @@ print(os.environ["GIVEN"], len(os.environ["ROBO_GENESIS_RUN_ID"]))"""
     [executed] = (tmp_path / "store/page").glob("*/executed.ipynb")
     [output] = nbformat.read(executed, as_version=4).cells[0].outputs
     assert output.text == f"{sys.executable} False []\nyes 32\n"
+
+
+READS = """\
+import importlib, os, pathlib
+os.chdir({away!r})
+for name, mode in (("relative", "r"), (os.fsencode({away!r} + "/bytes"), "r+"), ("added", "a+")):
+    open(name, mode).close()
+os.close(os.open("low", os.O_RDONLY))
+pathlib.Path({root!r}, "README.md").read_text()
+importlib.import_module("robo_genesis." + "compare")
+pathlib.Path("written").write_text("only written")"""
+READ = ("relative", "bytes", "added", "low", "README.md", "compare.py")
+OWN = """\
+import os, pathlib, tempfile
+from robo_genesis.core import text
+for name in ("own", {away!r} + "/made"):
+    pathlib.Path(name).write_text("own")
+with tempfile.NamedTemporaryFile() as file:
+    for name in ("own", {away!r} + "/made", file.name, "/etc/passwd", os.__file__, text.__file__):
+        open(name, "rb").close()"""
+
+
+def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp_path):
+    for name in READ[:4]:
+        (tmp_path / name).touch()
+    codes = {"refused": READS, "accepted": OWN}
+    place = {"away": str(tmp_path), "root": str(ROOT)}
+    make_book(tmp_path, **{name: notebook(cell(of.format(**place))) for name, of in codes.items()})
+    results = execute(tmp_path, jobs=2)
+    assert results["accepted"].status == "executed", results["accepted"].failure
+    failure = results["refused"].failure
+    names = failure.message.removeprefix("the page read ").partition(". It would not")[0]
+    assert failure.error == "FileNotKeyed"
+    assert {*READ} <= {Path(name).name for name in names.split(", ")}
 
 
 def test_a_killed_worker_is_a_failed_page(tmp_path):

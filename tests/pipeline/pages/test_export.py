@@ -1,32 +1,27 @@
 """`make execute` and `make pages`: one page at a time, and the list of pages."""
 
 import pytest
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, fails, make_book, notebook, start
+from tiny_book import accept, cell, contents, fails, lab, make_book, notebook, refuse, start
 
 from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.stages import Build, BuildError, export_one
+from robo_genesis.pipeline.stages import Build, BuildError, export_one, run_build
 
 NAMES = ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "ROBO_GENESIS_COMMAND")
 CONTRACT = f"import os\nprint(*(os.environ[name] for name in {NAMES}))"
+PAGES = {"contract": notebook(cell(CONTRACT)), "lab": lab("cpu")}
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
-    make_book(
-        folder,
-        text="# Text\n",
-        broken=notebook(cell("1 / 0")),
-        contract=notebook(cell(CONTRACT)),
-        lab=notebook(cell(WRITE_BUNDLE), front=LAB_FRONT),
-    )
+    make_book(folder, text="# Text\n", broken=notebook(cell("1 / 0")), **PAGES)
     return folder
 
 
-def export(folder, name, to):
+def export(folder, name, to, verify=accept):
     """Export a page; return the last lines, and the lines of progress."""
     said: list[str] = []
-    build = Build(book=folder / "book", cache=folder / "cache", say=said.append)
+    build = Build(book=folder / "book", cache=folder / "cache", say=said.append, verify=verify)
     return export_one(name, to, build), [line.split("] ")[1] for line in said]
 
 
@@ -39,6 +34,12 @@ def test_one_page_is_executed_once_and_exported_under_both_of_its_names(folder):
     _, said = export(folder, "l04/lab", folder / "again")
     assert said[-1] == "export   lab  reused"
     assert (folder / "again/lab/executed.ipynb").is_file()
+    with pytest.raises(BuildError, match=r"refused: metrics: .* The next build executes"):
+        export(folder, "lab", folder / "refused", refuse)
+    assert not (folder / "refused").exists()
+    _, said = export(folder, "lab", folder / "again")
+    assert "lab  its stored run is not used; executed again (files: " in said[1]
+    assert said[-1] == "export   lab  executed"
 
 
 @pytest.mark.parametrize("name", ["", "None/None", "l04/lecture", "text"])
@@ -76,3 +77,38 @@ def test_a_page_has_the_contract_of_a_build_and_names_its_own_command(folder, tm
     assert f"contract  started: 1 cells; its log: {log}" in said
     assert log.read_text() == "0 cpu make execute\n"
     assert r"0 cpu make execute\n" in (tmp_path / "contract/executed.ipynb").read_text()
+
+
+@pytest.fixture(scope="module")
+def executed(folder):
+    """Both pages as another machine exports them."""
+    for name in PAGES:
+        export(folder, name, folder / "executed")
+    return folder / "executed"
+
+
+@pytest.mark.parametrize("release", [False, True])
+def test_pages_from_elsewhere_are_published_as_they_are_without_a_run(
+    executed, tmp_path, monkeypatch, release
+):
+    stages = "robo_genesis.pipeline.stages"
+    monkeypatch.setattr(f"{stages}.execute_pages", None)  # whoever calls it fails
+    monkeypatch.setattr(f"{stages}.unclean", lambda root: [])
+    monkeypatch.setattr(f"{stages}.missing_for_release", lambda *given: [])
+    book, store = make_book(tmp_path, **PAGES, page="# A\n\n[lost](nowhere.html)\n"), "cache/pages"
+
+    def build(verify=accept) -> list[str]:
+        given = {"verify": verify, "say": [].append, "release": release, "executed": executed}
+        return run_build(Build(book=book, cache=tmp_path / "cache", **given))
+
+    for verify, said in ((refuse, "refused: metrics: "), (accept, "nowhere")):
+        with pytest.raises(ProjectError, match=said):
+            build(verify)
+        assert not (tmp_path / store).exists()  # later builds would find the pages there
+    (book / "page.md").write_text("# A\n")
+    assert "Pages: 0 executed, 2 reused." in build()
+    assert contents(book / "_build/evidence/l04/cpu") == contents(executed / "lab/outputs/cpu")
+    assert "cpu make book" in (book / "_build/html/contract.html").read_text()
+    for name in PAGES:
+        [stored] = (tmp_path / store / name).iterdir()
+        assert contents(stored) == contents(executed / name)

@@ -9,7 +9,11 @@ from robo_genesis.pipeline.pages.kernels import clean_environment
     ("name", "value"),
     [
         *((n, None) for n in ("PYTHONSTARTUP", "MATPLOTLIBRC", "PYTHONHOME", "JUPYTER_PATH")),
-        *((n, "x") for n in ("QD_ARCH", "GS_ENABLE_ZEROCOPY", "PATH", "LC_ALL", "HIP_PATH")),
+        *((n, None) for n in ("LD_PRELOAD", "OMP_NUM_THREADS", "MKL_CBWR", "GALLIUM_DRIVER")),
+        *((n, None) for n in ("TORCH_LOGS", "NPY_DISABLE_CPU_FEATURES", "XDG_CACHE_HOME")),
+        *((n, "x") for n in ("QD_ARCH", "GS_ENABLE_ZEROCOPY", "PATH", "HIP_PATH", "MESA_DEBUG")),
+        *((n, "x") for n in ("LD_LIBRARY_PATH", "NVIDIA_TF32_OVERRIDE")),
+        *(("LC_ALL", "C.UTF-8"), ("TZ", "UTC"), ("PYTHONHASHSEED", "0")),
         ("MPLBACKEND", "module://matplotlib_inline.backend_inline"),
         ("PYTHONPATH", "/checkout"),
         ("PYTHONNOUSERSITE", "1"),

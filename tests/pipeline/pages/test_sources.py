@@ -1,16 +1,18 @@
 """Which changes of the package change the evidence keys and the fingerprints of which pages."""
 
 import shutil
+from contextlib import nullcontext
 from dataclasses import replace
 
 import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
-from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.core.project import BOOK, ROOT, ProjectError
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.pages import sources
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.sources import Tree, measuring_modules, page_fingerprint
+from robo_genesis.pipeline.pages.store import places
 from robo_genesis.pipeline.pages.syntax import read_code, syntax_digest
 
 PACKAGE = ROOT / "robo_genesis"
@@ -76,24 +78,67 @@ def test_a_cell_that_cannot_run_or_needs_no_module_imports_nothing(source):
         ("robo_genesis/lazy.py", "X = (", True),  # no longer Python: its text counts
         ("robo_genesis/evidence/data.json", "1", True),
         ("robo_genesis/lessons/l04/arm.xml", "1", True),
+        ("robo_genesis/lessons/l04/data/arm", "1", True),
+        ("robo_genesis/lessons/l04/deep/spec.py", "X = 1", True),
         ("robo_genesis/lessons/l03/data.csv", "1", False),
+        ("robo_genesis/lessons/l04/arm.xml~", "1", False),
+        ("robo_genesis/lessons/l04/.arm.xml.swp", "1", False),
+        ("robo_genesis/lessons/l04/__pycache__/spec.cpython-311.pyc", "1", False),
+        ("robo_genesis/maintain/template.tmpl", "1", False),
         ("requirements.lock", "# a comment", True),
         ("robo_genesis/sphinx_ext.py", "X = 1", False),  # no page imports it
     ],
 )
 def test_a_file_that_the_page_uses_counts(root, page, file, line, counts):
     for lesson in ("l03", "l04"):
-        (root / "robo_genesis" / "lessons" / lesson).mkdir(parents=True)
-        (root / "robo_genesis" / "lessons" / lesson / "__init__.py").touch()
-    before = key(page, root)
-    assert len(before) == 20
-    with (root / file).open("a") as opened:
-        opened.write(f"{line}\n")
-    assert (key(page, root) != before) == counts
+        write(root, f"robo_genesis/lessons/{lesson}/__init__.py")
+    found = [key(page, root)]
+    for _ in ("added", "changed"):
+        write(root, file, f"{line}\n")
+        found.append(key(page, root))
+    assert len({*found}) == (3 if counts else 1)
+
+
+def write(root, name, text=""):
+    """Append to a file, which is made if it is missing."""
+    (root / name).parent.mkdir(parents=True, exist_ok=True)
+    with (root / name).open("a") as opened:
+        opened.write(text)
+
+
+def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(root):
+    """Of other lessons only with a module of theirs, and none of what measures nothing."""
+    data = ["core/a.bin", "sim/arm/a", "lessons/l04/a/b.xml", "lessons/l03/a.csv", "site/a.json"]
+    for name in (*data, "pipeline/a.csv", "lessons/l03/__init__.py", "lessons/l03/run.py"):
+        write(root, f"robo_genesis/{name}")
+    imports, other = ["robo_genesis.lessons.l03.run"], {"lessons.l03.run", "lessons/l03/a.csv"}
+    assert measuring_modules("l04", [], root).keys() == {*data[:3]}
+    assert measuring_modules("l04", imports, root).keys() == {*data[:3]} | other
+
+
+@pytest.mark.parametrize(
+    ("name", "refused"),
+    [
+        *((f"{name}.py", name) for name in ("sitecustomize", "usercustomize", "trimesh", "a-b")),
+        ("numpy/__init__.py", "numpy"),
+        ("torch/__init__.abi3.so", "torch"),
+        ("fast.pyc", "fast"),
+        *((f"robo_genesis/{name}",) * 2 for name in ("used/__init__.py", "x.pyc", "lazy.abi3.so")),
+        *((f"robo_genesis/{name}", None) for name in ("used/a.csv", "__pycache__/used.pyc")),
+        *((name, None) for name in (".hidden.py", "notes/a.py", "trimesh.txt")),
+    ],
+)
+def test_what_python_would_import_in_the_place_of_a_keyed_module_is_refused(
+    root, page, name, refused
+):
+    write(root, name)
+    said = pytest.raises(ProjectError, match=f"would import {refused} in .* Move the others")
+    with said if refused else nullcontext():
+        assert places([page], root / "store", root)
 
 
 def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):
-    names = ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "QD_FAST_MATH")
+    names = ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "QD_FAST_MATH", "LD_LIBRARY_PATH")
     found = [key(page, root), key(replace(page, alone=True), root)]
     found += [key(page, root, **{name: "0"}) for name in names]
     for module, name, value in (
@@ -103,7 +148,7 @@ def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):
         monkeypatch.setattr(module, name, lambda *given, value=value: value)
         found.append(key(page, root))
     assert len({*found}) == len(found)
-    for name in ("HOME", "QD_OFFLINE_CACHE_FILE_PATH"):
+    for name in ("HOME", "QD_OFFLINE_CACHE_FILE_PATH", "OMP_NUM_THREADS"):
         assert key(page, root, **{name: "/elsewhere"}) == found[-1]
 
 

@@ -8,20 +8,31 @@ from pathlib import Path
 import nbformat
 import pytest
 from nbformat.v4 import new_output
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    accept,
+    cell,
+    contents,
+    make_book,
+    notebook,
+    refuse,
+    seal,
+)
 
-from robo_genesis.core.files import put
+from robo_genesis.core.files import put, replaced, settle_below
 from robo_genesis.core.project import ProjectError
-from robo_genesis.evidence.bundle import BundleRefused, sha256
+from robo_genesis.pipeline.bundles import of_build
 from robo_genesis.pipeline.pages import folder as page_folder
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.folder import PageRefused
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.store import (
     exported,
     folders,
     forget,
-    import_pages,
+    handed_over,
     places,
     stored_result,
 )
@@ -52,15 +63,9 @@ def here(elsewhere, tmp_path) -> Path:
     return tmp_path
 
 
-def take(here: Path, verify=lambda folder, run_id: None) -> None:
+def take(here: Path) -> list[PageResult]:
     pages = find_pages(here / "book")
-    import_pages(here / "executed", pages, places(pages, here / "store"), verify)
-
-
-def stored(here: Path) -> dict[str, PageResult | None]:
-    pages = find_pages(here / "book")
-    into = places(pages, here / "store")
-    return {page.docname: stored_result(page, into[page.docname]) for page in pages}
+    return handed_over(here / "executed", pages, places(pages, here / "store"))
 
 
 def lab(here: Path, name: str) -> Path:
@@ -77,14 +82,6 @@ def record(**changes):
     return spoil
 
 
-def seal(here: Path) -> None:
-    """Make the digests of the lab's record right again."""
-    place = lab(here, "")
-    names = {path.relative_to(place).as_posix(): path for path in place.rglob("*")}
-    files = {n: sha256(path) for n, path in names.items() if path.is_file() and n != "page.json"}
-    record(files=files)(here)
-
-
 def book(change):
     """Change the lab's notebook, and its digest with it."""
 
@@ -93,7 +90,7 @@ def book(change):
         executed = nbformat.read(path, as_version=4)
         change(executed)
         nbformat.write(executed, path)
-        seal(here)
+        seal(path.parent)
 
     return spoil
 
@@ -103,7 +100,7 @@ def file(name: str, text: str):
 
     def spoil(here: Path) -> None:
         lab(here, name).write_text(text)
-        seal(here)
+        seal(lab(here, ""))
 
     return spoil
 
@@ -114,12 +111,6 @@ def first_cell(**changes):
 
 def metadata(**changes):
     return book(lambda executed: executed.metadata.update(changes))
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    """Return all files of a folder."""
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
 def test_a_page_is_one_folder_in_the_store_and_between_machines(elsewhere):
@@ -134,41 +125,14 @@ def test_a_page_is_one_folder_in_the_store_and_between_machines(elsewhere):
     assert "measured" in (place / "executed.ipynb").read_text()
 
 
-def test_an_imported_page_needs_no_run_and_replaces_an_older_one(here):
-    take(here)
-    (place,) = (here / "store" / LAB).iterdir()
-    (place / BUNDLE).write_text("{}")
-    take(here)
-    assert {name: result.status for name, result in stored(here).items()} == {
-        "text": "reused",
-        LAB: "reused",
-    }
-    assert contents(place) == contents(here / "executed" / LAB)
-
-
-def test_a_bundle_that_is_refused_leaves_what_was_executed_here(here):
-    def refuse(folder: Path, run_id: str):
-        raise BundleRefused("stale", f"{folder.name} answers an older question")
-
-    take(here)
-    before = stored(here)
-    with pytest.raises(ProjectError, match=r"lab: bundle: its bundle is refused: stale: cpu"):
-        take(here, verify=refuse)
-    assert stored(here) == before
-    shutil.rmtree(here / "store")
-    with pytest.raises(ProjectError):
-        take(here, verify=refuse)
-    assert not (here / "store").exists()
-
-
 def test_pages_lie_at_any_depth_but_not_within_another_nor_hidden(here):
     file("outputs/page.json", "its own")(here)
     for left in (".left", f".{LAB}.next"):
         shutil.copytree(here / "executed" / LAB, here / "executed" / left)
     (here / "executed" / "z").mkdir()
-    (here / "executed" / LAB).rename(here / "executed" / "z" / "any name")
-    take(here)
-    assert None not in stored(here).values()
+    place = (here / "executed" / LAB).rename(here / "executed" / "z" / "any name")
+    found = {result.folder: result.status for result in take(here)}
+    assert found == dict.fromkeys((here / "executed/text", place), "taken over")
 
 
 def remove(name: str):
@@ -215,7 +179,7 @@ SPOILT = {
 
 
 @pytest.mark.parametrize(("spoil", "code", "said"), SPOILT.values(), ids=SPOILT)
-def test_a_page_that_does_not_hold_is_refused_and_nothing_is_imported(here, spoil, code, said):
+def test_a_page_that_does_not_hold_is_refused(here, spoil, code, said):
     spoil(here)
     with pytest.raises(ProjectError) as refused:
         take(here)
@@ -225,21 +189,94 @@ def test_a_page_that_does_not_hold_is_refused_and_nothing_is_imported(here, spoi
     assert place.startswith(str(here / "executed"))
     assert found
     assert said in reason
-    assert not (here / "store").exists()
 
 
-def test_the_newest_folders_of_a_page_are_kept_and_other_pages_go(tmp_path):
+def keep(here):
+    """Spoil nothing: the bundle itself is refused."""
+
+
+def folder_for_manifest(here):
+    lab(here, BUNDLE).unlink()
+    lab(here, f"{BUNDLE}/folder").mkdir(parents=True)
+
+
+def pipe_for_record(here):
+    lab(here, "page.json").unlink()
+    os.mkfifo(lab(here, "page.json"))
+
+
+def file_for_folder(here):
+    shutil.rmtree(lab(here, ""))
+    lab(here, "").touch()
+
+
+def link_for_folder(here):
+    lab(here, "").rename(here / "aside")
+    lab(here, "").symlink_to(here / "aside")
+
+
+FORGED = {"robo_genesis": {"function": "robo_genesis.lessons.l04.tables.of", "arguments": []}}
+FAILS = {
+    **{name: spoil for name, (spoil, *_) in SPOILT.items() if spoil is not two},
+    "a refused bundle": keep,
+    "a refused output": first_cell(outputs=[new_output("display_data", metadata=FORGED)]),
+    "JSON that is too deep": file("executed.ipynb", "[" * 100_000),
+    "a manifest that is too deep": file(BUNDLE, "[" * 100_000),
+    "a folder for the manifest": folder_for_manifest,
+    "no times": record(cell_seconds=[]),
+    "half a record": lambda here: lab(here, "page.json").write_text("{"),
+    "a pipe for the record": pipe_for_record,
+    "a file for the folder": file_for_folder,
+    "a link": link_for_folder,
+    "a link to nothing": lambda here: (link_for_folder(here), shutil.rmtree(here / "aside")),
+}
+
+
+@pytest.mark.parametrize("spoil", FAILS.values(), ids=FAILS)
+def test_a_page_of_the_store_that_fails_is_executed_again_by_this_build_or_the_next(
+    here, monkeypatch, spoil
+):
+    """Whatever is wrong with it, no build fails for ever."""
+    monkeypatch.setattr(of_build, "require_contract", lambda *given: None)
+    spoil(here)
+    _, page = find_pages(here / "book")
+    place = places([page], here / "store")[LAB]
+    place.parent.mkdir(parents=True)
+    (here / "executed" / LAB).rename(place)
+
+    def build() -> str:
+        try:
+            result = stored_result(page, place)
+        except PageRefused:
+            result = None
+        if result is None:
+            return "executed again"
+        judge = refuse if spoil is keep else accept
+        return (
+            "".join(of_build.verify_results(judge, [result], lambda *said: None)[1]) or "accepted"
+        )
+
+    first = build()
+    assert first == "executed again" or first.endswith("The next build executes the page again.")
+    assert build() == "executed again"
+    with replaced(place) as fresh:
+        fresh.mkdir()
+    settle_below(here / "store")
+    assert place.is_dir()
+
+
+@pytest.mark.parametrize("newest", [1000, 10**10], ids=["past", "future"])
+def test_the_used_and_the_newest_folders_of_a_page_are_kept_and_other_pages_go(tmp_path, newest):
     (page,) = find_pages(make_book(tmp_path, text=notebook(cell("1"))))
     store = tmp_path / "store"
     for age, name in enumerate("abcde"):
         (store / "text" / name).mkdir(parents=True)
-        os.utime(store / "text" / name, (1000 - age, 1000 - age))
+        os.utime(store / "text" / name, (newest - age, newest - age))
     for left in ("gone/fingerprint", "text/.a.next", "a" * 20 + "/notebooks"):
         (store / left).mkdir(parents=True)
-    result = PageResult(page, "reused", 0.0, "", folder=store / "text" / "e")
-    forget(store, [result])
+    forget(store, [page], {"text": store / "text" / "e"})
     assert [path.name for path in store.iterdir()] == ["text"]
-    assert [path.name for path in folders(store, page)] == ["e", "a", "b"]
+    assert {path.name for path in folders(store, page)} == {"e", "a", "b"}
     assert sorted(path.name for path in (store / "text").iterdir()) == ["a", "b", "e"]
 
 

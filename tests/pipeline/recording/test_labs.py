@@ -7,7 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from spoilers import both, on, own_run_id, part, seal
+from spoilers import both, older_compiler, on, own_run_id, part, seal
 from tiny_book import accept, cell, lab, make_book, notebook, old_bundle, refuse
 
 from robo_genesis.core.project import ROOT, ProjectError
@@ -270,7 +270,7 @@ CLEAN, DIRTY = (both(part("git", dirty=dirty), seal) for dirty in (False, True))
 @pytest.mark.parametrize(
     ("spoil", "left_by", "asked", "changed_now", "again"),
     [
-        (both(part("engine", quadrants_version="1.2.9"), CLEAN), "amdgpu", "amdgpu", False, True),
+        (both(older_compiler, CLEAN), "amdgpu", "amdgpu", False, True),
         (both(CLEAN, lambda place: (place / "log.txt").unlink()), "amdgpu", "amdgpu", False, True),
         (CLEAN, "cuda", "amdgpu", False, True),
         (CLEAN, "cuda", None, False, False),

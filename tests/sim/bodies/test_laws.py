@@ -80,6 +80,35 @@ def test_each_state_follows_from_the_state_before_it_and_no_other_does(case):
 
 
 @pytest.mark.parametrize(
+    ("array", "by", "edge", "breaches"),
+    [
+        ("link_quat", 0.0, False, 0),
+        ("link_quat", 1e-5, False, 1),  # in flight, the tolerances are narrower
+        ("link_vel", 1e-4, False, 1),
+        ("link_ang", 1e-3, False, 1),
+        ("link_pos", 1e-2, True, 1),  # a mean velocity that is not between those at both ends
+    ],
+)
+def test_an_altered_sample_of_a_fall_breaks_a_law(monkeypatch, array, by, edge, breaches):
+    case = replace(LANDED, start=(0.0, 0.0, 1.2))
+    trace = mujoco_contacts.run_case(case)
+    altered = np.array(getattr(trace, array))
+    altered[5, 0, 2] += by
+    if edge:
+        monkeypatch.setattr(bodies, "on_edge", lambda depths, size: np.ones(len(depths), bool))
+        monkeypatch.setattr(bodies, "impulses", lambda *_: ())
+    found = list(bodies.next_states(replace(trace, **{array: altered}), case))
+    assert [breach.code for breach in found] == ["motion"] * breaches
+
+
+@pytest.mark.parametrize(("turning", "breaches"), [(1e-4, 0), (1e-3, 1)])
+def test_a_ball_that_nothing_pushes_sideways_does_not_turn(turning, breaches):
+    trace = mujoco_contacts.run_case(BALL)
+    spin = np.where(np.cumsum(trace.contacts)[:, None, None] > 0, turning, 0) * np.ones(3)
+    assert len(list(bodies.bounded(replace(trace, link_ang=spin), BALL))) == breaches
+
+
+@pytest.mark.parametrize(
     ("shape", "turning", "codes"),
     [("cube", 0, ["motion"]), ("cube", 1e-9, []), ("ball", 0, [])],
 )

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_views import MARKER, PLANE, SIZE, TRANSFORM, K, closed_view
+from closed_views import FAR, FOV, MARKER, PLANE, SIZE, TRANSFORM, K, closed_view
 
 from robo_genesis.sim.camera import checks as camera_checks
 from robo_genesis.sim.camera import geometry as cameras
@@ -24,6 +24,8 @@ def moved(view):
     return replace(view, transform=TRANSFORM + np.outer([1, 0, 0, 0], [0, 0, 0, 0.01]))
 
 
+GIVEN = {"fov": FOV, "near": 0.1, "far": FAR, "pos": TRANSFORM[:3, 3],
+         "lookat": (TRANSFORM @ (0, 0, -1, 1))[:3]}  # fmt: skip
 SMALL = replace(MARKER, radius=0.04)
 SPOILED = {
     "another number": (camera_checks.projection, closed_view(), replace(MARKER, number=7)),
@@ -32,7 +34,10 @@ SPOILED = {
     "moved pose": (camera_checks.projection, moved(closed_view()), MARKER),
     "depth along the ray": (camera_checks.sphere_surface, along(closed_view()), MARKER),
     "another height": (camera_checks.plane_surface, closed_view(), PLANE, 0.01),
-    "another field of view": (camera_checks.camera_matrix, closed_view(), 43.0),
+}
+OTHER = {"fov": 43.0, "near": 0.2, "far": 21.0, "lookat": (0, 0, 0)}
+SPOILED |= {
+    n: (camera_checks.camera_matrix, closed_view(), GIVEN | {n: of}) for n, of in OTHER.items()
 }
 
 
@@ -40,6 +45,7 @@ SPOILED = {
 def test_a_check_fails_if_its_input_is_wrong(how):
     check, *given = SPOILED[how]
     assert problems(check("v", *given))
+    assert not problems(camera_checks.camera_matrix("v", closed_view(), GIVEN))
 
 
 def test_a_camera_on_a_link_is_at_the_pose_of_the_link_times_the_offset():

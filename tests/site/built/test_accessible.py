@@ -3,6 +3,7 @@
 import pytest
 from built_site import LESSON_PAGES
 from playwright.sync_api import expect
+from watching import call
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -20,22 +21,16 @@ def test_the_skip_link_leads_past_the_menu(page, address):
 
 
 MOST = 150
-STOPS = """() => new Set([...document.querySelectorAll(
-  "article :is(a[href], button, input, select, textarea, summary, [tabindex])"
-)].filter((one) =>
-  one.tabIndex >= 0 && !one.disabled && one.checkVisibility({ visibilityProperty: true })
-).map((one) => one.type === "radio" ? one.name : one)).size"""
-"""Radio buttons of one name are one stop: the arrow keys choose among them."""
 LECTURES = [name for (_, page), name in LESSON_PAGES.items() if page == "lecture"]
 
 
 @pytest.mark.parametrize("name", LECTURES)
 def test_a_lecture_has_few_tab_stops(page, address, name):
     page.goto(f"{address}/{name}.html")
-    stops = page.evaluate(STOPS)
+    stops = call(page, "tab_stops")
     assert 0 < stops <= MOST
     page.evaluate("document.querySelector('article').innerHTML += '<a href=#x>a</a>'.repeat(151)")
-    assert page.evaluate(STOPS) > MOST
+    assert call(page, "tab_stops") > MOST
 
 
 def test_code_can_be_copied_where_the_pointer_or_the_focus_is(page, address):

@@ -3,8 +3,7 @@
 import pytest
 from watching import SERVED_ONLY, watch
 
-from robo_genesis.pipeline.html.archive import ARCHIVE
-from robo_genesis.pipeline.html.checks import Site, run_checks
+from robo_genesis.pipeline.html.checks import Site
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -53,11 +52,6 @@ def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
     assert problems == []
     context.close()
-
-
-def test_the_archive_is_a_whole_site_without_itself(unpacked):
-    assert {c.name: c.problems for c in run_checks(Site(unpacked)) if c.problems} == {}
-    assert not (unpacked / ARCHIVE).exists()
 
 
 def test_links_inside_the_site_name_files_so_that_they_work_from_disk(site):

@@ -8,7 +8,7 @@ import pytest
 from built_site import PAGES
 from PIL import Image
 from playwright.sync_api import Page
-from watching import POSES, choose, errors, show_model
+from watching import call, choose, errors, show_model
 
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence import bundle
@@ -28,28 +28,6 @@ BELOW = ("link4", "link5", "link6", "link7", "hand", "left_finger", "right_finge
 """The links that joint4 turns."""
 
 PLAYING = [name for name in PAGES if "{replay}" in (BOOK / f"{name}.md").read_text()]
-
-TOO_WIDE = """() => [...document.querySelectorAll(".replay")].flatMap(root => {
-  const edge = root.getBoundingClientRect().right, slider = root.querySelector("input[type=range]");
-  const parts = "input, button, select, svg, svg text, dl div, .shown, figcaption, .legend";
-  const cut = [...root.querySelectorAll(parts)]
-    .filter(e => e.getBoundingClientRect().right > edge).map(e => e.outerHTML);
-  for (const run of root.querySelectorAll("input[type=radio]")) {
-    run.click();
-    for (slider.value = 0; ; slider.stepUp(7)) {
-      slider.dispatchEvent(new Event("input"));
-      for (const line of root.querySelectorAll("dl div")) {
-        const text = document.createRange();
-        text.selectNodeContents(line);
-        const beyond = text.getBoundingClientRect().right - line.getBoundingClientRect().right;
-        if (beyond > 0) cut.push(`${run.value} ${slider.value} ${line.innerText} ${beyond}`);
-      }
-      if (slider.value === slider.max) break;
-    }
-  }
-  return cut;
-})"""
-"""What of the replays is cut off, or reaches into the place beside it."""
 
 POSED = """([name, time]) => {
   const viewer = document.querySelector("model-viewer");
@@ -79,7 +57,7 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
         for sample in (0, 9, trace.steps):
             choose(lecture, case, sample, REPLAY)
             lecture.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
-            found = lecture.evaluate(POSES)
+            found = call(lecture, "poses")
             added = [f"target_{link}" for link in BELOW]
             assert sorted(found) == sorted([*links, *added, "still", "target"])
             places, turns = (
@@ -130,5 +108,5 @@ def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser_
     assert play["y"] + play["height"] < 844 or name not in FIRST_SCREEN
     for width in (1280, 320):
         page.set_viewport_size({"width": width, "height": 800})
-        assert page.evaluate(TOO_WIDE) == []
+        assert call(page, "too_wide") == []
     page.close()

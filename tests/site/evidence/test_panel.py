@@ -19,9 +19,10 @@ from robo_genesis.evidence import bundle, recorder, replay_data, report
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
+from robo_genesis.pipeline.html.checks import QUOTING
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import ledger as sphinx_ledger
-from robo_genesis.site.evidence import ledger_data, provenance
+from robo_genesis.site.evidence import ledger_data, measured, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.ledger_data import PageRun
 
@@ -155,7 +156,8 @@ def test_the_comparison_names_both_runs_and_all_else_the_recorded_one(
 def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared(
     folder, tmp_path, record, engine, experiment, monkeypatch, actual, facts, axis
 ):
-    monkeypatch.setattr(recorder, "driver_version", lambda name: f"the driver of {name}")
+    drivers = {"amdgpu": "the driver of amdgpu", "cuda": "the driver of cuda"}
+    monkeypatch.setattr(recorder, "driver_version", drivers.get)
     there = engine_on(engine, actual)
     left = written(there, tmp_path / "outputs", "l04", "lab", experiment)
     place = tmp_path / "book" / "evidence" / "l04" / left.name
@@ -200,6 +202,8 @@ def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, stat
     if state == "missing":
         text = f"No run on AMD GPU is recorded for Genesis {project.engine_pin()} yet; this command"
     assert panel.astext().startswith(text)
+    quoting = panel, sphinx_ledger.run_block("", run), measured.status_list([status])
+    assert all({*node["classes"]} & {*QUOTING} for node in quoting)
     shown = (nodes.image, nodes.table, nodes.raw, nodes.bullet_list)
     assert not [n for n in panel.findall(nodes.Element) if isinstance(n, shown)]
 

@@ -8,7 +8,7 @@ import pytest
 from closed_views import plane_depth, sphere_depth
 from docutils import nodes
 from falling import LINKS, falling
-from watching import POSES, violations
+from watching import call, violations
 from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core.channels import Replay
@@ -84,7 +84,7 @@ def assigned(height: float) -> Trace:
 def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
     visual_shape.write_shape(tmp_path, [box("box")])
     monkeypatch.setattr(explorer, "find_replay", lambda lesson: Replay((), "box", "box"))
-    monkeypatch.setattr(explorer, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
+    monkeypatch.setattr(explorer.replays, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
     rows = {run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
             for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))}  # fmt: skip
     data = maps() | {"postures": {"upright": TARGETS, "level": TARGETS}, "tables": rows}
@@ -128,7 +128,7 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures,
     page.get_by_text("Turn the view").wait_for(timeout=120_000)
     page.get_by_role("gridcell", name="0.20 margin [rad]: z 1, x 0.2, accepted").tap()
     page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.049")
-    place = page.evaluate(POSES)["box"]["position"]
+    place = call(page, "poses")["box"]["position"]
     assert place == pytest.approx(falling(2.0).link_pos[5, 1], abs=1e-5)
     assert texts(page, ".shown") == ["Answer 5, accepted."]
     assert violations(page, ".explorer", preload=False) == []

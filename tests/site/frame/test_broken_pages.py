@@ -4,7 +4,7 @@ import re
 
 import pytest
 import yaml
-from small_book import as_executed, draft_of, executed
+from small_book import draft_of, executed
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.core.project import ProjectError
@@ -18,7 +18,7 @@ TEXT = {
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
     "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
     "```{course-map}\n```": "the book has no page gone",
-    "```{cell-times}\n```": "timed has 2 code cells and 1 recorded times",
+    "```{cell-times}\n```": "timed has no cell with code",
 }
 """What stands alone on the page, and what is said of its line."""
 
@@ -85,7 +85,7 @@ def report(tmp_path_factory):
         "glue": "# Glue\n\n{glue}`lab.md::bare`\n",
         "free": notebook(imports, cell("table", INPUTS), cell("table")),
         "glossary": "# Glossary\n\n```{glossary}\nDOF\n  One axis of motion.\n```\n",
-        "timed": notebook(cell("1"), cell("2")),
+        "timed": notebook(cell("")),
     }
     book = make_book(folder, **pages)
     (book / glossary.FORMS).write_text("forms: {gain: [gains]}\nunlinked: [force]")
@@ -95,8 +95,7 @@ def report(tmp_path_factory):
     frame = book / "evidence/l04/amdgpu/frames/final.svg"
     frame.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     (book / "innocent.svg").symlink_to(frame)
-    *others, timed = find_pages(book)
-    results = [*executed(others, folder), as_executed(timed, folder, [1.5])]
+    results = executed(find_pages(book), folder)
     with pytest.raises(ProjectError) as caught:
         draft_of(book, folder, results)
     assert str(folder / "render.log") in str(caught.value)

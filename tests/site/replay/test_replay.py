@@ -16,7 +16,7 @@ from browsers import chromium
 from docutils import nodes
 from falling import LINKS, G, falling
 from playwright.sync_api import Page
-from watching import POSES, choose, show_model, violations
+from watching import call, choose, show_model, violations
 from without_sphinx import Panel, box, rows_of
 
 from robo_genesis import lessons as registry
@@ -35,18 +35,6 @@ LESSON, KEY = "l99", "l99/lecture/cpu"
 NAME = "replay-l99-lecture-cpu"
 DROPPED = Replay(("high", "low"), "box", "box")
 STEPS = 40
-FRAMES_ASKED = """async () => {
-  const request = requestAnimationFrame.bind(window);
-  let asked = 0;
-  window.requestAnimationFrame = (todo) => {
-    asked += todo.name === "advance"; // the viewer also draws
-    return request(todo);
-  };
-  for (let frame = 0; frame < 10; frame += 1) await new Promise(request);
-  window.requestAnimationFrame = request;
-  return asked;
-}"""
-"""How often the replay asks to draw while ten frames pass."""
 
 
 @pytest.fixture
@@ -181,7 +169,7 @@ def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
     choose(page, "high", 30)
     assert page.locator(".shown").inner_text() == "high"
     page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.29")
-    _, _, height = page.evaluate(POSES)["box"]["position"]
+    _, _, height = call(page, "poses")["box"]["position"]
     assert height == pytest.approx(2.0 - G * 0.3**2 / 2, abs=1e-5)
     assert violations(page, ".replay", preload=False) == []
 
@@ -197,11 +185,11 @@ def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
     play.press("Space")
     paused = slider.input_value()
     assert play.inner_text() == "Play"
-    assert page.evaluate(FRAMES_ASKED) == 0  # it does not play on
+    assert call(page, "frames_asked") == 0  # it does not play on
     assert slider.input_value() == paused
     press_often = "for (const press of ['play', 'pause', 'play']) play.click();"
     play.evaluate(f"play => {{ {press_often} }}")
-    assert 0 < page.evaluate(FRAMES_ASKED) <= 11  # two loops would ask twice in each of ten frames
+    assert 0 < call(page, "frames_asked") <= 11  # two loops would ask twice in each of ten frames
     speed.select_option("1")
     page.wait_for_function("document.querySelector('input[type=range]').value === '40'")
     assert play.inner_text() == "Play"
@@ -214,7 +202,7 @@ def test_reduced_motion_goes_by_steps(block, open_block):
     assert play.inner_text() == "Next 0.05 s"
     play.click()
     page.get_by_text("Turn the view").wait_for(timeout=120_000)
-    assert page.evaluate(FRAMES_ASKED) == 0  # it stands still
+    assert call(page, "frames_asked") == 0  # it stands still
     assert readout(page)["time"] == "0.05 s"
 
 

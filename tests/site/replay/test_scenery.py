@@ -14,14 +14,6 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.sim.visual_shape import WORLD, Part, floor, slab
 from robo_genesis.site.replay import scenery
-from robo_genesis.site.replay.scenery import (
-    ROOM,
-    Camera,
-    find_hinge,
-    fitted,
-    floor_of,
-    side_by_side,
-)
 
 AXIS = np.array([0.48, -0.6, 0.64])
 POINT = np.array([0.1, 0.2, 0.3])
@@ -64,7 +56,7 @@ def turning(
 
 
 def test_the_axis_of_a_joint_is_found_while_other_joints_move():
-    found = find_hinge(turning())
+    found = scenery.find_hinge(turning())
     assert found is not None
     assert (found.parent, found.moved) == (1, (2, 3))
     assert found.axis == pytest.approx(AXIS, abs=1e-5)
@@ -74,7 +66,7 @@ def test_the_axis_of_a_joint_is_found_while_other_joints_move():
 @pytest.mark.parametrize("final", [-1.8, -2.2])
 def test_the_pose_at_the_target_is_that_of_the_joint_alone(final):
     runs = turning(final=final)
-    found = scenery.target_poses(runs, find_hinge(runs))
+    found = scenery.target_poses(runs, scenery.find_hinge(runs))
     expected = dict(zip(LINKS, turned(TARGET - START), strict=True))
     assert list(found) == ["fore", "hand"]
     for link, pose in found.items():
@@ -83,14 +75,14 @@ def test_the_pose_at_the_target_is_that_of_the_joint_alone(final):
 
 @pytest.mark.parametrize("other", [{"unit": "m"}, {"final": START}, {"off": 0.01}])
 def test_a_record_that_shows_no_such_turn_has_no_axis(other):
-    assert find_hinge(turning(**other)) is None
+    assert scenery.find_hinge(turning(**other)) is None
 
 
 def test_runs_with_several_targets_show_none():
     runs = turning()
     level = replace(runs.levels[0], values={"run": (TARGET,), "other": (0.0,)})
     runs = replace(runs, levels=[level])
-    assert scenery.target_poses(runs, find_hinge(runs)) == {}
+    assert scenery.target_poses(runs, scenery.find_hinge(runs)) == {}
 
 
 def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
@@ -121,29 +113,29 @@ def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed)
 
 def test_tiles_lie_on_the_highest_still_part_and_a_marker_in_the_air_is_no_ground():
     table = slab((1.0, 0.4, 0.05), top=0.7)
-    (tiles,) = floor_of([table])
+    (tiles,) = scenery.floor_of([table])
     assert (tiles.link, len(tiles.faces)) == (WORLD, 40)
     low, high = tiles.vertices.min(axis=0), tiles.vertices.max(axis=0)
     assert low == pytest.approx([-0.5, -0.2, 0.7005])
     assert high == pytest.approx([0.5, 0.2, 0.7005])
     marker = box(WORLD, 0.05, at=(0.4, 0, 0.5))
     for still in ([], [marker]):
-        ground, tiles = floor_of(still)
+        ground, tiles = scenery.floor_of(still)
         assert np.ptp(ground.vertices[:, 2]) == 0
         assert tiles.vertices[:, 2].max() == pytest.approx(scenery.RAISED)
 
 
 def test_the_picture_holds_all_points_and_no_more_room_than_stated():
     points = np.random.default_rng(1).uniform([0, -1, 2], [0.5, 0, 4], (200, 3))
-    camera = fitted(points)
+    camera = scenery.fitted(points)
     right, up, back = camera.axes @ (points[:, [0, 2, 1]] * [1, 1, -1] - camera.centre).T
     half = (camera.distance - back) * np.tan(scenery.FIELD / 2)
     share = np.maximum(np.abs(right) / scenery.ASPECT, np.abs(up)) / half
-    assert share.max() == pytest.approx(1 / ROOM)
+    assert share.max() == pytest.approx(1 / scenery.ROOM)
 
 
 def test_the_camera_is_given_in_the_notation_of_the_viewer():
-    camera = Camera(np.array([0.1, 0.25, -1.0]), 1.5)
+    camera = scenery.Camera(np.array([0.1, 0.25, -1.0]), 1.5)
     assert (camera.orbit, camera.target) == ("30deg 78deg 1.5000m", "0.1000m 0.2500m -1.0000m")
     assert camera.axes @ camera.axes.T == pytest.approx(np.eye(3))
     assert np.linalg.det(camera.axes) == pytest.approx(1)
@@ -158,7 +150,7 @@ def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_pla
     other = replace(one, link_pos=one.link_pos * 2)
     replay = Replay(("one", "other"), "box", "box", places=PLACES)
     runs = body_channels.runs({"one": one, "other": other}, BOXES, replay)
-    found, parts = side_by_side(runs, SHAPE)
+    found, parts = scenery.side_by_side(runs, SHAPE)
     assert found.links == [f"{run}: {link}" for run in ("one", "other") for link in BOXES]
     assert [part.link for part in parts] == ["one: box", "other: box", WORLD]
     for trace in found.traces.values():
@@ -170,4 +162,4 @@ def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_pla
     assert not around.axis
     assert around.followed is None
     with pytest.raises(ValueError, match="1 places given for 2 runs: one, other"):
-        side_by_side(replace(runs, replay=replace(runs.replay, places=PLACES[:1])), SHAPE)
+        scenery.side_by_side(replace(runs, replay=replace(runs.replay, places=PLACES[:1])), SHAPE)

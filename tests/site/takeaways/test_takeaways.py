@@ -2,6 +2,7 @@ import csv
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -89,8 +90,16 @@ def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
     [("", None), ("https://github.com/a/b", ["Repository, https://github.com/a/b"])],
 )
 def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repository, urls):
-    first = build_wheel(tmp_path, repository=repository)
-    assert built_wheel(project.ROOT, repository).endswith(first.read_bytes())
+    root, lesson = tmp_path / "checkout", "robo_genesis/lessons/l01/"
+    shutil.copytree(project.ROOT / files.PACKAGE, root / files.PACKAGE)
+    for name in files.SOURCES:
+        shutil.copy(project.ROOT / name, root)
+    (root / lesson / "data").mkdir()
+    data = {f"{lesson}arm.xml", f"{lesson}data/arm"}
+    for name in (*data, f"{lesson}arm.xml~", f"{lesson}.arm.xml.swp"):
+        (root / name).touch()
+    first = build_wheel(tmp_path, root, repository)
+    assert built_wheel(root, repository) == first.read_bytes()
     assert first.name == f"robo_genesis-{package_facts()['version']}-py3-none-any.whl"
     with zipfile.ZipFile(first) as wheel:
         names = wheel.namelist()
@@ -104,7 +113,7 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repositor
         for path in sources
         if path.is_file() and path.suffix not in (".pyc", ".tmpl")
     }
-    assert {name for name in names if not name.startswith("robo_genesis-")} == there
+    assert {name for name in names if not name.startswith("robo_genesis-")} == there | data
 
 
 def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path):

@@ -26,7 +26,7 @@ from robo_genesis.site.text import question_nodes, questions
 )
 def test_exactly_the_measured_option_is_right(unit, order, metric, text):
     margin = questions.declared_margin("l04", metric)
-    shown = questions.options(unit, order, "0.1 mm", margin=margin)
+    shown = questions.options(unit, order, "0.1 mm", {}, margin)
     assert [name for name, right, _ in shown if right] == [text]
 
 
@@ -98,7 +98,7 @@ MEASURED = {"answer": "G1 < G2", "origin": "Measured"}
 
 
 def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
-    shown = questions.options("s", "higher", "5 ms", {"lower": "F < 9"})
+    shown = questions.options("s", "higher", "5 ms", {"lower": "F < 9"}, 0.0)
     html = written(question_nodes.choice("choice-3", options=shown, **MEASURED))
     assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
         ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
@@ -133,7 +133,7 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 
 @pytest.mark.browser
 def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(page):
-    shown = questions.options("s", None, "5 ms", {"lower": "Why"})
+    shown = questions.options("s", None, "5 ms", {"lower": "Why"}, 0.0)
     first = question_nodes.choice("choice-3", options=shown, **MEASURED)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
     second = question_nodes.number("choice-4", **MEASURED, **given)

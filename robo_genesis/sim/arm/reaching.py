@@ -1,0 +1,60 @@
+"""What lessons about reaches of the hand declare alike: settings, tolerances, invented answers."""
+
+import math
+from dataclasses import replace
+
+from robo_genesis.core.scene import read_only
+from robo_genesis.sim.arm.engine_kinematics import IkSettings
+
+MEASURES = False
+
+IK = IkSettings()
+"""Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each."""
+
+ONE_START = replace(IK, samples=1, iterations=100)
+"""The same without starts of the engine's choice, so that an answer depends on its start alone."""
+
+DOWN = read_only((0.0, 1.0, 0.0, 0.0))
+"""Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
+
+BEYOND_REACH = read_only((2.0, 0.0, 2.0))
+"""A target that no posture of the arm comes near to [m]."""
+
+MARKER_RADIUS = 0.03
+"""Radius of a sphere that marks a target [m]; nothing collides with it."""
+
+RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
+"""By unit: values that differ by no more than this are called equal, the noise floor."""
+
+TOLERANCES = {
+    "m": (1e-5, 1e-3), "rad": (1e-5, 1e-3), "rad/s": (1e-3, 1e-3), "N·m": (1e-2, 1e-3),
+    "N": (1e-2, 1e-3), "kg": (1e-6, 0.0), "pixel": (1e-6, 0.0), "1": (1e-6, 0.0),
+    "link_quat_wxyz": (1e-4, 0.0),
+}  # fmt: skip
+"""By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
+
+REACHED = (0.02, 0.05)
+"""The hand counts as arrived within these distances of its target [m] and [rad]."""
+
+SAME_POSE = (5e-6, 5e-6)
+"""Largest difference of a pose between two computations, one of them in float32 [m, rad]."""
+
+SAME_RESIDUAL = 1e-6
+"""Largest difference of a residual between the engine's solver and our computation [m, rad]."""
+
+ANSWERS: dict[str, tuple[tuple[int, float], tuple[float, ...], bool]] = {
+    "exact": ((8, 0.1), (0.0,) * 6, True),
+    "within_both": ((8, 0.1), (3e-4, 0, 0, 0, 4e-3, 0), True),
+    "at_both_limits": ((8, 0.1), (5e-4, 0, 0, 0, 0, 5e-3), True),
+    "too_far": ((8, 0.1), (6e-4, 0, 0, 0, 0, 0), False),
+    "too_far_backwards": ((8, 0.1), (0, 0, -2.0, 0, 0, 0), False),
+    "too_far_along_the_diagonal": ((8, 0.1), (4e-4, 4e-4, 0, 0, 0, 0), False),
+    "turned_too_far": ((8, 0.1), (0, 0, 0, 0, -6e-3, 0), False),
+    "turned_too_far_about_two_axes": ((8, 0.1), (0, 0, 0, 4e-3, 4e-3, 0), False),
+    "opposite_errors": ((8, 0.1), (0.2, -0.2, 0, 0.2, -0.2, 0), False),
+    "first_joint_not_a_number": ((0, math.nan), (0.0,) * 6, False),
+    "last_joint_infinite": ((8, -math.inf), (0.0,) * 6, False),
+    "residual_not_a_number": ((8, 0.1), (math.nan, 0, 0, 0, 0, 0), False),
+    "small": ((8, 0.1), (1e-6,) * 6, True),
+}
+"""For exercises: a joint and its position, the residual, and whether `IK` lets it be commanded."""
