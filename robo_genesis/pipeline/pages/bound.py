@@ -91,12 +91,9 @@ def require_printed(docname: str, executed: NotebookNode, folder: Path) -> None:
     """Require that the outputs of an executed page are those that its bundle has kept.
 
     Raises:
-        BundleRefused: `shown`, naming page, cell, output and place of the first difference.
+        BundleRefused: `shown`, naming page, cell, output and place of the first difference;
+            `missing-file` if the build did not write the bundle's last file.
     """
-    if not (folder / bundle.PRINTED).is_file():
-        raise _refused(
-            f"{docname}: its bundle has no {bundle.PRINTED}, which only the build writes."
-        )
     found, kept = printed.outputs_of(executed), bundle.read_printed(folder)
     for cell, outputs in enumerate(zip_longest(found, kept, fillvalue=()), start=1):
         for number, (here, there) in enumerate(zip_longest(*outputs), start=1):

@@ -74,21 +74,21 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
             no such unit.
         BundleRefused: the bundle cannot be read.
     """
-    by, kind = (":", "finding") if ":" in name else (".", "metric")
+    found: Mapping[str, Mapping[str, Any]] = bundle.read_metrics(folder)
+    kind, by = "metric", "."
+    if ":" in name:
+        checks = bundle.read_manifest(folder).predicate.checks
+        kind, by, found = "finding", ":", {check.name: check.found for check in checks}
     group, _, label = name.partition(by)
-    found: Mapping[str, Mapping[str, Any]] = (
-        {c.name: c.found for c in bundle.read_manifest(folder).predicate.checks}
-        if by == ":"
-        else bundle.read_metrics(folder)
-    )
     if label not in found.get(group, {}):
         known = ", ".join(f"{g}{by}{n}" for g, of in found.items() for n in of)
         raise LookupError(f"no {kind} {name!r}. Known: {known}.")
-    value, given, origin = found[group][label], None, f"found by the check {group}"
+    value = record = found[group][label]
+    given, origin = None, f"found by the check {group}"
     valid = SCALES.keys() | DIGITS.keys()
-    if by == ".":
-        value, given, origin = value.value, value.unit, f"from {', '.join(value.source)}"
-        valid = {given, SCALED.get(given), MICRO.get(given)} - {None}
+    if isinstance(record, bundle.Metric):
+        value, given, origin = record.value, record.unit, f"from {', '.join(record.source)}"
+        valid = {given, SCALED.get(given, given), MICRO.get(given, given)}
     if unit and not (isinstance(value, int | float) and unit in valid):
         raise LookupError(
             f"{name} = {quoted(value)} in {given or 'no unit'}, which cannot be shown in {unit!r}. "

@@ -92,16 +92,9 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
         if item.data is None:
             word, file = "picture", f"_images/{env.images[item.file][1]}"
         page = measured_pages(Path(app.srcdir)).get(item.docname, item.docname)
-        rows.append(
-            [
-                _link(item.title, f"{place}#{item.anchor}"),
-                item.kind,
-                page,
-                *_of_runs([runs[key] for key in item.runs]),
-                _digest(item.sha256),
-                _link(word, relative_uri(f"{docname}.html", file)),
-            ]
-        )
+        what = [_link(item.title, f"{place}#{item.anchor}"), item.kind, page]
+        last = [_digest(item.sha256), _link(word, relative_uri(f"{docname}.html", file))]
+        rows.append([*what, *_of_runs([runs[key] for key in item.runs]), *last])
         anchors.append(item.row)
     return scroll_box("Figures and tables", table(COLUMNS, rows, anchors))
 

@@ -72,10 +72,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     if name == "engine":
         return predicate.engine.version, origin
     name, _, unit = name.partition(" ")
-    try:
-        value, given, source = value_of(folder, name, unit)
-    except LookupError as error:
-        raise LookupError(f"{lesson_page} has {error}") from error
+    value, given, source = value_of(folder, name, unit)
     if unit:
         text = format_value(value, unit) if unit == given else scaled_value(value, unit)
     elif given is None:

@@ -11,7 +11,7 @@ import textwrap
 from collections.abc import Sequence, Set
 from dataclasses import replace
 from functools import lru_cache
-from itertools import chain
+from itertools import chain, count
 from pathlib import Path
 
 from docutils import nodes
@@ -25,6 +25,7 @@ from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, Page
 from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
 from robo_genesis.site.frame.executed import RECOMPUTED
 
+LOG = "the engine's log"
 TITLE = 80
 """Longest title in the ledger, in characters."""
 ITEMS = "robo_genesis_items"
@@ -121,7 +122,8 @@ def describe(
         bundles = (part[0] if part.get("nb_element") == "mime_bundle" else part for part in texts)
         text = "\n".join(part.astext() for part in bundles)
         kind, data, file = "printed", text.encode(), f"{file}.txt"
-        title = f"{heading}: {text.splitlines()[-1]}"
+        lines = (line for line in text.splitlines() if line[:1] not in "[ ")  # not of a log
+        title = f"{heading}: {[LOG, *lines][-1]}"
         holder["classes"].append("printed")
     elif is_picture:
         caption, path = holder.next_node(nodes.caption), book / node["uri"]
@@ -142,11 +144,9 @@ def describe(
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
     """Derive an anchor from the section's: it stays the same when other sections change."""
     base = f"{word}-{section['ids'][0]}" if section is not None else word
-    document, name, number = holder.document, base, 1
-    while name in document.ids:
-        number += 1
-        name = f"{base}-{number}"
-    document.ids[name] = holder
+    names, used = chain([base], (f"{base}-{number}" for number in count(2))), holder.document.ids
+    name = next(name for name in names if name not in used)
+    used[name] = holder
     holder["ids"].append(name)
 
 

@@ -29,8 +29,7 @@ WIDE = 480
 DRAWING = re.compile(r"\.svg$")
 COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
 DROPPED = re.compile(
-    r"<!--.*?-->|<(metadata|style|title|script|foreignObject)\b.*?</\1\s*>|\s+xmlns:\w+=\"[^\"]*\"",
-    re.S | re.I,
+    r'(?is)<!--.*?-->|<(metadata|style|title|script|foreignObject)\b.*?</\1\s*>|\s+xmlns:\w+="[^"]*"'
 )
 """What a page gets no part of; a style sheet, for example, would apply to all of it."""
 REFERENCE = re.compile(r'(?<=url\(#)[^)]+|(?<=href="#)[^"]+')
