@@ -64,6 +64,7 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
         keyed: the files of the checkout that the page's fingerprint covers.
     """
     accepted = [*SYSTEM, sys.prefix, sys.base_prefix, str(CACHE / "derived")]
+    accepted += map(str, ROOT.glob("*.egg-info"))  # which lists the package for importlib.metadata
     accepted += filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))
     places = {form: True for each in accepted for form in (each, os.path.realpath(each))}
     places |= {"": False, str(ROOT): False, str(Path.home()): False}

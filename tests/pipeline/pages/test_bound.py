@@ -36,8 +36,8 @@ TABLE, HEIGHT, POSTURE = (
                                                     "plots.posture")
 )  # fmt: skip
 SOURCES = (
-    "from robo_genesis.lessons import l02 as lesson\nfrom robo_genesis.lessons.l02 import plots",
-    "page.show(lesson.text.metric_table)\npage.show(plots.height)",
+    "from robo_genesis.lessons import l02\nfrom robo_genesis.lessons.l02 import plots",
+    "page.show(l02.text.metric_table)\npage.show(plots.height)",
     "page.show(plots.posture)",
     "print('a number of no function')",
     "page.finish(scene)",
@@ -177,12 +177,12 @@ OTHER_SVG = "the page shows another image/svg+xml than the bundle"
         (SHOW, lambda ran: function(ran).update(function="os.system"), "{'function': 'os.system'"),
         (SHOW, lambda ran: function(ran).update(arguments=["G1"]), "'arguments': ['G1']"),
         (SHOW, lambda ran: table(ran).metadata.update(robo_genesis=7), "the output is of 7, exp"),
-        ("page.show(lesson.text.metric_table)", id, "measured outputs is 2, expected 1"),
+        ("page.show(l02.text.metric_table)", id, "measured outputs is 2, expected 1"),
         ("for k in (1, 2):\n    page.show(plots.height)", id, "outside of loops and conditions"),
         (SHOW.replace("metric_table", "absent"), id, "text.absent)`. Write"),
         (SHOW.replace("metric_table", "metric_table, a"), id, "Write arguments out"),
         (SHOW.replace("metric_table", "metric_table, a=1"), id, "metric_table, a=1)`. Write"),
-        (SHOW.replace("lesson.text.metric_table", ""), id, "expected that of `page.show()`. Write"),
+        (SHOW.replace("l02.text.metric_table", ""), id, "expected that of `page.show()`. Write"),
         (
             SHOW.replace("metric_table", "readable"),  # it takes no experiment
             lambda ran: function(ran).update(function="robo_genesis.lessons.l02.text.readable"),
