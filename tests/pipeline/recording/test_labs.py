@@ -7,7 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from spoilers import both, older_compiler, on, own_run_id, part, seal
+from spoilers import both, older_compiler, on, own_run_id, part, predicate, seal
 from tiny_book import accept, cell, lab, make_book, notebook, old_bundle, refuse
 
 from robo_genesis.core.project import ROOT, ProjectError
@@ -264,7 +264,7 @@ def test_an_accepted_bundle_is_kept_and_named_unless_its_lesson_is_given(labs, r
     assert labs(lesson="l04")[1] == ["l04"]
 
 
-CLEAN, DIRTY = (both(part("git", dirty=dirty), seal) for dirty in (False, True))
+CLEAN, DIRTY = both(predicate(git=None), seal), both(part("git", dirty=True), seal)
 
 
 @pytest.mark.parametrize(
