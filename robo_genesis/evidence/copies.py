@@ -25,8 +25,8 @@ def require_own_run(folder: Path, cpu_runs: Sequence[Path]) -> None:
 
     Raises:
         BundleRefused: `copy` if run id or all arrays of a case are those of a CPU run, or if a time
-            is equal, or several times have one ratio to those there; `log` if the model importer
-            gave a warning there that is missing here.
+            is equal, or two times have the same ratio to those of the CPU; `log` if the model
+            importer gave a warning there that is missing here.
     """
     if not cpu_runs:
         return
@@ -76,6 +76,6 @@ def _times(side: Side) -> dict[str, float]:
 
 
 def same_times(times: Mapping[str, float], others: Mapping[str, float]) -> bool:
-    """Return whether a time is the other one, or two times have the same ratio to the others."""
+    """Return whether a time is equal in both, or two times have the same ratio."""
     ratios = [1.0, *(times[name] / others[name] for name in times.keys() & others.keys())]
     return len({f"{ratio:.9g}" for ratio in ratios}) < len(ratios)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -88,8 +88,7 @@ def run_build(build: Build) -> list[str]:
         engine, pages, into, environment = _prepare(build)
         npm.require_published()
         from_nothing = build.release or build.executed or site_address()
-        once = partial(verify_bundle, book=build.book, once=not from_nothing)
-        verify = cache(build.verify or once)  # a page is verified when it ends, and with all
+        verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         manifests: dict[str, Any] = {}
         if build.executed:
             progress("execute", f"no page: all are taken from {build.executed}")

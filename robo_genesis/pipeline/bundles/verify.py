@@ -179,9 +179,9 @@ def _changed_since(commit: str, manifest: Manifest, root: Path) -> list[str]:
         return []
     with tempfile.TemporaryDirectory() as folder:
         archive, tree = Path(folder, "tree.zip"), Path(folder, "tree")
+        git(root, "archive", "-0", f"--output={archive}", commit, "--", *DECIDING)
+        shutil.unpack_archive(archive, tree)
         try:
-            git(root, "archive", "-0", f"--output={archive}", commit, "--", *DECIDING)
-            shutil.unpack_archive(archive, tree)
             return [path for path, *_ in changed(manifest, tree, tree / "book") or ()]
         except (project.ProjectError, BundleRefused):  # today's code cannot read that tree
             return []

@@ -70,8 +70,8 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
         unit: in which it will be shown, such as mm or %; without one, its own.
 
     Raises:
-        LookupError: there is no such value, and the message lists those that there are; or it has
-            no such unit.
+        LookupError: the bundle lacks the value, or the value cannot have the unit; the message
+            lists what is valid.
         BundleRefused: the bundle cannot be read.
     """
     found: Mapping[str, Mapping[str, Any]] = bundle.read_metrics(folder)
