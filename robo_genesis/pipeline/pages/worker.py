@@ -162,7 +162,8 @@ def _unkeyed(run: PageRun) -> Failure | None:
         return None
     return Failure(
         "FileNotKeyed",
-        f"the page read {', '.join(names[:20])}. It would not be executed again if they changed. "
+        f"no key covers what the page read (files: {len(names)}): {', '.join(names[:20])}. "
+        "It would not be executed again if they changed. "
         "Valid are files of its lesson's folder, of imported modules and packages, and its own. "
         f"Move them into {PACKAGE}/lessons/{run.page.lesson or '…'}.",
     )

@@ -250,9 +250,9 @@ for name, mode in (("relative", "r"), (os.fsencode({away!r} + "/bytes"), "r+"), 
     open(name, mode).close()
 os.close(os.open("low", os.O_RDONLY))
 pathlib.Path({root!r}, "README.md").read_text()
-importlib.import_module("robo_genesis." + "compare")
+importlib.import_module("robo_genesis.core." + "palette")
 pathlib.Path("written").write_text("only written")"""
-READ = ("relative", "bytes", "added", "low", "README.md", "compare.py")
+READ = ("relative", "bytes", "added", "low", "README.md", "palette.py")
 OWN = """\
 import os, pathlib, tempfile
 from robo_genesis.core import text
@@ -272,7 +272,7 @@ def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp
     results = execute(tmp_path, jobs=2)
     assert results["accepted"].status == "executed", results["accepted"].failure
     failure = results["refused"].failure
-    names = failure.message.removeprefix("the page read ").partition(". It would not")[0]
+    names = failure.message.partition("): ")[2].partition(". It would not")[0]
     assert failure.error == "FileNotKeyed"
     assert {*READ} <= {Path(name).name for name in names.split(", ")}
 
