@@ -52,8 +52,9 @@ ENGINE_PREFIXES = (
     "NVIDIA_TF32_",
 )  # fmt: skip
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
+KERNELS = "QD_OFFLINE_CACHE_FILE_PATH"
 CACHE_FOLDERS = {
-    "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
+    KERNELS: "kernels",
     "GS_CACHE_FILE_PATH": "geometry",  # by default below the user's home, for all versions
     "NUMBA_CACHE_DIR": "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",
@@ -198,6 +199,11 @@ def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> di
     for path in paths.values():
         path.mkdir(parents=True, exist_ok=True)
     return {name: str(path) for name, path in paths.items()} | CACHE_LIMIT
+
+
+def nothing_compiled(environment: Mapping[str, str]) -> bool:
+    """Return whether these variables name a folder for the engine's kernels, and it has none."""
+    return KERNELS in environment and not any(Path(environment[KERNELS]).iterdir())
 
 
 def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:

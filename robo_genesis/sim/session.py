@@ -2,7 +2,6 @@
 
 import ctypes
 import importlib
-import inspect
 import logging
 import os
 import re
@@ -20,6 +19,7 @@ from robo_genesis.core import project
 from robo_genesis.core.project import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
 from robo_genesis.sim.backends import BACKENDS, contradictions
+from robo_genesis.sim.compiler import spare_repeated_work
 from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
@@ -197,24 +197,13 @@ def import_engine() -> Any:
     Raises:
         EngineError: saying what is missing and the command that installs it.
     """
-    spare_searches()
+    spare_repeated_work()
     if sys.platform == "linux":
         require_libraries()
     try:
         return importlib.import_module("genesis")
     except ImportError as error:
         raise EngineError(f"Genesis cannot be imported: {error}. {INSTALL}") from error
-
-
-def spare_searches() -> None:
-    """Spare the engine's compiler a search of all loaded modules for each kernel that it declares.
-
-    The compiler asks `inspect` for the line of source that calls each declaration. At the top level
-    of a module the caller is Python's own import, which belongs to no file. `inspect` keeps what it
-    finds, but not that it found nothing, so it would search all 3000 modules every time. The
-    entry names no module either: the answer stays the same.
-    """
-    inspect.modulesbyfile["<frozen importlib._bootstrap>"] = ""
 
 
 def asset(name: str) -> Path:

@@ -1,13 +1,12 @@
 """The environment contract, the start of the engine, its backend and its log."""
 
 import importlib
-import inspect
 import logging
 import os
 import subprocess
 import sys
 from dataclasses import replace
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from unittest.mock import Mock
 
 import numpy as np
@@ -70,32 +69,6 @@ def test_a_start_without_the_engine_names_what_installs_it(tmp_path, monkeypatch
     monkeypatch.setitem(sys.modules, "genesis", None)  # as if it were not installed
     with pytest.raises(EngineError, match=r"Genesis cannot be imported: .* requirements\.lock"):
         start(Contract("cpu", True, tmp_path))
-
-
-class Searched(ModuleType):
-    """A module that counts how often a search of all modules reaches it."""
-
-    times = 0
-
-    def __getattr__(self, name):
-        type(self).times += name == "__file__"
-        raise AttributeError(name)
-
-
-def test_the_caller_of_a_declaration_is_found_without_a_search_of_all_modules(
-    tmp_path, monkeypatch
-):
-    """A module asks as the engine's compiler does where a kernel is declared."""
-    monkeypatch.setattr(inspect, "modulesbyfile", dict(inspect.modulesbyfile))
-    inspect.modulesbyfile.pop("<frozen importlib._bootstrap>", None)
-    session.spare_searches()
-    monkeypatch.setitem(sys.modules, "searched", Searched("searched"))
-    monkeypatch.syspath_prepend(tmp_path)
-    code = "import inspect, sys\n\nCALLER = inspect.getframeinfo(sys._getframe(1))\n"
-    (tmp_path / "declares.py").write_text(code, "utf8")
-    found = importlib.import_module("declares").CALLER
-    monkeypatch.delitem(sys.modules, "declares")
-    assert (found.filename, Searched.times) == ("<frozen importlib._bootstrap>", 0)
 
 
 def test_a_started_engine_is_not_started_again(tmp_path, monkeypatch):

@@ -103,7 +103,8 @@ def execute_pages(
     """Execute the pages that the store does not have yet; try all of them.
 
     Those whose last run with this engine failed start first, then the longest. A page that declares
-    `alone` runs when no other page does.
+    `alone` runs when no other page does. While no kernel is compiled, the first lab of the book runs
+    alone: the engine saves its kernels when a page ends, so pages beside it would compile the same.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -134,7 +135,11 @@ def execute_pages(
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
     waiting = [page for page in pages if page.docname not in results]
     failed = [page.docname for page in waiting if failed_mark(places[page.docname]).exists()]
+    labs = [page for page in waiting if page.page == "lab"]
     waiting = in_order(waiting, last, failed)
+    if cold := bool(labs) and project.nothing_compiled(environment):
+        waiting.remove(labs[0])
+        waiting.insert(0, labs[0])
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
@@ -142,7 +147,7 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running:
-                while waiting and len(running) < (1 if _alone(waiting, running) else jobs):
+                while waiting and len(running) < (1 if cold or _alone(waiting, running) else jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -156,6 +161,7 @@ def execute_pages(
                     if result is None:
                         continue
                     del running[connection]
+                    cold = False
                     results[result.page.docname] = result
                     report.say(result.page.docname, result.ended)
                     mark = failed_mark(result.folder)

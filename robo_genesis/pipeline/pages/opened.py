@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
-from robo_genesis.sim.session import spare_searches
+from robo_genesis.sim.compiler import spare_repeated_work
 
 SYSTEM = (
     "/bin", "/dev", "/etc", "/lib", "/lib64", "/opt", "/proc", "/run", "/sys", "/usr", "/var",
@@ -35,7 +35,7 @@ def start() -> None:
     # last: one that is registered right after them runs right before them, after the engine's, and
     # ends it.
     atexit.register(os._exit, 0)
-    spare_searches()  # here, because pages import the engine before the course
+    spare_repeated_work()  # here, because pages import the engine before the course
     notes, seen = os.open(_notes(), os.O_WRONLY | os.O_CREAT), set()
 
     def note(event: str, arguments: tuple[Any, ...]) -> None:

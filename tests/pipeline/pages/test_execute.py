@@ -191,6 +191,21 @@ def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
     assert len(said) == 12
 
 
+@pytest.mark.parametrize("saved", [False, True])
+def test_the_first_lab_runs_alone_while_no_kernel_is_compiled(tmp_path, saved):
+    lab, more = cell(WRITE_BUNDLE), cell("1")
+    make_book(tmp_path, a=notebook(more, more), b=notebook(lab, front=LAB_FRONT), c=notebook(more))
+    environment = engine_cache_environment(cache=tmp_path / "cache")
+    if saved:
+        (engine_cache_folder(cache=tmp_path / "cache") / "kernels/saved").touch()
+    said = []
+    report = Lines(lambda name, event: event and said.append((name, event[:7])))
+    results = execute(tmp_path, jobs=2, environment=environment, report=report)
+    assert {result.status for result in results.values()} == {"executed"}
+    first = [("a", "started"), ("b", "started")] if saved else [("b", "started"), ("b", "execute")]
+    assert (said[:2], len(said)) == (first, 6)
+
+
 def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
     make_book(tmp_path, page=notebook(cell("1")))
     (tmp_path / "store").mkdir()

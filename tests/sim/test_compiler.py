@@ -1,0 +1,76 @@
+"""Work that the engine's compiler is spared: the answers of Python's library stay the same."""
+
+import importlib
+import inspect
+import sys
+import textwrap
+from collections import Counter
+from types import FunctionType, ModuleType
+
+import pytest
+
+from robo_genesis.sim.compiler import spare_repeated_work
+
+IMPORT = "<frozen importlib._bootstrap>"
+
+
+@pytest.fixture
+def spared(monkeypatch):
+    """Spare this process, for one test; return how often the library itself was asked."""
+    asked, wrap, lines = Counter(), textwrap.TextWrapper.wrap, inspect.getsourcelines
+    monkeypatch.setattr(inspect, "modulesbyfile", dict(inspect.modulesbyfile))
+    inspect.modulesbyfile.pop(IMPORT, None)
+
+    def counted(name, function):
+        return lambda *given: (asked.update([name]), function(*given))[1]
+
+    monkeypatch.setattr(textwrap.TextWrapper, "wrap", counted("wrap", wrap))
+    monkeypatch.setattr(inspect, "getsourcelines", counted("lines", lines))
+    spare_repeated_work()
+    return asked
+
+
+class Searched(ModuleType):
+    """A module that counts how often a search of all modules reaches it."""
+
+    times = 0
+
+    def __getattr__(self, name):
+        type(self).times += name == "__file__"
+        raise AttributeError(name)
+
+
+def test_the_caller_of_a_declaration_is_found_without_a_search_of_all_modules(
+    spared, tmp_path, monkeypatch
+):
+    """A module asks as the engine's compiler does where a kernel is declared."""
+    monkeypatch.setitem(sys.modules, "searched", Searched("searched"))
+    monkeypatch.syspath_prepend(tmp_path)
+    code = "import inspect, sys\n\nCALLER = inspect.getframeinfo(sys._getframe(1))\n"
+    (tmp_path / "declares.py").write_text(code, "utf8")
+    found = importlib.import_module("declares").CALLER
+    monkeypatch.delitem(sys.modules, "declares")
+    assert (found.filename, Searched.times) == (IMPORT, 0)
+
+
+@pytest.mark.parametrize("settings", [{"width": 20}, {"width": 30}, {"width": 20, "tabsize": 2}])
+def test_a_line_is_wrapped_once_for_each_setting(spared, settings):
+    text = "\tposition of the hand, then of the fingers"
+    expected = textwrap.wrap(text, **settings)
+    for _ in range(3):
+        found = textwrap.TextWrapper(**settings).wrap(text)
+        assert found == expected
+        found.append("changed by the caller")
+    assert spared["wrap"] == 1
+    textwrap.fill(text, 25)
+    assert spared["wrap"] == 2
+
+
+def test_the_source_of_a_function_is_searched_once_and_that_of_anything_else_each_time(spared):
+    for _ in range(2):
+        source, line = inspect.getsourcelines(textwrap.dedent)
+        assert (source[0], line) == ("def dedent(text):\n", textwrap.dedent.__code__.co_firstlineno)
+        source.clear()
+        assert inspect.getsource(Searched).startswith("class Searched")
+    assert isinstance(textwrap.dedent, FunctionType)
+    assert spared["lines"] == 3
