@@ -104,6 +104,8 @@ def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
 
     The picture of its centre is recorded too: perspective puts it nearer to the middle.
     """
+    for axis, place in zip("uv", computed(view, marker)[0], strict=True):
+        yield noted(f"{label}.centre_{axis}_px", float(place))
     if view.segmentation is None:
         yield noted(f"{label}.segmentation", SKIP)
         return
