@@ -42,4 +42,4 @@ def spare_repeated_work() -> None:
         return source.copy(), number
 
     textwrap.TextWrapper.wrap = wrap_once  # type: ignore[method-assign]
-    inspect.getsourcelines = find_once
+    inspect.getsourcelines = find_once  # type: ignore[assignment]

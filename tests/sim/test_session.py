@@ -1,6 +1,5 @@
 """The environment contract, the start of the engine, its backend and its log."""
 
-import importlib
 import logging
 import os
 import subprocess

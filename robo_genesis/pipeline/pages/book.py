@@ -27,8 +27,7 @@ class Page:
     """One page whose code cells are executed.
 
     `lesson` and `page` come from the front matter's `robo_genesis: {lesson, page}`: such a page
-    runs the engine and must leave an evidence bundle. Both are None on other pages. A page with
-    `alone: true` there measures time: no other page is executed meanwhile.
+    runs the engine and must leave an evidence bundle. Both are None on other pages.
     """
 
     docname: str
@@ -36,12 +35,21 @@ class Page:
     notebook: NotebookNode
     lesson: str | None = None
     page: str | None = None
-    alone: bool = False
 
     @property
     def declares_bundle(self) -> bool:
         """Whether the page must leave an evidence bundle."""
         return self.lesson is not None
+
+    @property
+    def alone(self) -> int | None:
+        """The number of its first code cell tagged `alone`, counted from 1; None if none is.
+
+        From there on it measures time: no other page is executed meanwhile.
+        """
+        cells = (cell for cell in self.notebook.cells if cell.cell_type == "code")
+        tagged = (n for n, cell in enumerate(cells, 1) if "alone" in cell.metadata.get("tags", ()))
+        return next(tagged, None)
 
     @property
     def code(self) -> Code:
@@ -135,25 +143,20 @@ def _parsed(path: Path, text: str) -> NotebookNode:
     return cast(NotebookNode, pickle.loads(read))
 
 
-def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None, bool]:
-    """Return lesson and page from the front matter, and whether the page runs alone.
-
-    Lesson and page are None without a declaration.
-    """
+def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:
+    """Return lesson and page from the front matter; both are None without a declaration."""
     declared = notebook.metadata.get(PACKAGE)
     if declared is None:
-        return None, None, False
+        return None, None
     given = dict(declared) if isinstance(declared, dict) else {}
-    alone = given.pop("alone", False)
     parts = [given.get(key) for key in ("lesson", "page")]
     words = all(isinstance(part, str) and part.isidentifier() for part in parts)
-    if not (words and isinstance(alone, bool)) or given.keys() - {"lesson", "page"}:
+    if not words or given.keys() - {"lesson", "page"}:
         raise PageError(
             f"{name}: front matter has `{PACKAGE}: {declared!r}`. "
-            f"Valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words. A page that no "
-            "other page may disturb adds `alone: true`."
+            f"Valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words."
         )
-    return parts[0], parts[1], alone
+    return parts[0], parts[1]
 
 
 def code_of(notebook: NotebookNode) -> Code:

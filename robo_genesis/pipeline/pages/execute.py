@@ -28,12 +28,15 @@ class Underway:
     """One page that runs.
 
     `cells` is the number of its code cells and `cell` the one that runs, counted from 1; 0 while
-    the kernel starts. `last` is the record of its last stored run, `log` the file that gets what
-    the engine writes, None if it is not kept. Times are seconds of the monotonic clock.
+    the kernel starts. It `waits` before its first cell that must run alone, and is `alone` from
+    there on. `last` is the record of its last stored run, `log` the file that gets what the engine
+    writes, None if it is not kept. Times are seconds of the monotonic clock.
     """
 
     name: str
     cells: int
+    alone: bool = False
+    waits: bool = False
     last: Record | None = None
     log: Path | None = None
     begin: float = field(default_factory=time.monotonic)
@@ -48,6 +51,7 @@ class Underway:
     def state(self, now: float) -> str:
         """Return cell, elapsed time and estimated remaining time."""
         cell = f"cell {self.cell} of {self.cells}" if self.cell else "kernel starts"
+        cell += " waits" if self.waits else ""
         elapsed = now - self.begin
         left = f", ~{max(0.0, self.last.seconds - elapsed):.0f} s left" if self.last else ""
         return f"{cell}, {elapsed:.0f} s{left}"
@@ -102,9 +106,10 @@ def execute_pages(
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
 
-    Those whose last run with this engine failed start first, then the longest. A page that declares
-    `alone` runs when no other page does. While no kernel is compiled, the first lab of the book runs
-    alone: the engine saves its kernels when a page ends, so pages beside it would compile the same.
+    Those whose last run with this engine failed start first, then the longest. From its first cell
+    that is tagged `alone`, a page runs when no other page does. While no kernel is compiled, the
+    first lab of the book runs alone: the engine saves its kernels when a page ends, so pages beside
+    it would compile the same ones.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -121,8 +126,8 @@ def execute_pages(
             default it is not kept.
         report: gets each event, and shows how far the running pages are; by default nothing
             is shown.
-        accept: called once for each page that was executed and did not fail, before the next page
-            starts; returns whether the page counts as one that did not fail.
+        accept: called once for each page that was executed and did not fail, while the next page
+            runs; returns whether the page counts as one that did not fail.
 
     Returns:
         One result for each page, in the order of `pages`.
@@ -143,19 +148,29 @@ def execute_pages(
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
+    ended: list[PageResult] = []
     with tempfile.TemporaryDirectory(prefix="robo-") as scratch:
         own = Path(scratch)
         try:
-            while waiting or running:
-                while waiting and len(running) < (1 if cold or _alone(waiting, running) else jobs):
+            while waiting or running or ended:
+                while waiting and len(running) < (1 if cold or _alone(running) else jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
                     before, kept = last[page.docname], log if logs else None
-                    underway = Underway(page.docname, cells, before, kept)
+                    underway = Underway(page.docname, cells, last=before, log=kept)
                     report.say(page.docname, underway.started())
                     _start(run, underway, running)
+                for done in ended:
+                    mark = failed_mark(done.folder)
+                    if done.failure or not accept(done):
+                        mark.touch()
+                    else:
+                        mark.unlink(missing_ok=True)
+                ended = []
+                if not running:
+                    continue
                 for connection in wait(list(running), timeout=report.pause()):
                     result = _receive(connection, *running[connection])
                     if result is None:
@@ -164,11 +179,8 @@ def execute_pages(
                     cold = False
                     results[result.page.docname] = result
                     report.say(result.page.docname, result.ended)
-                    mark = failed_mark(result.folder)
-                    if result.failure or not accept(result):
-                        mark.touch()
-                    else:
-                        mark.unlink(missing_ok=True)
+                    ended.append(result)
+                _let_one_go_on(running)
                 report.show([underway for *_, underway in running.values()])
         finally:
             kill_with_descendants(process.pid for process, *_ in running.values())
@@ -194,7 +206,7 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
 def in_order(
     pages: Iterable[Page], last: Mapping[str, Record | None], failed: Collection[str] = ()
 ) -> list[Page]:
-    """Return pages in the order in which they start: the longest first, those alone last.
+    """Return pages in the order in which they start: the longest first, those with `alone` last.
 
     Args:
         pages: the pages to execute.
@@ -206,14 +218,27 @@ def in_order(
 
     def sooner(page: Page) -> tuple[bool, bool, float, int]:
         name = page.docname
-        return name not in failed, page.alone, -seconds.get(name, inf), -len(page.code.sources)
+        return (
+            name not in failed,
+            bool(page.alone),
+            -seconds.get(name, inf),
+            -len(page.code.sources),
+        )
 
     return sorted(pages, key=sooner)
 
 
-def _alone(waiting: Sequence[Page], running: Running) -> bool:
-    """Return whether the next page, or one that runs, must have no other beside it."""
-    return waiting[0].alone or any(run.page.alone for _, run, _ in running.values())
+def _alone(running: Running) -> bool:
+    """Return whether a page that runs must have no other beside it, or waits for that."""
+    return any(underway.alone for *_, underway in running.values())
+
+
+def _let_one_go_on(running: Running) -> None:
+    """Let a page go on to the cells that run alone, if all pages that run wait for that."""
+    if running and all(underway.waits for *_, underway in running.values()):
+        connection, (_, _, underway) = next(iter(running.items()))
+        underway.waits = False
+        connection.send(True)
 
 
 def _reused(
@@ -238,7 +263,7 @@ def _start(run: PageRun, underway: Underway, running: Running) -> None:
     """Start the worker process of one page and enter it in `running`."""
     # Spawned, not forked: the worker inherits neither threads nor open databases.
     context = multiprocessing.get_context("spawn")
-    receiver, sender = context.Pipe(duplex=False)
+    receiver, sender = context.Pipe()
     process = context.Process(target=work, args=(run, sender))
     with interrupts_blocked():  # a Ctrl-C from here on finds the worker among the running
         process.start()
@@ -255,6 +280,8 @@ def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) ->
         received = connection.recv()
         if isinstance(received, int):
             underway.cell = received
+            if received == run.page.alone:
+                underway.alone = underway.waits = True
             return None
         seconds, failure = received
     except EOFError:

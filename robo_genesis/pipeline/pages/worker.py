@@ -67,8 +67,15 @@ def work(run: PageRun, connection: Connection) -> None:
     Args:
         run: what to execute.
         connection: takes the number of each code cell that starts, counted from 1, and in the end
-            one pair; a process that ends without sending it has failed as well.
+            one pair; a process that ends without sending it has failed as well. The first cell
+            that must run alone waits until something is received.
     """
+
+    def starts(cell: int) -> None:
+        connection.send(cell)
+        if cell == run.page.alone:
+            connection.recv()
+
     die_with_parent(run.scratch)
     runtime = Path(tempfile.mkdtemp(dir=run.scratch))
     own = {
@@ -86,7 +93,7 @@ def work(run: PageRun, connection: Connection) -> None:
     for standard in (1, 2):
         os.dup2(descriptor, standard)
     begin = time.monotonic()
-    failure = execute_page(run, connection.send)
+    failure = execute_page(run, starts)
     if failure:
         failure = replace(failure, log=last_lines(run.log.read_text("utf8", errors="replace")))
     connection.send((time.monotonic() - begin, failure))
@@ -116,9 +123,9 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     seconds: list[float] = []
 
     def cell_starts(cell: NotebookNode, cell_index: int) -> None:
+        on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
         CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
-        on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False

@@ -19,7 +19,7 @@ def test_executed_pages_are_the_notebooks_of_the_table_of_contents(tmp_path):
     [
         (notebook(front="robo_genesis: {lesson: l04}\n"), "lesson: l04, page: lab"),
         (notebook(front="robo_genesis: lab\n"), "lesson: l04, page: lab"),
-        (notebook(front="robo_genesis: {lesson: l04, page: lab, alon: true}\n"), "alone: true"),
+        (notebook(front="robo_genesis: {lesson: l04, page: lab, alone: true}\n"), "page: lab"),
         ("---\nfile_format: mystnb\n---\n# No kernel\n", "kernelspec"),
         (notebook(cell("1", ":tags: [a\n")), r"cannot be read: .*\n(.*\n)*Correct .*bad\.md"),
         (notebook(front="title: [a\n"), "cannot be read"),

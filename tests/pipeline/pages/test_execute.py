@@ -172,23 +172,41 @@ def test_pages_run_at_the_same_time_and_save_what_they_compiled_even_where_they_
     assert sorted(path.name for path in folder.iterdir()) == ["bad", "good"]
 
 
-def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
-    alone = LAB_FRONT.replace("}", ", alone: true}")
-    pause = cell("import time\ntime.sleep(1)")
-    make_book(
-        tmp_path, a=notebook(cell(WRITE_BUNDLE), front=alone), b=notebook(pause), c=notebook(pause)
-    )
-    said, report = [], Lines(lambda name, event: event and said.append((name, event[:7])))
-    settings = {"jobs": 2, "report": report}
-    results = execute(tmp_path, **settings, accept=lambda result: result.bundle is None)
-    assert {result.status for result in results.values()} == {"executed"}
+MEASURES = """\
+import pathlib, time
+here = pathlib.Path({place!r})
+assert (here / "ended").exists()
+(here / "measuring").touch(exist_ok=False)
+time.sleep(0.5)
+(here / "measuring").unlink()"""
+MEETS = """\
+import pathlib, time
+here = pathlib.Path({place!r})
+(here / "met-{name}").touch()
+while len([*here.glob("met-*")]) < 3: time.sleep(0.05)"""
+ENDS = "\ntime.sleep(1)\n(here / 'ended').touch()"
+
+
+def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
+    """Three pages meet in their first cells; two of them then measure, one after the other."""
+    meets = {name: MEETS.format(place=str(tmp_path), name=name) for name in "abc"}
+    alone = cell(MEASURES.format(place=str(tmp_path)), ":tags: [alone]\n")
+    pages = {name: notebook(cell(meets[name]), alone) for name in "ab"}
+    make_book(tmp_path, **pages, c=notebook(cell(meets["c"] + ENDS)))
+    results = execute(tmp_path, jobs=3, timeout=20)
+    assert {result.status for result in results.values()} == {"executed"}, results
+
+
+def test_a_page_that_was_not_accepted_is_the_first_to_run_again(tmp_path):
+    make_book(tmp_path, a=notebook(cell("1")), b=notebook(cell("1"), cell("2")))
+    said = []
+    report = Lines(lambda name, event: event and said.append((name, event[:7])))
+    results = execute(tmp_path, report=report, accept=lambda result: result.page.docname == "b")
     marks = [failed_mark(result.folder).exists() for result in results.values()]
-    assert marks == [True, False, False]  # `a` was not accepted, so it is the first to run again
-    execute(tmp_path, **settings, reuse=False)
+    assert marks == [True, False]
+    execute(tmp_path, report=report, reuse=False)
     assert not failed_mark(results["a"].folder).exists()
-    alone, others = [("a", "started"), ("a", "execute")], [("b", "started"), ("c", "started")]
-    assert (said[:2], said[4:8], sorted(said[8:10])) == (others, alone * 2, others)
-    assert len(said) == 12
+    assert [name for name, event in said if event == "started"] == ["b", "a", "a", "b"]
 
 
 @pytest.mark.parametrize("saved", [False, True])
