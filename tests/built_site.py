@@ -27,8 +27,7 @@ from robo_genesis.pipeline.pages.store import places, stored_result
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-PAGES = tuple(docnames(BOOK / "_toc.yml"))
-"""Every page of the book in reading order."""
+PAGES = tuple(docnames(BOOK / "_toc.yml"))  # Every page of the book in reading order
 
 EXECUTED = {page.docname: (page.lesson, page.page) for page in find_pages(BOOK)}
 LESSON_PAGES = {
@@ -41,8 +40,7 @@ LESSON_PAGES = {
 MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in lesson.pages]
 """Lesson and page of each page that leaves a bundle."""
 
-TEXT = {".html", ".css", ".js", ".json", ".svg", ".txt"}
-"""The files that a web server compresses."""
+TEXT = {".html", ".css", ".js", ".json", ".svg", ".txt"}  # The files that a web server compresses
 
 OUTSIDE = dict(os.environ)
 """The environment of the tests. The engine sets switches when a test imports it, and a build with

@@ -6,8 +6,7 @@ from contrast import GROUNDS, contrast
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import MARKS, PARTS, marks_of
 
-TEXT, GRAPHICS = 4.5, 3
-"""Least contrast of text and of graphics, WCAG 2.2, 1.4.3 and 1.4.11."""
+TEXT, GRAPHICS = 4.5, 3  # Least contrast of text and of graphics, WCAG 2.2, 1.4.3 and 1.4.11
 
 
 @pytest.mark.parametrize("theme", GROUNDS)

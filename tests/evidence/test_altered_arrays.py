@@ -22,8 +22,7 @@ from robo_genesis.evidence.refusals import BundleRefused
 pytestmark = pytest.mark.engine  # the bundles of the built site
 
 LAWS = ("laws_of_motion", "free_fall")
-REQUIRED = 0.97
-"""Share of the tries that must be refused."""
+REQUIRED = 0.97  # Share of the tries that must be refused
 
 NOISE = "A landed cube turns by less than float32 resolves in a step, so nothing follows from it."
 SCHEME = "MuJoCo does not have the engine's resolution of the elliptic cone."

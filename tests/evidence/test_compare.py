@@ -40,8 +40,7 @@ def other(folder, tmp_path) -> Path:
     return Path(shutil.copytree(folder, tmp_path / "other" / "cpu"))
 
 
-same = predicate()
-"""A change of nothing."""
+same = predicate()  # A change of nothing
 
 
 @pytest.fixture

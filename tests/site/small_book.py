@@ -51,8 +51,7 @@ Four was measured.
 ```{course-measured}
 ```
 """
-WORDS = "word " * 600
-"""Three minutes to read."""
+WORDS = "word " * 600  # Three minutes to read
 GLOSSARY = """\
 # Glossary
 

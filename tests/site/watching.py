@@ -7,8 +7,7 @@ from playwright.sync_api import Page
 
 from robo_genesis.pipeline import npm
 
-SCRIPTS = Path(__file__).with_name("scripts")
-"""Functions that tests call in a page, a file each."""
+SCRIPTS = Path(__file__).with_name("scripts")  # Functions that tests call in a page, a file each
 
 RUN_AXE = """([part, options]) => axe.run(part, options).then(({ violations, passes }) => [
   violations.flatMap(rule => rule.nodes.map(node => `${rule.id}: ${node.target.join(" ")}`)),

@@ -12,8 +12,7 @@ from robo_genesis.core.project import ProjectError
 
 ARCHIVE = "offline/robo-genesis-site.zip"
 """The archive's place in the site, for the link of the home page: unpack it, open `index.html`."""
-FOLDER = "robo-genesis-site"
-"""The folder that unpacking makes."""
+FOLDER = "robo-genesis-site"  # The folder that unpacking makes
 OFFER = ".offline-offer"
 """A page's offer of the archive; the archive's own copy of the page must not have it."""
 COMPRESSED = {".jpg", ".png", ".webp", ".whl", ".woff2", ".zip"}

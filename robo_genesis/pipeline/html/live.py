@@ -32,11 +32,9 @@ from robo_genesis.pipeline.pages.store import folders, places
 FOLDER = "live"
 """Below the cache folder: what is rendered and shown, apart from what `make book` makes."""
 UNWATCHED = ("_build", "__pycache__", ".")
-SHOWN_LINES = 2
-"""Lines of warnings and errors of Sphinx that the terminal shows."""
+SHOWN_LINES = 2  # Lines of warnings and errors of Sphinx that the terminal shows
 
-INTERVAL = 0.1
-"""Seconds between two looks at the files; a look takes milliseconds."""
+INTERVAL = 0.1  # Seconds between two looks at the files; a look takes milliseconds
 RELOAD = Path(__file__).with_name("live_reload.html").read_bytes()
 """A page asks for the name of the shown state, and reloads when it is another."""
 

@@ -14,8 +14,7 @@ from robo_genesis.pipeline.html.draft import Draft
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
     from robo_genesis.pipeline.pages.results import PageResult
 
-PAGES = "pages"
-"""The folder beside `evidence` with the bundles of other pages than labs."""
+PAGES = "pages"  # The folder beside `evidence` with the bundles of other pages than labs
 
 
 def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:

@@ -37,8 +37,7 @@ upgrade of the theme, the check names the new ones: read them, and replace the o
 PAGE_NAME = "DOCUMENTATION_OPTIONS.pagename = '{}';"
 """The one inline script that differs by page: the theme's name of the page itself."""
 
-HANDLERS = {("button", "onclick", "window.print()")}
-"""The theme's own event handlers."""
+HANDLERS = {("button", "onclick", "window.print()")}  # The theme's own event handlers
 
 REFUSED = {"applet", "base", "embed", "foreignobject", "frame", "frameset", "iframe", "object"}
 """Elements that load another document, a plug-in, or change what addresses mean."""
@@ -63,12 +62,10 @@ SCRIPT_TYPES = (None, "module", "application/json")
 RUNNING_ADDRESS = re.compile(
     r"(?:javascript|vbscript):|^blob:|^data:(?!image/(?:png|jpeg);base64,)", re.IGNORECASE
 )
-UNSEEN = re.compile(r"[\x00-\x20\x7f]+")
-"""Characters that browsers leave out of an address."""
+UNSEEN = re.compile(r"[\x00-\x20\x7f]+")  # Characters that browsers leave out of an address
 CONTENT = re.compile(r"<(script|style)\b.*?</\1\s*>", re.IGNORECASE | re.DOTALL)
 TAG_IN_TAG = re.compile(r"<[a-z/!?][^<>]*<", re.IGNORECASE)
-EARLY_END = re.compile(r"^-?>|--!>|<!--")
-"""What ends or begins a comment for some parsers only."""
+EARLY_END = re.compile(r"^-?>|--!>|<!--")  # What ends or begins a comment for some parsers only
 
 
 @dataclass(frozen=True, slots=True)

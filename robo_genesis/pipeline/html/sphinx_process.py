@@ -25,13 +25,10 @@ from robo_genesis.pipeline.command import ANSI, collect_rarely, end_with_parent
 if TYPE_CHECKING:  # the process is started before the packages of Jupyter are loaded
     from robo_genesis.pipeline.pages.built import BuiltPages
 
-LOG = "render.log"
-"""Its name in the folder of the caches."""
-HTML = "_build/html"
-"""The folder of the pages in the folder that Sphinx gets."""
+LOG = "render.log"  # Its name in the folder of the caches
+HTML = "_build/html"  # The folder of the pages in the folder that Sphinx gets
 DOCTREES = "_build/.doctrees"
-EXECUTED = "executed-pages.json"
-"""The file in that folder which lists the executed pages."""
+EXECUTED = "executed-pages.json"  # The file in that folder which lists the executed pages
 
 
 class SphinxProcess:

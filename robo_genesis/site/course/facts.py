@@ -19,31 +19,22 @@ from robo_genesis.site.evidence.origin import above
 from robo_genesis.site.evidence.plain_nodes import html
 from robo_genesis.site.text.question_nodes import question
 
-WORDS_A_MINUTE = 200
-"""A slow pace, for technical prose; code, tables and formulas are not counted."""
-LINES_A_MINUTE = 10
-"""The pace of somebody who runs and changes visible code."""
+WORDS_A_MINUTE = 200  # A slow pace, for technical prose; code, tables and formulas are not counted
+LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
 MINUTES_A_QUESTION = 2
-MINUTES_A_FUNCTION = 10
-"""An estimate of the time to write a function until its test passes."""
+MINUTES_A_FUNCTION = 10  # An estimate of the time to write a function until its test passes
 MINUTES_A_RUN = 5
 """An estimate of the time of one run of a lab, in which the engine compiles its kernels."""
-MINUTES_A_SHEET = 10
-"""An estimate of the time to fill in a work sheet."""
-STUB = "raise NotImplementedError"
-"""Occurs in a cell with a function that the reader writes."""
-COMMITS = 6
-"""Number of the latest commits of a page that are listed."""
-DESCRIPTION = 200
-"""Longest description, in characters: search engines show about as many."""
-SOURCE = "cell_code_source"
-"""What MyST-NB calls the code of a cell."""
+MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
+STUB = "raise NotImplementedError"  # Occurs in a cell with a function that the reader writes
+COMMITS = 6  # Number of the latest commits of a page that are listed
+DESCRIPTION = 200  # Longest description, in characters: search engines show about as many
+SOURCE = "cell_code_source"  # What MyST-NB calls the code of a cell
 HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
 """Tags of cells whose code is not visible."""
 LAB, WORK_SHEET = "lab", "worksheet.md"
 """The name of a lesson's lab, and the file with its work sheet."""
-MINUTES = "minutes"
-"""The name of the time in a page's metadata."""
+MINUTES = "minutes"  # The name of the time in a page's metadata
 UNCOUNTED = (nodes.literal_block, nodes.table, nodes.math, nodes.math_block, nodes.raw)
 
 

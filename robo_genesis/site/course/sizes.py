@@ -13,8 +13,7 @@ from robo_genesis.site.course.facts import HIDDEN, STUB, WORDS_A_MINUTE, has_she
 from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER, excerpt
 from robo_genesis.site.text.left_out import without_docstrings
 
-COLUMN = 80
-"""Most characters in a line of an excerpt that the column shows without scrolling."""
+COLUMN = 80  # Most characters in a line of an excerpt that the column shows without scrolling
 
 MEASURES = {
     "words": "words of prose", "cells": "visible code cells",

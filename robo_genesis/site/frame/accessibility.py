@@ -10,15 +10,11 @@ import re
 
 from bs4 import BeautifulSoup, Tag
 
-ICON = re.compile("^fa-")
-"""How the classes of an icon's element begin."""
+ICON = re.compile("^fa-")  # How the classes of an icon's element begin
 
-PHONE = 358
-"""Width of a page's column on a phone that is 390 pixels wide [CSS px]."""
-LETTER, PADDING = 9, 22.4
-"""Width of a wide letter, and of a cell's padding on both sides [CSS px]."""
-MOST_ROWS = 40
-"""Longer tables are lists of samples, and scroll."""
+PHONE = 358  # Width of a page's column on a phone that is 390 pixels wide [CSS px]
+LETTER, PADDING = 9, 22.4  # Width of a wide letter, and of a cell's padding on both sides [CSS px]
+MOST_ROWS = 40  # Longer tables are lists of samples, and scroll
 
 ROLES = {"thead": "rowgroup", "tbody": "rowgroup", "tr": "row", "th": "columnheader", "td": "cell"}
 """What the parts of a table are to a screen reader, however a style sheet shows them."""

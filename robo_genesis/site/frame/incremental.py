@@ -36,8 +36,7 @@ from robo_genesis.core.git import history
 from robo_genesis.pipeline.html.kept import UNFIT
 from robo_genesis.site.text.glossary import glossary_terms
 
-REPLAYS, TAKEAWAYS = "replay", "takeaways"
-"""Folders of such files in the site."""
+REPLAYS, TAKEAWAYS = "replay", "takeaways"  # Folders of such files in the site
 
 HEADS = (nodes.caption, nodes.title, nodes.literal_block)
 """What a numbered figure, table or code block has for children."""

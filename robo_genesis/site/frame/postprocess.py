@@ -53,8 +53,7 @@ CHOOSE_THEME = """
   """
 """The theme's own script does the same, but only after it has loaded."""
 
-TITLE = "page-title"
-"""The anchor of a title that has no other."""
+TITLE = "page-title"  # The anchor of a title that has no other
 
 IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
 """A picture of a page; a finished page contains its size."""

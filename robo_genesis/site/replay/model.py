@@ -27,8 +27,7 @@ Franka's 135,000 triangles."""
 SMALLEST = 400
 """Number of triangles up to which a part stays unchanged: rings would break and lamps vanish."""
 
-CREASE = np.radians(40)
-"""Angle between triangles above which an edge is drawn sharp [rad]."""
+CREASE = np.radians(40)  # Angle between triangles above which an edge is drawn sharp [rad]
 
 STILL, TARGET = "still", "target"
 """The nodes of the parts that belong to no link, and of the copies at the target."""

@@ -17,14 +17,11 @@ WIDTH, HEIGHT = 960, round(960 / ASPECT)
 GROUND = "#aab4c0"
 """Colour behind the model, as in `replay.css`."""
 
-FINER = 2
-"""Pixels drawn for one of the picture, along each side."""
+FINER = 2  # Pixels drawn for one of the picture, along each side
 
-LIGHT = np.array([0.35, 0.8, 0.5])
-"""Direction to the light, in the frame of the viewer, y up."""
+LIGHT = np.array([0.35, 0.8, 0.5])  # Direction to the light, in the frame of the viewer, y up
 
-NEAREST = 0.05
-"""Distance to the camera from which on parts are drawn [m]."""
+NEAREST = 0.05  # Distance to the camera from which on parts are drawn [m]
 
 DARKEST, BRIGHTEST = 0.35, 1.0
 """Share of a surface's colour that is seen where it faces away from the light, and towards it."""

@@ -18,12 +18,10 @@ from robo_genesis.core.channels import Run, Runs
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part, check_links, floor
 
-TILE = 0.1
-"""Width of the tiles of the floor [m]; they show its distance and the motion above it."""
+TILE = 0.1  # Width of the tiles of the floor [m]; they show its distance and the motion above it
 
 TILE_RGB = (190, 190, 190)
-RAISED = 5e-4
-"""Height of the tiles above the floor that they are drawn on [m]."""
+RAISED = 5e-4  # Height of the tiles above the floor that they are drawn on [m]
 
 AXIS_RGB, AXIS_RADIUS, AXIS_LENGTH = (240, 190, 0), 0.006, 0.4
 """Colour, radius and length of the rod along a joint's axis [m]."""
@@ -37,11 +35,9 @@ THETA, PHI = np.radians(30), np.radians(78)
 FIELD = np.radians(30)
 """Vertical angle of view [rad]: the viewer's own for pictures that are wider than high."""
 
-ASPECT = 4 / 3
-"""Width of the picture by its height, as in `replay.css`."""
+ASPECT = 4 / 3  # Width of the picture by its height, as in `replay.css`
 
-ROOM = 1.2
-"""Size of the picture by that of the motion in it."""
+ROOM = 1.2  # Size of the picture by that of the motion in it
 
 OF_LINKS = ("link_pos", "link_quat", "link_vel", "link_ang")
 """The arrays with an axis of links; free bodies have them all, robots the first two."""

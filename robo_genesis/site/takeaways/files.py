@@ -34,24 +34,20 @@ from robo_genesis.site.takeaways.notebooks import executed_notebook, student_not
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
 ENVIRONMENT = "course"
-CONSTRAINTS = "constraints.txt"
-"""The exact versions of the lock, for pip's option -c."""
+CONSTRAINTS = "constraints.txt"  # The exact versions of the lock, for pip's option -c
 NOT_SHOWN = "*(your run measures it)*"
 """Replaces in the student notebook a value that the site measured."""
 
-CHECKOUT = "robo-genesis"
-"""Replaces the folder that the site was built in."""
+CHECKOUT = "robo-genesis"  # Replaces the folder that the site was built in
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
 """The field that holds the value before the first step, where it was read."""
 
-DEBIAN = ("python3-venv", "libegl1", "libgl1")
-"""Packages of Debian that a fresh system lacks."""
+DEBIAN = ("python3-venv", "libegl1", "libgl1")  # Packages of Debian that a fresh system lacks
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
-EPOCH = "315532800"
-"""1980-01-01, the oldest time that a zip can hold."""
+EPOCH = "315532800"  # 1980-01-01, the oldest time that a zip can hold
 
 BUILD = "import sys; from setuptools import build_meta; print(build_meta.build_wheel(sys.argv[1]))"
 

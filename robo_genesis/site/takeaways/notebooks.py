@@ -15,11 +15,9 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.site.course.facts import WORK_SHEET
 from robo_genesis.site.takeaways.plain_markdown import SOLUTION, Writer, plain
 
-SITE_ONLY = "site-only"
-"""The tag of a cell that makes sense only on the site."""
+SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
 
-BEFORE = "before the run"
-"""Words in the heading of each part of the work sheet that comes first."""
+BEFORE = "before the run"  # Words in the heading of each part of the work sheet that comes first
 PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
 """The heading of a part of the work sheet."""
 NAMED = re.compile(r"\bparts?\s+(\d+)(?:\s+(?:to|and)\s+(\d+))?\s+of\s+the\s+work\s+sheet")

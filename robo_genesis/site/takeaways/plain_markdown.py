@@ -18,8 +18,7 @@ from myst_parser.parsers.mdit import create_md_parser
 from sphinx.config import Config
 from sphinx.directives.code import LiteralInclude, LiteralIncludeReader
 
-SOLUTION = "solution"
-"""The tag of a code cell and the class of a directive that contain a solution."""
+SOLUTION = "solution"  # The tag of a code cell and the class of a directive that contain a solution
 
 ADMONITIONS = ("note", "tip", "hint", "important", "attention", "caution", "warning", "danger")
 UNTITLED = {

@@ -10,8 +10,7 @@ from robo_genesis.lessons.l04 import explorer, spec, study_spec
 
 POINTS = study_spec.POINTS
 G2 = study_spec.CASE_POINTS["G2"]
-SHIPPED = 60_000
-"""Most bytes that the explorer's data may take, compressed as a server sends them."""
+SHIPPED = 60_000  # Most bytes that the explorer's data may take, compressed as a server sends them
 
 
 def cells_of(data):

@@ -15,8 +15,7 @@ from robo_genesis.lessons.l04 import spec
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-CASES = {"baseline": "baseline"} | spec.CASE_MARKS
-"""The mark of each case on the lecture."""
+CASES = {"baseline": "baseline"} | spec.CASE_MARKS  # The mark of each case on the lecture
 
 LECTURE = "lessons/l04-joint-control/lecture.html"
 TEXT = 4.5

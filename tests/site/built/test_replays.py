@@ -21,8 +21,7 @@ pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture"
 REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
-FIRST_SCREEN = (LECTURE, "lessons/l01-ready/lecture")
-"""Pages that begin with their replay."""
+FIRST_SCREEN = (LECTURE, "lessons/l01-ready/lecture")  # Pages that begin with their replay
 
 BELOW = ("link4", "link5", "link6", "link7", "hand", "left_finger", "right_finger")
 """The links that joint4 turns."""
