@@ -89,6 +89,7 @@ def clean_environment(
         "PYTHONHASHSEED": "0",
         "PYTHONNOUSERSITE": "1",
         "PYTHONPATH": str(root),
+        "QD_ENABLE_PYBUF": "0",  # with 1, each call of a compiled kernel prints an empty text
         "TZ": "UTC",
         **extra,
     }

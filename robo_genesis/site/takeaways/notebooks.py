@@ -23,9 +23,6 @@ PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
 NAMED = re.compile(r"\bparts?\s+(\d+)(?:\s+(?:to|and)\s+(\d+))?\s+of\s+the\s+work\s+sheet")
 """Words of a lab that name parts of its work sheet."""
 
-OWN_NOTE = re.compile(r"^\[I \d\d/\d\d/\d\d [\d:.]+ \d+\] .*\n?", re.MULTILINE)
-"""A note of the engine's compiler on its own process: date, time and process number."""
-
 INTRODUCTION = 2
 """The index of the lab's introduction, after the origin and the check of the versions."""
 
@@ -178,20 +175,14 @@ def _code(
     tags = list(cell.metadata.get("tags", []))
     code = new_code_cell(cell.source, metadata={"tags": tags} if tags else {})
     if ran is not None:
-        code.outputs = [output for raw in ran.outputs if (output := _output(raw))]
+        code.outputs = [_output(output) for output in ran.outputs]
         code.execution_count = ran.execution_count
     caption = cell.metadata.get("mystnb", {}).get("figure", {}).get("caption")
     return [code, *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else [])]
 
 
-def _output(output: NotebookNode) -> NotebookNode | None:
-    """Return an output, or None where it holds only notes of the compiler.
-
-    An expected error keeps only its last line: its stack contains private paths.
-    """
-    if output.output_type == "stream" and output.name == "stderr":
-        text = OWN_NOTE.sub("", output.text)
-        return NotebookNode(output | {"text": text}) if text else None
+def _output(output: NotebookNode) -> NotebookNode:
+    """Return an output; an expected error keeps only its last line: its stack has private paths."""
     if output.output_type != "error":
         return output
     return NotebookNode(output | {"traceback": [ANSI.sub("", t) for t in output.traceback[-1:]]})

@@ -13,7 +13,7 @@ from robo_genesis.pipeline.pages.kernels import clean_environment
         *((n, None) for n in ("TORCH_LOGS", "NPY_DISABLE_CPU_FEATURES", "XDG_CACHE_HOME")),
         *((n, "x") for n in ("QD_ARCH", "GS_ENABLE_ZEROCOPY", "PATH", "HIP_PATH", "MESA_DEBUG")),
         *((n, "x") for n in ("LD_LIBRARY_PATH", "NVIDIA_TF32_OVERRIDE")),
-        *(("LC_ALL", "C.UTF-8"), ("TZ", "UTC"), ("PYTHONHASHSEED", "0")),
+        *(("LC_ALL", "C.UTF-8"), ("TZ", "UTC"), ("PYTHONHASHSEED", "0"), ("QD_ENABLE_PYBUF", "0")),
         ("MPLBACKEND", "module://matplotlib_inline.backend_inline"),
         ("PYTHONPATH", "/checkout"),
         ("PYTHONNOUSERSITE", "1"),

@@ -159,14 +159,3 @@ def test_the_executed_notebook_has_outputs_and_the_solutions_only_if_the_site_ha
     assert ("SECRET code" in text) == (shown == "1")
     assert "It was 0.12 s." in text
     assert "Only on the site" not in text
-
-
-def test_notes_of_the_compiler_are_dropped_and_warnings_stay(page, tmp_path):
-    note = "[I 01/02/26 11:30:00.841 25171] [shell.py:_shell_pop_print@25] a shell\n"
-    warning = "[W 01/02/26 11:30:00.841 25171] [a.py:b@2] mind\n"
-    streams = (("stderr", note), ("stderr", f"{note}UserWarning: x\n{warning}"), ("stdout", note))
-    outputs = (new_output("stream", name=name, text=text) for name, text in streams)
-    cells, _ = executed(page, tmp_path, *outputs)
-    assert [[output.text for output in cell.outputs] for cell in cells] == [
-        [], [f"UserWarning: x\n{warning}"], [note],
-    ]  # fmt: skip
