@@ -183,5 +183,6 @@ has-packages:
 	  "Remove the link, or use that environment as it is: make PYTHON=.venv/bin/python ..." >&2; exit 1; }
 	@echo "Setting up .venv from requirements.lock (once; some minutes)"
 	@"$(BASE_PYTHON)" -m venv --clear .venv
-	@.venv/bin/python -m pip install -qq --disable-pip-version-check --requirement requirements.lock
+	@.venv/bin/python -m pip install -qq --no-compile --disable-pip-version-check --requirement requirements.lock
+	@.venv/bin/python -m compileall -qq -j 0 .venv/lib >/dev/null || true  # some packages have files that do not compile
 	@touch $@
