@@ -203,7 +203,7 @@ def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> di
 
 def nothing_compiled(environment: Mapping[str, str]) -> bool:
     """Return whether these variables name a folder for the engine's kernels, and it has none."""
-    return KERNELS in environment and not any(Path(environment[KERNELS]).iterdir())
+    return KERNELS in environment and not any(Path(environment[KERNELS]).rglob("*.qdc"))
 
 
 def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
@@ -244,7 +244,8 @@ def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
     They are the same before and after the import of the engine.
     """
     switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)}
-    # Genesis itself sets the last one at its import; it decides only how messages print.
+    # Genesis itself sets the last one at its import; it decides how messages print. A build sets it
+    # to 0. With 1, as in a reader's Jupyter, each call of a kernel prints a text and takes longer.
     switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | {"QD_ENABLE_PYBUF"}
     return {name: environment[name] for name in sorted(switches)}
 

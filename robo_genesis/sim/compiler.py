@@ -3,7 +3,7 @@
 import inspect
 import textwrap
 from functools import lru_cache
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any
 
 IMPORT = "<frozen importlib._bootstrap>"
@@ -11,7 +11,7 @@ IMPORT = "<frozen importlib._bootstrap>"
 
 
 def spare_repeated_work() -> None:
-    """Keep what the compiler asks Python's library again and again; the answers stay the same.
+    """Keep the answers that the compiler requests repeatedly from Python's library.
 
     - For each kernel it asks `inspect` for the line of source that calls the declaration. At the
       top level of a module the caller is Python's own import, which belongs to no file. `inspect`
@@ -19,7 +19,9 @@ def spare_repeated_work() -> None:
       time. The entry names no module either.
     - For each expression it wraps the line of source for the message of a possible error, and it
       does so again in each pass and in each unrolled loop.
-    - For each call of a function inside a kernel it splits the rest of a file into tokens.
+    - For each call of a function inside a kernel it splits that function's source into tokens.
+
+    An answer is that for the same line and settings, or for the same function with the same code.
     """
     if IMPORT in inspect.modulesbyfile:
         return
@@ -32,14 +34,20 @@ def spare_repeated_work() -> None:
         vars(wrapper).update(settings)
         return wrap(wrapper, text)
 
-    found = lru_cache(2**12)(lines)
+    @lru_cache(2**12)
+    def found(function: FunctionType, code: CodeType) -> tuple[list[str], int]:
+        return lines(function)
 
     def wrap_once(self: textwrap.TextWrapper, text: str) -> list[str]:
+        if type(self) is not textwrap.TextWrapper:
+            return wrap(self, text)
         return wrapped(text, tuple(vars(self).items())).copy()
 
-    def find_once(of: Any) -> tuple[list[str], int]:
-        source, number = found(of) if isinstance(of, FunctionType) else lines(of)
+    def find_once(object: Any) -> tuple[list[str], int]:
+        if not isinstance(object, FunctionType):
+            return lines(object)
+        source, number = found(object, object.__code__)
         return source.copy(), number
 
     textwrap.TextWrapper.wrap = wrap_once  # type: ignore[method-assign]
-    inspect.getsourcelines = find_once  # type: ignore[assignment]
+    inspect.getsourcelines = find_once

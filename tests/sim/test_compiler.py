@@ -53,17 +53,35 @@ def test_the_caller_of_a_declaration_is_found_without_a_search_of_all_modules(
     assert (found.filename, Searched.times) == (IMPORT, 0)
 
 
-@pytest.mark.parametrize("settings", [{"width": 20}, {"width": 30}, {"width": 20, "tabsize": 2}])
-def test_a_line_is_wrapped_once_for_each_setting(spared, settings):
-    text = "\tposition of the hand, then of the fingers"
-    expected = textwrap.wrap(text, **settings)
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ({"width": 20}, ["        place of the", "hand and the fingers"]),
+        ({"width": 60}, ["        place of the hand and the fingers"]),
+        ({"width": 20, "tabsize": 2}, ["  place of the hand", "and the fingers"]),
+    ],
+)
+def test_a_line_is_wrapped_once_for_each_setting(spared, settings, expected):
     for _ in range(3):
-        found = textwrap.TextWrapper(**settings).wrap(text)
+        found = textwrap.TextWrapper(**settings).wrap("\tplace of the hand and the fingers")
         assert found == expected
         found.append("changed by the caller")
     assert spared["wrap"] == 1
-    textwrap.fill(text, 25)
-    assert spared["wrap"] == 2
+
+
+class Shouted(textwrap.TextWrapper):
+    """A wrapper with a step of its own, and with a setting that has no hash."""
+
+    def __init__(self):
+        super().__init__()
+        self.own = []
+
+    def _split(self, text):
+        return super()._split(text.upper())
+
+
+def test_a_wrapper_of_another_class_is_left_alone(spared):
+    assert Shouted().wrap("place of the hand") == ["PLACE OF THE HAND"]
 
 
 def test_the_source_of_a_function_is_searched_once_and_that_of_anything_else_each_time(spared):
@@ -74,3 +92,15 @@ def test_the_source_of_a_function_is_searched_once_and_that_of_anything_else_eac
         assert inspect.getsource(Searched).startswith("class Searched")
     assert isinstance(textwrap.dedent, FunctionType)
     assert spared["lines"] == 3
+
+
+def test_a_function_whose_code_was_replaced_is_read_again(spared):
+    def first():
+        return 1
+
+    def second():
+        return 2
+
+    assert "return 1" in inspect.getsource(first)
+    first.__code__ = second.__code__
+    assert "return 2" in inspect.getsource(first)

@@ -6,6 +6,7 @@ import tempfile
 import time
 import uuid
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import inf
 from multiprocessing.connection import wait
@@ -111,8 +112,7 @@ def execute_pages(
     first lab of the book runs alone: the engine saves its kernels when a page ends, so pages beside
     it would compile the same ones.
 
-    A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
-    behind on Ctrl-C.
+    A `multiprocessing.Pool` waits for ever when a worker is killed, and leaves kernels on Ctrl-C.
 
     Args:
         pages: the pages of the book.
@@ -126,8 +126,8 @@ def execute_pages(
             default it is not kept.
         report: gets each event, and shows how far the running pages are; by default nothing
             is shown.
-        accept: called once for each page that was executed and did not fail, while the next page
-            runs; returns whether the page counts as one that did not fail.
+        accept: called once for each page that was executed and did not fail, after the next page
+            started; returns whether the page counts as one that did not fail.
 
     Returns:
         One result for each page, in the order of `pages`.
@@ -171,6 +171,7 @@ def execute_pages(
                 ended = []
                 if not running:
                     continue
+                _let_one_go_on(running)  # after `accept`, which would disturb what it measures
                 for connection in wait(list(running), timeout=report.pause()):
                     result = _receive(connection, *running[connection])
                     if result is None:
@@ -180,7 +181,6 @@ def execute_pages(
                     results[result.page.docname] = result
                     report.say(result.page.docname, result.ended)
                     ended.append(result)
-                _let_one_go_on(running)
                 report.show([underway for *_, underway in running.values()])
         finally:
             kill_with_descendants(process.pid for process, *_ in running.values())
@@ -238,7 +238,8 @@ def _let_one_go_on(running: Running) -> None:
     if running and all(underway.waits for *_, underway in running.values()):
         connection, (_, _, underway) = next(iter(running.items()))
         underway.waits = False
-        connection.send(True)
+        with suppress(OSError):  # it died; that is noticed where its end is received
+            connection.send(True)
 
 
 def _reused(
@@ -284,7 +285,7 @@ def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) ->
                 underway.alone = underway.waits = True
             return None
         seconds, failure = received
-    except EOFError:
+    except (EOFError, ConnectionError):
         process.join()
         cell = f" in cell {underway.cell}" if underway.cell else ""
         code = process.exitcode

@@ -186,9 +186,9 @@ def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | 
     """Return a digest of everything that decides the outputs of a page.
 
     It covers the lock, all installed versions, the version of Python, the environment contract,
-    whether the page is executed alone, the syntax of the page's cells, of the modules that they
-    import and of the modules of its lesson, the claims of checks in them, and the data files of the
-    package, except those of lessons from which nothing is imported.
+    from which cell on the page is executed alone, the syntax of the page's cells, of the modules
+    that they import and of the modules of its lesson, the claims of checks in them, and the data
+    files of the package, except those of lessons from which nothing is imported.
 
     Args:
         page: an executed page.

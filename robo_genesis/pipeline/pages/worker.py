@@ -119,19 +119,22 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         on_cell: called with the number of each code cell that starts.
     """
     notebook, error = run.page.notebook, None
+    begin = time.monotonic()
     begins: dict[int, float] = {}  # of each cell that started, by its index
     seconds: list[float] = []
 
     def cell_starts(cell: NotebookNode, cell_index: int) -> None:
+        nonlocal begin
+        asked = time.monotonic()
         on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
         CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
+        begin += begins[cell_index] - asked  # waiting for other pages is no part of the run
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False
         seconds.append(round(time.monotonic() - begins[cell_index], 3))
 
-    begin = time.monotonic()
     with tempfile.TemporaryDirectory(dir=run.scratch) as folder:
         try:
             LoggingClient(

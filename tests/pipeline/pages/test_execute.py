@@ -187,12 +187,23 @@ while len([*here.glob("met-*")]) < 3: time.sleep(0.05)"""
 ENDS = "\ntime.sleep(1)\n(here / 'ended').touch()"
 
 
+LATER = """\
+import pathlib, time
+for _ in range(20):
+    assert not pathlib.Path({place!r}, "measuring").exists()
+    time.sleep(0.05)"""
+
+
 def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
-    """Three pages meet in their first cells; two of them then measure, one after the other."""
+    """Three pages meet in their first cells; two of them then measure, one after the other.
+
+    The fourth, for which there is no room at first, waits until both have measured.
+    """
     meets = {name: MEETS.format(place=str(tmp_path), name=name) for name in "abc"}
     alone = cell(MEASURES.format(place=str(tmp_path)), ":tags: [alone]\n")
     pages = {name: notebook(cell(meets[name]), alone) for name in "ab"}
-    make_book(tmp_path, **pages, c=notebook(cell(meets["c"] + ENDS)))
+    later = notebook(cell(LATER.format(place=str(tmp_path))), cell("1", ":tags: [alone]\n"))
+    make_book(tmp_path, **pages, c=notebook(cell(meets["c"] + ENDS)), d=later)
     results = execute(tmp_path, jobs=3, timeout=20)
     assert {result.status for result in results.values()} == {"executed"}, results
 
@@ -201,7 +212,14 @@ def test_a_page_that_was_not_accepted_is_the_first_to_run_again(tmp_path):
     make_book(tmp_path, a=notebook(cell("1")), b=notebook(cell("1"), cell("2")))
     said = []
     report = Lines(lambda name, event: event and said.append((name, event[:7])))
-    results = execute(tmp_path, report=report, accept=lambda result: result.page.docname == "b")
+
+    def accept(result):
+        said.append((result.page.docname, "judged"))
+        return result.page.docname == "b"
+
+    results = execute(tmp_path, report=report, accept=accept)
+    order = [("b", "started"), ("b", "execute"), ("a", "started"), ("b", "judged")]
+    assert said[:4] == order
     marks = [failed_mark(result.folder).exists() for result in results.values()]
     assert marks == [True, False]
     execute(tmp_path, report=report, reuse=False)
@@ -215,7 +233,7 @@ def test_the_first_lab_runs_alone_while_no_kernel_is_compiled(tmp_path, saved):
     make_book(tmp_path, a=notebook(more, more), b=notebook(lab, front=LAB_FRONT), c=notebook(more))
     environment = engine_cache_environment(cache=tmp_path / "cache")
     if saved:
-        (engine_cache_folder(cache=tmp_path / "cache") / "kernels/saved").touch()
+        (engine_cache_folder(cache=tmp_path / "cache") / "kernels/saved.qdc").touch()
     said = []
     report = Lines(lambda name, event: event and said.append((name, event[:7])))
     results = execute(tmp_path, jobs=2, environment=environment, report=report)
@@ -247,7 +265,9 @@ def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest
     cells = {"a": 1, "b": 1, "c": 1, "d": 9, "e": 2}
     make_book(tmp_path, **{name: notebook(*[cell("1")] * n) for name, n in cells.items()})
     last = {name: SimpleNamespace(seconds=s) for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))}
-    found = in_order(find_pages(tmp_path / "book"), {"b": None, "e": None} | last, ["a"])
+    (tmp_path / "book/f.md").write_text(notebook(*[cell("1", ":tags: [alone]\n")] * 9), "utf8")
+    pages = find_pages(tmp_path / "book")
+    found = in_order(pages, {"b": None, "e": None} | last, ["a"])
     assert [page.docname for page in found] == ["a", "e", "b", "c", "d"]
 
 
