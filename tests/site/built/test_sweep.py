@@ -20,8 +20,8 @@ FOUND = "search.html?q=joint"
 
 
 SLOW = {"axe", "focus"}
-"""Rules that the phone's visit asks on lectures, labs and `EVERY_STATE` alone: the desktop's asks axe
-everywhere, and other pages have no kinds of controls and colours that these lack."""
+"""Rules that the phone's visit asks on lectures, labs and `EVERY_STATE` alone: the desktop's asks
+axe everywhere, and other pages have no kinds of controls and colours that these lack."""
 
 
 def of(kind: Kind, name: str) -> Kind:
