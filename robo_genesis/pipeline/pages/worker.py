@@ -129,7 +129,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
         CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
-        begin += begins[cell_index] - asked  # waiting for other pages is no part of the run
+        begin += begins[cell_index] - asked  # waiting for other pages is not part of the run
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False
