@@ -108,9 +108,9 @@ def execute_pages(
     """Execute the pages that the store does not have yet; try all of them.
 
     Those whose last run with this engine failed start first, then the longest. From its first cell
-    that is tagged `alone`, a page runs when no other page does. While no kernel is compiled, the
-    first lab of the book runs alone: the engine saves its kernels when a page ends, so pages beside
-    it would compile the same ones.
+    that is tagged `alone`, a page runs when no other page does; it starts last. While no kernel is
+    compiled, the first lab of the book runs alone: the engine saves its kernels when a page ends,
+    so pages beside it would compile the same ones.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed, and leaves kernels on Ctrl-C.
 
