@@ -194,8 +194,8 @@ def _execute(
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report.
 
-    With `verify`, a page is also verified soon after its end, so that a refusal is known early. A release
-    is executed at its commit, so it reuses nothing.
+    With `verify`, a page is also verified soon after its end, so that a refusal is known early. A
+    release is executed at its commit, so it reuses nothing.
     """
     progress("execute", f"{len(pages)} pages")
     refused: list[str] = []
