@@ -158,8 +158,11 @@ class Visit:
 
     def _with_open_folds(self, page: Page) -> None:
         page.evaluate("document.querySelectorAll('details').forEach(fold => { fold.open = true; })")
-        settle(page)
-        self.note("scroll boxes", call(page, "scroll_boxes"))
+        for _ in range(5):  # on a busy machine the browser tells the page late that a box has grown
+            settle(page)
+            if not (unmarked := call(page, "scroll_boxes")):
+                break
+        self.note("scroll boxes", unmarked)
         for width in self.kind.widths:
             page.set_viewport_size({"width": width, "height": self.kind.size[1]})
             drawn(page)
