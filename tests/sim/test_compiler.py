@@ -5,7 +5,7 @@ import inspect
 import sys
 import textwrap
 from collections import Counter
-from types import FunctionType, ModuleType
+from types import ModuleType
 
 import pytest
 
@@ -26,7 +26,8 @@ def spared(monkeypatch):
 
     monkeypatch.setattr(textwrap.TextWrapper, "wrap", counted("wrap", wrap))
     monkeypatch.setattr(inspect, "getsourcelines", counted("lines", lines))
-    spare_repeated_work()
+    for _ in range(2):  # the second time changes nothing
+        spare_repeated_work()
     return asked
 
 
@@ -90,7 +91,6 @@ def test_the_source_of_a_function_is_searched_once_and_that_of_anything_else_eac
         assert (source[0], line) == ("def dedent(text):\n", textwrap.dedent.__code__.co_firstlineno)
         source.clear()
         assert inspect.getsource(Searched).startswith("class Searched")
-    assert isinstance(textwrap.dedent, FunctionType)
     assert spared["lines"] == 3
 
 

@@ -173,9 +173,15 @@ def test_a_changed_cell_counts_and_a_comment_does_not(root, page, code, counts):
     assert (key(changed, root) != key(page, root)) == counts
 
 
+TIMES = "throughput.measure("
+
+
 def test_a_page_that_runs_alone_records_elapsed_times():
     alone = [page for page in PAGES if page.alone]
-    assert alone
+    timed = {
+        p.docname: n for p in PAGES for n, code in enumerate(p.code.sources, 1) if TIMES in code
+    }
+    assert timed == {page.docname: page.alone for page in alone} != {}  # a misspelt tag is noticed
     for page in alone:
         groups = LESSONS[page.lesson].pages[page.page].groups(True).values()
         assert any(group.kind == "performance" for group in groups), page.docname

@@ -19,21 +19,8 @@ FOUND = "search.html?q=joint"
 """Its results come one after the other, so they move the page and weigh what all pages weigh."""
 
 
-SLOW = {"axe", "focus"}
-"""Rules that the phone's visit asks on `EVERY_STATE` and these pages alone: they have all kinds of
-controls. The desktop's asks axe everywhere."""
-THOROUGH = (
-    "lecture.html", "lab.html", "deeper-cameras.html", "deeper-many-solutions.html", "404.html",
-    "ledger.html",
-)  # fmt: skip
-
-
 def of(kind: Kind, name: str) -> Kind:
-    if name == FOUND:
-        return replace(kind, rules=IN_EVERY_COLOUR)
-    if kind is KINDS["phone"] and not (name in EVERY_STATE or name.endswith(THOROUGH)):
-        return replace(kind, rules=tuple({*kind.rules} - SLOW), axe={})
-    return kind
+    return replace(kind, rules=IN_EVERY_COLOUR) if name == FOUND else kind
 
 
 @pytest.fixture(scope="module")
