@@ -42,6 +42,13 @@
     for (const element of [box, ...box.children]) observer.observe(element);
   }
 
+  /* A fold that opens: the observer can miss a box whose size is the one that it last told. */
+  document.addEventListener(
+    "toggle",
+    ({ target }) => target.querySelectorAll(BOXES).forEach(mark),
+    true, // the event does not bubble
+  );
+
   /* An element that gets the focus inside such a box is scrolled into full view. */
   document.addEventListener("focusin", ({ target }) => {
     if (target.closest(`main .scroll-box, ${BOXES}`)) {
