@@ -105,6 +105,7 @@ def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser_
     page.goto(f"{address}/{name}.html")
     play = page.locator(".replay .play").first.bounding_box()
     assert play["y"] + play["height"] < 844 or name not in FIRST_SCREEN
+    page.emulate_media(reduced_motion="reduce")  # the theme's menu would slide in after a change
     for width in (1280, 320):
         page.set_viewport_size({"width": width, "height": 800})
         assert call(page, "too_wide") == []
