@@ -19,8 +19,7 @@ Subject = TypeVar("Subject")
 Value = bool | int | float | str | None
 
 
-FAILED = "failed"
-"""The code of the refusal of a bundle in which a check fails."""
+FAILED = "failed"  # The code of the refusal of a bundle in which a check fails
 
 
 class CheckFailed(AssertionError):  # noqa: N818 - read aloud: check failed

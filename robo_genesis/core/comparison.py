@@ -17,8 +17,7 @@ HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"
 SAME_FLOAT = 1e-9
 """Relative tolerance of a recorded value against the one that is computed again."""
 
-ROUNDING = 1e-12
-"""Tolerance of such a value near zero, in its own unit."""
+ROUNDING = 1e-12  # Tolerance of such a value near zero, in its own unit
 
 Relation = tuple[tuple[str, str], str, str, float]
 """A claimed ordering: (first case, second case), metric, order, margin."""

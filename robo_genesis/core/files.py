@@ -20,8 +20,7 @@ from robo_genesis.core.project import CACHE, ProjectError, installed, lock_diges
 
 NEXT, OLD = ".next", ".old"
 DIGEST = hashlib.sha256().digest_size
-KEPT = 30 * 24 * 3600
-"""Seconds until an unused file is removed."""
+KEPT = 30 * 24 * 3600  # Seconds until an unused file is removed
 
 MADE_BY_TOOLS = ("__pycache__", ".ipynb_checkpoints")
 NO_SOURCE = ("__pycache__", ".*", "*~", "#*#", "*.bak", "*.orig", "*.rej")

@@ -6,8 +6,7 @@ from pathlib import Path
 
 from robo_genesis.core.project import ProjectError
 
-SHOWN = 5
-"""Number of changed files that a message names."""
+SHOWN = 5  # Number of changed files that a message names
 
 
 def git(root: Path, *arguments: str, **variables: str) -> str:

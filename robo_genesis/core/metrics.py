@@ -12,8 +12,7 @@ Kind = Literal["value", "exact", "performance"]
 
 Record = dict[str, Any]
 
-ENGINE = ["engine"]
-"""The source of a value that the engine reported and that is in no array."""
+ENGINE = ["engine"]  # The source of a value that the engine reported and that is in no array
 
 
 class Stored(NamedTuple):

@@ -22,8 +22,7 @@ from robo_genesis.core.trace import BodyTrace, Trace
 
 MEASURES = False
 
-WIDTH = 4.25
-"""Of each figure [inch]: about the width of a phone's page."""
+WIDTH = 4.25  # Of each figure [inch]: about the width of a phone's page
 
 LINE: dict[str, Any] = {"color": PARTS["line"].light, "linewidth": 0.9, "zorder": 1}
 """A thin solid line for a target or for zero."""

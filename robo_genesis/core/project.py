@@ -15,8 +15,7 @@ MEASURES = False
 
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
-PUBLISHED = "_build"
-"""The folder of a book that holds its published site."""
+PUBLISHED = "_build"  # The folder of a book that holds its published site
 
 CACHE = ROOT / ".cache"
 STORE, COMPILED, RECORDING, LOGS = "pages", "engine", "recording", "logs"
@@ -27,8 +26,7 @@ KEPT, STAGING = "render", "staging"
 
 ENGINE = "genesis-world"
 COURSE = "robo-genesis"
-BUILD_BACKEND = "cpu"
-"""What every page of the site is executed on."""
+BUILD_BACKEND = "cpu"  # What every page of the site is executed on
 
 # Environment variables by which commands, pages and Sphinx tell each other.
 BACKEND, RENDER = "ROBO_GENESIS_BACKEND", "ROBO_GENESIS_RENDER"
@@ -43,8 +41,7 @@ the modules of the course that the page imports."""
 EXECUTED_PAGES = "ROBO_GENESIS_EXECUTED_PAGES"
 """What a build tells Sphinx: the file that lists the executed pages, see `build.built_pages`."""
 
-SOLUTIONS = "SOLUTIONS"
-"""0: the site has no solutions and answers, see `site.solutions`."""
+SOLUTIONS = "SOLUTIONS"  # 0: the site has no solutions and answers, see `site.solutions`
 
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = (

@@ -5,17 +5,14 @@ from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.floating]
 
-DT = 0.01
-"""Outer time step that one `scene.step()` advances [s]."""
+DT = 0.01  # Outer time step that one `scene.step()` advances [s]
 
-SUBSTEPS = 2
-"""Solver steps inside one outer step; one lasts DT / SUBSTEPS."""
+SUBSTEPS = 2  # Solver steps inside one outer step; one lasts DT / SUBSTEPS
 
 SEED = 0
 """Seed of every run. It is part of the key of compiled kernels, so all pages use one value."""
 
-CAMERA_RES = (720, 540)
-"""Width and height of a camera frame [pixel]."""
+CAMERA_RES = (720, 540)  # Width and height of a camera frame [pixel]
 
 CAMERA = {
     "res": CAMERA_RES,

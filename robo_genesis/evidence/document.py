@@ -16,8 +16,7 @@ from robo_genesis.evidence.rows import SEVERITY
 
 Cells = tuple[str, ...]
 
-PAGE = Path(__file__).with_suffix(".html")
-"""The page around the body, with its style sheet."""
+PAGE = Path(__file__).with_suffix(".html")  # The page around the body, with its style sheet
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,8 +30,7 @@ FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 STATED = ("backend", "device", "engine version", "seed", "precision")
 """The facts that the log of the pinned version states: where it runs, and how it was started."""
 
-CLOCKS = timedelta(days=1)
-"""Allowed difference between the clocks of two machines."""
+CLOCKS = timedelta(days=1)  # Allowed difference between the clocks of two machines
 
 LEVELS = "WARNING|ERROR|CRITICAL"
 WARNING = re.compile(rf"^(?:{LEVELS}) (.*?)\n?(?=^(?:DEBUG|INFO|{LEVELS}) |\Z)", re.M | re.S)

@@ -16,8 +16,7 @@ KEY = b"run_id\0"
 LEFT = 1
 """The filter of every row: each pixel is stored as its difference from the one on its left."""
 
-TEXT_PLACE = 33
-"""Where the chunk of text begins, after the signature and the header."""
+TEXT_PLACE = 33  # Where the chunk of text begins, after the signature and the header
 
 
 def write_picture(path: Path, frame: np.ndarray, run_id: str) -> None:

@@ -30,8 +30,7 @@ FILES = ("pyproject.toml", "requirements.lock")
 FAILED = re.compile(r"^\[ *[\d.]+ s\] \w+ +(.+?)  (failed|refused)\b.*?: (.+)\n", re.MULTILINE)
 """The line of `make book` for a page that failed or whose bundle is refused, and why."""
 
-LINES = 50
-"""How many last lines of a log an error and the report show."""
+LINES = 50  # How many last lines of a log an error and the report show
 
 
 def run_repin(

@@ -8,8 +8,7 @@ from robo_genesis.evidence.bundle import sha256
 from robo_genesis.pipeline.pages.folder import plain_files, read_record
 from robo_genesis.pipeline.pages.store import exported_folders
 
-ARRAYS = ".npz"
-"""Ends the name of an archive of arrays. Its bytes depend on the arrays alone."""
+ARRAYS = ".npz"  # Ends the name of an archive of arrays. Its bytes depend on the arrays alone.
 
 Digests = dict[str, str]
 """The SHA-256 of each archive of one page, by its name in the folder of the page."""

@@ -17,13 +17,10 @@ from typing import Any
 from robo_genesis.core.project import BACKEND, BOOK, BUILD_BACKEND, CACHE, RENDER, ProjectError
 from robo_genesis.evidence.refusals import BundleRefused
 
-TIMEOUT = 1500
-"""Seconds for one cell; a page's front matter may set another."""
+TIMEOUT = 1500  # Seconds for one cell; a page's front matter may set another
 
-PR_SET_PDEATHSIG = 1
-"""The request of <linux/prctl.h> for a signal at the end of the parent."""
-ANSI = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
-"""A colour, or another code of a terminal."""
+PR_SET_PDEATHSIG = 1  # The request of <linux/prctl.h> for a signal at the end of the parent
+ANSI = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")  # A colour, or another code of a terminal
 
 say = partial(print, flush=True)
 

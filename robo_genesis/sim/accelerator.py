@@ -20,8 +20,7 @@ from robo_genesis.sim import torch_probe
 from robo_genesis.sim.backends import DRIVERS, driver_version
 from robo_genesis.sim.diagnosis import DoubtError, StepError, StepResult, run_steps
 
-PROBE_SECONDS = 180
-"""Until Torch must have answered."""
+PROBE_SECONDS = 180  # Until Torch must have answered
 
 VISIBILITY = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
 ROCM_FOLDERS = ("opt/rocm", "opt/rocm-7.0.0", "opt/rocm-6.0.0")

@@ -14,8 +14,7 @@ BACKENDS = {
 }
 """Actual backend → architectures of Quadrants, device of Torch. ROCm calls its device `cuda`."""
 
-DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}
-"""Kernel module of each accelerator's driver."""
+DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}  # Kernel module of each accelerator's driver
 
 BUILDS = {"cpu": (False, False), "rocm": (True, False), "cu": (False, True)}
 """Tag of a build of Torch, without its version → whether that build has HIP, and CUDA."""

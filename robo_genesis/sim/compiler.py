@@ -1,32 +1,44 @@
-"""Work that the engine's compiler repeats, and that a process can be spared."""
+"""Work that the engine repeats, and that a process can be spared."""
 
 import inspect
+import sys
 import textwrap
+import traceback
 from functools import lru_cache
 from types import CodeType, FunctionType
 from typing import Any
 
-IMPORT = "<frozen importlib._bootstrap>"
-"""What Python names as the file of its own import."""
+IMPORT = "<frozen importlib._bootstrap>"  # What Python names as the file of its own import
+
+FRAMES = 10  # Of the calls that lead to an array of the engine; a cell of a notebook has 50 more
 
 
 def spare_repeated_work() -> None:
-    """Keep the answers that the compiler requests repeatedly from Python's library.
+    """Keep the answers that the engine requests repeatedly from Python's library and trimesh.
 
-    - For each kernel it asks `inspect` for the line of source that calls the declaration. At the
-      top level of a module the caller is Python's own import, which belongs to no file. `inspect`
+    - For each kernel the compiler asks `inspect` for the line of source that calls the declaration.
+      At the top level of a module the caller is Python's own import, in no file. `inspect`
       keeps what it finds, but not that it found nothing, so it would search all 3000 modules every
       time. The entry names no module either.
     - For each expression it wraps the line of source for the message of a possible error, and it
       does so again in each pass and in each unrolled loop.
     - For each call of a function inside a kernel it splits that function's source into tokens.
+    - For each array it writes down all calls that led there, for the message of a possible error.
+      Here these are the last `FRAMES`.
+    - In each scene, for each pair of links that could touch, the engine fills both meshes with
+      small cubes.
 
-    An answer is that for the same line and settings, or for the same function with the same code.
+    An answer is that for the same line and settings, for the same function with the same code, or
+    for a mesh with the same numbers.
     """
     if IMPORT in inspect.modulesbyfile:
         return
+    from trimesh import Trimesh
+
     inspect.modulesbyfile[IMPORT] = ""
     wrap, lines = textwrap.TextWrapper.wrap, inspect.getsourcelines
+    stack, voxelized = traceback.extract_stack, Trimesh.voxelized
+    filled: dict[tuple[bytes, bytes, str], Any] = {}
 
     @lru_cache(2**16)
     def wrapped(text: str, settings: tuple[tuple[str, Any], ...]) -> list[str]:
@@ -49,5 +61,18 @@ def spare_repeated_work() -> None:
         source, number = found(object, object.__code__)
         return source.copy(), number
 
+    def last_calls(f: Any = None, limit: int | None = None) -> traceback.StackSummary:
+        f = f or sys._getframe(1)
+        engine = f.f_globals.get("__name__") == "quadrants.lang.util"
+        return stack(f, FRAMES if engine and limit is None else limit)
+
+    def fill_once(self: Any, *given: Any, **settings: Any) -> Any:
+        key = self.vertices.tobytes(), self.faces.tobytes(), str((given, settings))
+        if key not in filled:
+            filled[key] = voxelized(self, *given, **settings)
+        return filled[key].copy()
+
     textwrap.TextWrapper.wrap = wrap_once  # type: ignore[method-assign]
     inspect.getsourcelines = find_once
+    traceback.extract_stack = last_calls
+    Trimesh.voxelized = fill_once  # type: ignore[method-assign]

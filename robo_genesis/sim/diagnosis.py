@@ -20,15 +20,13 @@ from robo_genesis.sim.arm import franka, joint_control
 from robo_genesis.sim.arm import joints as robot_model
 from robo_genesis.sim.camera import frames as camera
 
-STEPPED_JOINT, ANGLE = "joint4", 0.25
-"""The joint that the run commands, and by how much [rad]."""
+STEPPED_JOINT, ANGLE = "joint4", 0.25  # The joint that the run commands, and by how much [rad]
 
 BASELINE = joint_control.ControlCase(
     q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT), steps=120
 )
 
-AT_LIMIT = 0.99
-"""Share of the effort limit from which a sample counts as clipped."""
+AT_LIMIT = 0.99  # Share of the effort limit from which a sample counts as clipped
 
 
 class StepError(RuntimeError):

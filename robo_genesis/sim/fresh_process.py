@@ -7,8 +7,7 @@ import sys
 from collections.abc import Collection, Mapping
 from typing import Any
 
-TIMEOUT = 600
-"""Seconds until a process counts as hanging."""
+TIMEOUT = 600  # Seconds until a process counts as hanging
 
 
 class StartError(RuntimeError):

@@ -18,11 +18,9 @@ from robo_genesis.core.trace import TimeSeries
 
 MEASURES = False
 
-TIME = 1e-9
-"""Tolerance of a time against k · dt [s]; both are computed in float64."""
+TIME = 1e-9  # Tolerance of a time against k · dt [s]; both are computed in float64
 
-UNIT = 1e-5
-"""Tolerance of the norm of a quaternion; runs of the engine have at most 2e-7."""
+UNIT = 1e-5  # Tolerance of the norm of a quaternion; runs of the engine have at most 2e-7
 
 ZERO, UNTURNED = np.zeros(()), np.array([1.0, 0, 0, 0])
 """Expected values of what is zero, and of the quaternion of a body that has not turned."""

@@ -25,8 +25,7 @@ from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
 """Valid values of the variables of the contract; the first is the default."""
 
-LIBRARIES = ("libEGL.so.1", "libGL.so.1")
-"""What the engine needs even without a camera."""
+LIBRARIES = ("libEGL.so.1", "libGL.so.1")  # What the engine needs even without a camera
 
 PRECISION = "32"
 ARGUMENTS = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}

@@ -12,8 +12,7 @@ import numpy as np
 
 from robo_genesis.sim.arm.joints import to_numpy
 
-MIB = 2**20
-"""Bytes of one MiB."""
+MIB = 2**20  # Bytes of one MiB
 
 # On an accelerator, the first call returns before the step is done.
 Calls = tuple[Callable[[], Any], Callable[[], Any]]

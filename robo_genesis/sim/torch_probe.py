@@ -13,8 +13,7 @@ from pathlib import Path
 RUNTIME = "libamdhip64.so"
 """The name by which the engine's compiler opens the HIP runtime; its wheel names no folder."""
 
-NUMBERS, SUM = 8, 140
-"""The card adds the squares of so many numbers from 0; the sum."""
+NUMBERS, SUM = 8, 140  # The card adds the squares of so many numbers from 0; the sum
 
 
 def say(**facts: object) -> None:

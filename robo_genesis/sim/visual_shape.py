@@ -12,8 +12,7 @@ from robo_genesis.sim.arm.kinematics import rotate
 
 FILE = "shape.npz"
 
-WORLD = "world"
-"""The link of fixed parts; their frame is that of the record, z up."""
+WORLD = "world"  # The link of fixed parts; their frame is that of the record, z up
 
 FLOOR_RGB = (205, 205, 205)
 

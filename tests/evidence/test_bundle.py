@@ -2,12 +2,7 @@ import pytest
 from spoilers import part
 
 from robo_genesis.core.comparison import agree, differences
-from robo_genesis.evidence.bundle import (
-    BundleRefused,
-    Digest,
-    evidence_key,
-    read_manifest,
-)
+from robo_genesis.evidence.bundle import BundleRefused, Digest, evidence_key, read_manifest
 from robo_genesis.evidence.copies import same_times
 
 

@@ -242,10 +242,7 @@ def test_arrays_without_a_tolerance_are_equal(compared, monkeypatch):
     [
         (pad("log.txt"), "too-big: {}: log.txt: number of bytes is"),
         (write(METRICS, "{}"), "digest: {}: metrics.json: sha256 is"),
-        (
-            both(predicate(lesson="l02"), seal),
-            "is of l04/lab, {} of l02/lab. Give two bundles",
-        ),
+        (both(predicate(lesson="l02"), seal), "is of l04/lab, {} of l02/lab. Give two bundles"),
         (both(predicate(lesson="l99"), seal), "lesson: Lesson 'l99' does not exist. Choices: l01"),
     ],
 )

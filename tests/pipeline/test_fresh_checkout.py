@@ -109,13 +109,7 @@ def configured_by_the_user(root, monkeypatch):
 
 @pytest.mark.parametrize(
     "spoil",
-    [
-        hidden_changes,
-        stale_bytecode,
-        other_repository,
-        replaced_object,
-        configured_by_the_user,
-    ],
+    [hidden_changes, stale_bytecode, other_repository, replaced_object, configured_by_the_user],
 )
 def test_a_release_sees_the_files_of_its_commit_and_no_others(root, monkeypatch, spoil):
     spoil(root, monkeypatch)

@@ -1,15 +1,18 @@
-"""Work that the engine's compiler is spared: the answers of Python's library stay the same."""
+"""Work that the engine is spared: the answers of Python's library and of trimesh stay the same."""
 
 import importlib
 import inspect
 import sys
 import textwrap
+import traceback
 from collections import Counter
 from types import ModuleType
 
+import numpy as np
 import pytest
+from trimesh import Trimesh, creation
 
-from robo_genesis.sim.compiler import spare_repeated_work
+from robo_genesis.sim.compiler import FRAMES, spare_repeated_work
 
 IMPORT = "<frozen importlib._bootstrap>"
 
@@ -22,8 +25,10 @@ def spared(monkeypatch):
     inspect.modulesbyfile.pop(IMPORT, None)
 
     def counted(name, function):
-        return lambda *given: (asked.update([name]), function(*given))[1]
+        return lambda *given, **how: (asked.update([name]), function(*given, **how))[1]
 
+    monkeypatch.setattr(Trimesh, "voxelized", counted("filled", Trimesh.voxelized))
+    monkeypatch.setattr(traceback, "extract_stack", traceback.extract_stack)
     monkeypatch.setattr(textwrap.TextWrapper, "wrap", counted("wrap", wrap))
     monkeypatch.setattr(inspect, "getsourcelines", counted("lines", lines))
     for _ in range(2):  # the second time changes nothing
@@ -104,3 +109,28 @@ def test_a_function_whose_code_was_replaced_is_read_again(spared):
     assert "return 1" in inspect.getsource(first)
     first.__code__ = second.__code__
     assert "return 2" in inspect.getsource(first)
+
+
+def test_equal_meshes_are_filled_once_for_each_size_of_the_cubes_and_others_anew(spared):
+    boxes = [creation.box((0.2, 0.1, width)) for width in (0.1, 0.1, 0.3)]
+    found = [box.voxelized(pitch=pitch).matrix for box in boxes for pitch in (0.02, 0.05)]
+    assert spared["filled"] == 4
+    assert np.array_equal(found[0], found[2])
+    assert np.array_equal(found[1], found[3])
+    shapes = [matrix.shape for matrix in found]
+    assert len({*shapes}) == 4
+    points = boxes[0].voxelized(pitch=0.02).points
+    boxes[0].voxelized(pitch=0.02).apply_scale(2)
+    assert np.array_equal(boxes[1].voxelized(pitch=0.02).points, points)
+
+
+def calls(depth):
+    """Ask for the calls that lead here, below `depth` more."""
+    return calls(depth - 1) if depth else traceback.extract_stack()
+
+
+@pytest.mark.parametrize(("asks", "short"), [("a_page", False), ("quadrants.lang.util", True)])
+def test_the_engine_alone_gets_the_last_calls_only(spared, monkeypatch, asks, short):
+    monkeypatch.setitem(globals(), "__name__", asks)
+    found = [frame.name for frame in calls(20)]
+    assert (found[-FRAMES:], len(found) == FRAMES) == (["calls"] * FRAMES, short)

@@ -47,9 +47,16 @@ class Page:
 
         From there on it measures time: no other page is executed meanwhile.
         """
+        return next((n for n, tags in enumerate(self._tags(), 1) if "alone" in tags), None)
+
+    @property
+    def own_kernels(self) -> bool:
+        """Whether its first long cell is tagged `own-kernels`: it compiles in its own folder."""
+        return any("own-kernels" in tags for tags in self._tags())
+
+    def _tags(self) -> list[list[str]]:
         cells = (cell for cell in self.notebook.cells if cell.cell_type == "code")
-        tagged = (n for n, cell in enumerate(cells, 1) if "alone" in cell.metadata.get("tags", ()))
-        return next(tagged, None)
+        return [cell.metadata.get("tags", []) for cell in cells]
 
     @property
     def code(self) -> Code:

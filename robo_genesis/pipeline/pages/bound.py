@@ -35,8 +35,7 @@ SHOW, FINISH = "page.show", "page.finish"
 
 AGAIN = "Do not edit executed pages: execute the page again."
 ONCE = "Call page.show once for each output, outside of loops and conditions."
-BOUNDARY = 60
-"""Characters that a message shows on both sides of a difference."""
+BOUNDARY = 60  # Characters that a message shows on both sides of a difference
 
 NEAR = 0.1
 """Difference up to which coordinates count as equal [px]: other processors round differently."""

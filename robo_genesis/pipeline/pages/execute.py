@@ -108,9 +108,9 @@ def execute_pages(
     """Execute the pages that the store does not have yet; try all of them.
 
     Those whose last run with this engine failed start first, then the longest. From its first cell
-    that is tagged `alone`, a page runs when no other page does; it starts last. While no kernel is
-    compiled, the first lab of the book runs alone: the engine saves its kernels when a page ends,
-    so pages beside it would compile the same ones.
+    tagged `alone`, a page runs when no other does; it starts last. While no kernel is compiled, the
+    first lab runs, beside it only pages with kernels of their own: the engine saves kernels when a
+    page ends, so others would compile the same ones.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed, and leaves kernels on Ctrl-C.
 
@@ -129,8 +129,7 @@ def execute_pages(
         accept: called once for each page that was executed and did not fail, after the next page
             started; returns whether the page counts as one that did not fail.
 
-    Returns:
-        One result for each page, in the order of `pages`.
+    Returns: one result for each page, in the order of `pages`.
 
     Raises:
         OSError: the store cannot be used.
@@ -142,9 +141,10 @@ def execute_pages(
     failed = [page.docname for page in waiting if failed_mark(places[page.docname]).exists()]
     labs = [page for page in waiting if page.page == "lab"]
     waiting = in_order(waiting, last, failed)
-    if cold := bool(labs) and project.nothing_compiled(environment):
-        waiting.remove(labs[0])
-        waiting.insert(0, labs[0])
+    first = []
+    if labs and project.nothing_compiled(environment):
+        first = [labs[0], *(page for page in waiting if page.own_kernels)]
+        waiting.sort(key=lambda page: page not in first)
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
@@ -153,7 +153,7 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running or ended:
-                while waiting and len(running) < (1 if cold or _alone(running) else jobs):
+                while waiting and len(running) < _most(running, len(first) or jobs, jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -177,7 +177,7 @@ def execute_pages(
                     if result is None:
                         continue
                     del running[connection]
-                    cold = False
+                    first = []
                     results[result.page.docname] = result
                     report.say(result.page.docname, result.ended)
                     ended.append(result)
@@ -228,9 +228,9 @@ def in_order(
     return sorted(pages, key=sooner)
 
 
-def _alone(running: Running) -> bool:
-    """Return whether a page that runs must have no other beside it, or waits for that."""
-    return any(underway.alone for *_, underway in running.values())
+def _most(running: Running, cold: int, jobs: int) -> int:
+    """Return how many pages may run at once: one where it is alone, or waits for that."""
+    return 1 if any(underway.alone for *_, underway in running.values()) else min(cold, jobs)
 
 
 def _let_one_go_on(running: Running) -> None:

@@ -21,8 +21,7 @@ FONTS = (".ttf", ".otf", ".ttc", ".afm")
 
 RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")
-OWN = os.O_TRUNC | os.O_EXCL
-"""The flags of a file that the process makes or empties."""
+OWN = os.O_TRUNC | os.O_EXCL  # The flags of a file that the process makes or empties
 
 
 def start() -> None:

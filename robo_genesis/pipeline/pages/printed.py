@@ -24,8 +24,7 @@ from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.strict_json import write_json
 
 TEXTS = ("text/plain", "text/markdown")
-OPTION = "prints"
-"""The option of a cell that names the measured values which it prints."""
+OPTION = "prints"  # The option of a cell that names the measured values which it prints
 
 DECIMAL = re.compile(r"(?<![\w.])[-+−]?\d+\.\d+(?:e[-+]?\d+)?(?!\.?\d)")
 LOG = re.compile(r"^\[Genesis\].*", re.MULTILINE)

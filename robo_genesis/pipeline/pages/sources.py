@@ -33,8 +33,7 @@ if TYPE_CHECKING:  # a verification loads no Jupyter
 
 USED_BY_NO_PAGE = ("maintain", "site")
 
-COMPUTING = ("core", "sim", "lessons")
-"""The sub-packages with modules that measure."""
+COMPUTING = ("core", "sim", "lessons")  # The sub-packages with modules that measure
 
 MEASURES_NOTHING = re.compile(r"^MEASURES = False$", re.MULTILINE)
 """How a module says that no measured value depends on it, and so no evidence key."""

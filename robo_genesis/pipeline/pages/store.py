@@ -27,8 +27,7 @@ from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint, require_
 Verify = Callable[[Path, str], Any]
 """Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""
 
-KEPT = 3
-"""Folders that are kept of each page; RENDER=0 and RENDER=1 have one each."""
+KEPT = 3  # Folders that are kept of each page; RENDER=0 and RENDER=1 have one each
 AGAIN = "Execute these pages again, from this commit and this lock: make execute PAGE=… TO=folder"
 
 

@@ -11,8 +11,7 @@ from typing import Any
 from robo_genesis.core.files import derived_value, json_digest
 
 PACKAGE = "robo_genesis"
-NOT_CODE = ("kind", "type_comment")
-"""Fields of a syntax tree that decide nothing."""
+NOT_CODE = ("kind", "type_comment")  # Fields of a syntax tree that decide nothing
 
 
 @lru_cache(maxsize=1024)

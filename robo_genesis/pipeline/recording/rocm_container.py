@@ -14,8 +14,7 @@ from pathlib import Path
 ENGINES = ("docker", "podman")
 IMAGE = "robo-genesis-rocm"
 DOCKERFILE = ".rocm/Dockerfile"
-PLACE = "/course"
-"""Where the container sees the checkout."""
+PLACE = "/course"  # Where the container sees the checkout
 
 DEVICES = (Path("/dev/kfd"), Path("/dev/dri"))
 """Compute interface of all AMD GPUs, and the folder with a node for each of them."""

@@ -12,8 +12,7 @@ from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM, accepted, distances
 
 END_EFFECTOR = "hand"
-MOVED = JOINT_NAMES[:ARM]
-"""The joints of the Franka that the solver may move."""
+MOVED = JOINT_NAMES[:ARM]  # The joints of the Franka that the solver may move
 
 
 class KinematicsError(ValueError):

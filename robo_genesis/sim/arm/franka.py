@@ -20,8 +20,7 @@ MODEL_COUNTS = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
 LINK_PARENTS = (-1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8)
 """For each link the index of its parent, -1 for the base; both fingers belong to the hand."""
 
-JOINT_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2
-"""Type of each joint of `JOINT_NAMES`."""
+JOINT_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2  # Type of each joint of `JOINT_NAMES`
 
 
 def per_joint(*values: float) -> FloatArray:

@@ -30,8 +30,7 @@ CHAIN = (
     ("hand", (0.0, 0.0, 0.107), (0.9238795, 0.0, 0.0, -0.3826834)),
 )
 
-ARM = len(CHAIN) - 1
-"""Number of joints of the arm."""
+ARM = len(CHAIN) - 1  # Number of joints of the arm
 
 HAND = LINK_PARENTS[-1]
 """Index of the hand among the links of the arrays: the parent of both fingers."""
@@ -205,8 +204,7 @@ def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatAr
     return np.asarray(np.minimum(q - lower, upper - q).min(axis=-1))
 
 
-EQUAL = np.ones(6)
-"""Weights with which a metre counts as much as a radian."""
+EQUAL = np.ones(6)  # Weights with which a metre counts as much as a radian
 
 
 def solve(

@@ -8,8 +8,7 @@ from robo_genesis.sim.arm.engine_kinematics import IkSettings
 
 MEASURES = False
 
-IK = IkSettings()
-"""Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each."""
+IK = IkSettings()  # Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each
 
 ONE_START = replace(IK, samples=1, iterations=100)
 """The same without starts of the engine's choice, so that an answer depends on its start alone."""
@@ -20,8 +19,7 @@ DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 """A target that no posture of the arm comes near to [m]."""
 
-MARKER_RADIUS = 0.03
-"""Radius of a sphere that marks a target [m]; nothing collides with it."""
+MARKER_RADIUS = 0.03  # Radius of a sphere that marks a target [m]; nothing collides with it
 
 RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
 """By unit: values that differ by no more than this are called equal, the noise floor."""

@@ -15,8 +15,7 @@ from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stack
 SURFACE_SIZE = (2.0, 0.8, 0.05)
 """Length, width and thickness of the fixed box under the bodies [m]."""
 
-TOP = 0.725
-"""Height of its upper face [m]."""
+TOP = 0.725  # Height of its upper face [m]
 
 SHARED = (
     "surface_friction", "duration", "settle", "dt", "substeps", "cone", "resolution", "impratio",

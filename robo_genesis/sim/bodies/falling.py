@@ -19,8 +19,7 @@ from robo_genesis.sim.laws import UNTURNED, ZERO, apart, kept, times, unit_quate
 
 MEASURES = False
 
-FALLEN, FALLING = 5e-6, 1e-4
-"""Tolerances of place [m] and velocity [m/s]."""
+FALLEN, FALLING = 5e-6, 1e-4  # Tolerances of place [m] and velocity [m/s]
 
 
 def free_fall(run: Any) -> Iterator[Finding]:

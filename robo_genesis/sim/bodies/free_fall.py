@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike
 
 from robo_genesis.core.scene import FloatArray
 
-GRAVITY = 9.81
-"""Magnitude of the engine's default acceleration of gravity [m/s²]."""
+GRAVITY = 9.81  # Magnitude of the engine's default acceleration of gravity [m/s²]
 
 
 def continuous_drop(t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:

@@ -13,11 +13,9 @@ from robo_genesis.core.experiment import Experiment, Readings
 from robo_genesis.core.scene import CAMERA_RES, FloatArray
 from robo_genesis.sim.camera.views import View
 
-DEPTH_UNIT = 1e-5
-"""Resolution of a recorded depth [m]; 24 bits reach 167 m."""
+DEPTH_UNIT = 1e-5  # Resolution of a recorded depth [m]; 24 bits reach 167 m
 
-SEGMENTS = "segments"
-"""Group of counts: the numbers of things in the segmentation, by name."""
+SEGMENTS = "segments"  # Group of counts: the numbers of things in the segmentation, by name
 
 PICTURES = ("rgb", "depth", "segmentation")
 

@@ -16,8 +16,7 @@ VERSION = version("mujoco")
 DEFAULT_TIME_CONSTANT = 0.01
 """Default of Genesis for contacts, unless two solver steps are longer [s]."""
 
-OWN_TIME_CONSTANT = 0.02
-"""MuJoCo's default [s]."""
+OWN_TIME_CONSTANT = 0.02  # MuJoCo's default [s]
 
 MOTION = ("link_pos", "link_quat", "link_vel", "link_ang")
 """The arrays of a state, in MuJoCo's order."""

@@ -34,8 +34,7 @@ from robo_genesis.site.pages import PageDirective
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-EVIDENCE = "evidence/index"
-"""The page that explains the evidence."""
+EVIDENCE = "evidence/index"  # The page that explains the evidence
 
 
 class CourseMeasured(SphinxDirective):

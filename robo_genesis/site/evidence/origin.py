@@ -9,8 +9,7 @@ from sphinx.application import Sphinx
 
 from robo_genesis.site.evidence.measured import BACKEND
 
-INPUTS = "inputs"
-"""The tag of a cell whose tables contain only chosen values, no measured ones."""
+INPUTS = "inputs"  # The tag of a cell whose tables contain only chosen values, no measured ones
 
 
 NO_BUNDLE = ("",)

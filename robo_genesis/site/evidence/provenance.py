@@ -26,10 +26,8 @@ from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of,
 from robo_genesis.site.frame.executed import RECOMPUTED
 
 LOG = "the engine's log"
-TITLE = 80
-"""Longest title in the ledger, in characters."""
-ITEMS = "robo_genesis_items"
-"""The name of a page's items in its metadata."""
+TITLE = 80  # Longest title in the ledger, in characters
+ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
 
 WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
     None: "illustration", (): "settings", NO_BUNDLE: "unbound",

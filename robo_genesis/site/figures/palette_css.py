@@ -19,10 +19,8 @@ from robo_genesis.lessons import course_marks
 from robo_genesis.site.evidence.origin import above
 from robo_genesis.site.figures import case_labels
 
-THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
-"""Paper has the light theme."""
-STROKE = 2
-"""Width of the SVG lines that the dashes are meant for, in their own units."""
+THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}  # Paper has the light theme
+STROKE = 2  # Width of the SVG lines that the dashes are meant for, in their own units
 LINE, LENGTH = 0.12, 1.9
 """Width of the line beside a case's name, and about its length, in letter heights."""
 NAMES = sorted({*course_marks()} - {"baseline"})

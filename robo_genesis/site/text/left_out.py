@@ -18,11 +18,9 @@ from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.syntax import is_text
 from robo_genesis.site.takeaways.plain_markdown import ANSWER, SOLUTION
 
-TAG = f"tag_{SOLUTION}"
-"""The class that a code cell has from its tag."""
+TAG = f"tag_{SOLUTION}"  # The class that a code cell has from its tag
 
-LEFT_OUT = "\0"
-"""Marks a line of a docstring; no Python contains it."""
+LEFT_OUT = "\0"  # Marks a line of a docstring; no Python contains it
 
 
 class Excerpt(LiteralInclude):

@@ -51,12 +51,9 @@ LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
 """The options by order; `{}` is the smallest difference that counts."""
 CLOSE = "about the same (less than {} apart)"
 UNDECIDED = "these two runs cannot show it"
-UNKNOWN = "unknown"
-"""The key of the option that no order was observed."""
-JUDGED = ("right", "low", "high")
-"""The keys of an answer that is a number."""
-WRONG = "x57.3"
-"""Represents the keys of typical wrong numbers, which `FACTOR` matches."""
+UNKNOWN = "unknown"  # The key of the option that no order was observed
+JUDGED = ("right", "low", "high")  # The keys of an answer that is a number
+WRONG = "x57.3"  # Represents the keys of typical wrong numbers, which `FACTOR` matches
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 FACTOR = re.compile(r"x\d+(\.\d+)?")
 """The key of a typical wrong number: the value times this factor."""

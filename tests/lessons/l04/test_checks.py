@@ -4,16 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import (
-    case,
-    copied,
-    frames,
-    metric,
-    put,
-    reading,
-    trace,
-    with_fields,
-)
+from lessons.changed_runs import case, copied, frames, metric, put, reading, trace, with_fields
 
 from robo_genesis.core.checks import CheckFailed, evaluate, require
 from robo_genesis.lessons.l04 import spec, study, study_spec

@@ -148,11 +148,7 @@ IMPORTED = both(log("Approximating tendon.", importer), predicate(warnings=[impo
     ("spoil", "code", "said"),
     [
         (lambda f: None, "copy", "a run on the CPU has its run_id 01234567"),
-        (
-            own_run_id,
-            "copy",
-            "all its arrays of baseline, G1, G2, G3, expected",
-        ),
+        (own_run_id, "copy", "all its arrays of baseline, G1, G2, G3, expected"),
         (both(own_run_id, rewrite(internal_force=last_bit)), "copy", "arrays of baseline, G2, G3"),
         (measured_elsewhere, "log", "missing warnings of the model importer is (MJCF) Approx"),
         (both(measured_elsewhere, IMPORTED), None, ""),

@@ -5,16 +5,7 @@ import shutil
 
 import pytest
 from loading import ENGINE, JUPYTER, run_watched
-from spoilers import (
-    SPOILED,
-    both,
-    filed_as,
-    measured_elsewhere,
-    metric,
-    older_compiler,
-    on,
-    seal,
-)
+from spoilers import SPOILED, both, filed_as, measured_elsewhere, metric, older_compiler, on, seal
 
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
 from robo_genesis.evidence import advice

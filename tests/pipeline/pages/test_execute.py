@@ -10,11 +10,7 @@ import psutil
 import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
-from robo_genesis.core.project import (
-    ROOT,
-    engine_cache_environment,
-    engine_cache_folder,
-)
+from robo_genesis.core.project import ROOT, engine_cache_environment, engine_cache_folder
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, in_order
 from robo_genesis.pipeline.pages.folder import PageRefused, read_record
@@ -232,9 +228,12 @@ def test_a_page_that_was_not_accepted_is_the_first_to_run_again(tmp_path):
 
 
 @pytest.mark.parametrize("saved", [False, True])
-def test_the_first_lab_runs_alone_while_no_kernel_is_compiled(tmp_path, saved):
-    lab, more = cell(WRITE_BUNDLE), cell("1")
-    make_book(tmp_path, a=notebook(more, more), b=notebook(lab, front=LAB_FRONT), c=notebook(more))
+def test_beside_the_first_lab_runs_what_has_kernels_of_its_own_while_none_is_compiled(
+    tmp_path, saved
+):
+    lab, more, own = cell(WRITE_BUNDLE), cell("1"), cell("1", ":tags: [own-kernels]\n")
+    books = {"a": notebook(more, more), "b": notebook(lab, front=LAB_FRONT), "c": notebook(own)}
+    make_book(tmp_path, **books)
     environment = engine_cache_environment(cache=tmp_path / "cache")
     kernels = engine_cache_folder(cache=tmp_path / "cache") / "kernels"
     (kernels / "manager").mkdir()  # the compiler makes it before it has a kernel
@@ -243,8 +242,9 @@ def test_the_first_lab_runs_alone_while_no_kernel_is_compiled(tmp_path, saved):
     report = Lines(lambda name, event: event and said.append((name, event[:7])))
     results = execute(tmp_path, jobs=2, environment=environment, report=report)
     assert {result.status for result in results.values()} == {"executed"}
-    first = [("a", "started"), ("b", "started")] if saved else [("b", "started"), ("b", "execute")]
+    first = [("a", "started"), ("b", "started")] if saved else [("b", "started"), ("c", "started")]
     assert (said[:2], len(said)) == (first, 6)
+    assert saved or said[2][1] == "execute"  # only then the third begins
 
 
 def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):

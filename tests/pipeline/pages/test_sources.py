@@ -187,6 +187,12 @@ def test_a_page_that_runs_alone_records_elapsed_times():
         assert any(group.kind == "performance" for group in groups), page.docname
 
 
+def test_a_page_with_kernels_of_its_own_compiles_them_before_it_needs_those_of_the_build():
+    second = {page.docname: page.code.sources[1:2] for page in PAGES if page.own_kernels}
+    starts = [code for page in PAGES for code in page.code.sources if "measure_starts(" in code]
+    assert [*second.values()] == [starts] != [[]]
+
+
 def keys(root, pages):
     """Return fingerprint and modules of the evidence key of some pages of the course."""
     tree = Tree(root)

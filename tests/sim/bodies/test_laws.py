@@ -109,8 +109,7 @@ def test_a_ball_does_not_turn_and_falls_by_gravity_until_its_contact(turning, fa
 
 
 @pytest.mark.parametrize(
-    ("shape", "turning", "codes"),
-    [("cube", 0, ["motion"]), ("cube", 1e-9, []), ("ball", 0, [])],
+    ("shape", "turning", "codes"), [("cube", 0, ["motion"]), ("cube", 1e-9, []), ("ball", 0, [])]
 )
 def test_a_cube_in_contact_has_an_angular_velocity_of_rounding(shape, turning, codes):
     trace = replace(AT_REST, link_ang=np.full_like(AT_REST.link_ang, turning))
