@@ -129,7 +129,8 @@ def execute_pages(
         accept: called once for each page that was executed and did not fail, after the next page
             started; returns whether the page counts as one that did not fail.
 
-    Returns: one result for each page, in the order of `pages`.
+    Returns:
+        One result for each page, in the order of `pages`.
 
     Raises:
         OSError: the store cannot be used.
@@ -288,8 +289,7 @@ def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) ->
     except (EOFError, ConnectionError):
         process.join()
         cell = f" in cell {underway.cell}" if underway.cell else ""
-        code = process.exitcode
-        message = f"the worker process ended{cell} with status {code}; out of memory?"
+        message = f"the worker process ended{cell} with status {process.exitcode}; out of memory?"
         seconds, failure = 0.0, Failure("WorkerDied", message)
     process.join()
     connection.close()
