@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -182,9 +183,8 @@ def real_engine(
     with ExitStack() as started:
         request.config.stash[STARTED] = started
         started.enter_context(stages.build_lock(project.CACHE))
-        patch = started.enter_context(pytest.MonkeyPatch.context())
-        for name, value in project.engine_cache_environment().items():
-            patch.setitem(os.environ, name, value)
+        # The engine sets switches, too; with one left, a build would execute every page again.
+        started.enter_context(patch.dict(os.environ, project.engine_cache_environment()))
         engine = session.start(contract)
         import genesis as gs
 

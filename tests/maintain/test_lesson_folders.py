@@ -47,15 +47,15 @@ def remove(work, lesson):
 
 
 def build(work):
-    """Build the book of a copy and return its site."""
+    """Build the book of a copy; return its site and what the build said."""
     cache = work / ".cache"
     shutil.rmtree(cache, ignore_errors=True)  # of the copy's own tests
     cache.mkdir()
     (cache / "npm").symlink_to(npm.packages().parents[1])
     (cache / "engine").symlink_to(CACHE / "engine")
     shutil.copytree(CACHE / "pages", cache / "pages", symlinks=True)
-    print(make(work, "book"))
-    return work / "book" / "_build" / "html"
+    said = make(work, "book")
+    return work / "book" / "_build" / "html", said
 
 
 @pytest.fixture(scope="module", params=REMOVED)
@@ -78,7 +78,7 @@ def test_the_rest_of_the_code_does_without_a_lesson(without):
 @pytest.mark.slow
 def test_the_book_without_a_lesson_builds(without, build_output):
     lesson, work = without
-    site = build(work)
+    site, _ = build(work)
     for name in PAGES:
         if name.startswith(f"lessons/{lesson}-"):
             assert not (site / f"{name}.html").exists()
@@ -97,7 +97,8 @@ def test_a_new_lesson_is_on_the_site_at_once(tmp_path, build_output):
         if lesson != KEPT:
             remove(work, lesson)
     make(work, "lesson", "NEW=l99")
-    site = build(work)
+    site, said = build(work)
+    assert "Pages: 3 executed, 2 reused." in said
     card = parsed(site, "index").select_one("#lesson-l99")
     assert card.a["href"] == "lessons/l99-new-lesson/lecture.html"
     assert card.select_one("p.time").get_text().startswith("Lecture: ")
