@@ -52,7 +52,9 @@ def executed_pages() -> BuiltPages:
     pages = find_pages(BOOK)
     into = places(pages, CACHE / STORE, ROOT, OUTSIDE)
     results = [stored_result(page, into[page.docname]) for page in pages]
-    return BuiltPages.of(result for result in results if result is not None)
+    absent = [page.docname for page, found in zip(pages, results, strict=True) if not found]
+    assert absent == [], "Not executed with this code. Run: make book"
+    return BuiltPages.of(results)
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

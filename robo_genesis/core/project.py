@@ -14,6 +14,7 @@ from packaging.requirements import Requirement
 MEASURES = False
 
 ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = sysconfig.get_path("purelib")  # Python reads its configuration for each answer
 BOOK = ROOT / "book"
 PUBLISHED = "_build"  # The folder of a book that holds its published site
 
@@ -249,7 +250,7 @@ def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
 
 def without_folders(text: str) -> str:
     """Return a text without the folders of packages, checkout and homes, which are private."""
-    text = text.replace(sysconfig.get_path("purelib"), "site-packages")
+    text = text.replace(PACKAGES, "site-packages")
     return without_home(text.replace(f"{ROOT}/", ""))
 
 

@@ -1,5 +1,6 @@
 """Work that the engine repeats, and that a process can be spared."""
 
+import gc
 import inspect
 import sys
 import textwrap
@@ -9,6 +10,8 @@ from types import CodeType, FunctionType
 from typing import Any
 
 IMPORT = "<frozen importlib._bootstrap>"  # What Python names as the file of its own import
+
+OBJECTS = 20_000  # New ones, after which Python looks for those that nobody uses; usually 700
 
 FRAMES = 10  # Of the calls that lead to an array of the engine; a cell of a notebook has 50 more
 
@@ -29,10 +32,12 @@ def spare_repeated_work() -> None:
       small cubes.
 
     An answer is that for the same line and settings, for the same function with the same code, or
-    for a mesh with the same numbers.
+    for a mesh with the same numbers. Python looks for unused objects after each `OBJECTS` new ones:
+    a kernel has many, and all of them are used.
     """
     if IMPORT in inspect.modulesbyfile:
         return
+    gc.set_threshold(OBJECTS)
     from trimesh import Trimesh
 
     inspect.modulesbyfile[IMPORT] = ""

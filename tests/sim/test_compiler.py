@@ -1,5 +1,6 @@
 """Work that the engine is spared: the answers of Python's library and of trimesh stay the same."""
 
+import gc
 import importlib
 import inspect
 import sys
@@ -31,9 +32,12 @@ def spared(monkeypatch):
     monkeypatch.setattr(traceback, "extract_stack", traceback.extract_stack)
     monkeypatch.setattr(textwrap.TextWrapper, "wrap", counted("wrap", wrap))
     monkeypatch.setattr(inspect, "getsourcelines", counted("lines", lines))
+    before = gc.get_threshold()
     for _ in range(2):  # the second time changes nothing
         spare_repeated_work()
-    return asked
+    assert gc.get_threshold()[0] > before[0]
+    yield asked
+    gc.set_threshold(*before)
 
 
 class Searched(ModuleType):

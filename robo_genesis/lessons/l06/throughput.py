@@ -44,7 +44,7 @@ class Protocol:
     others: tuple[str, ...] = ()
     warm_up: int = 10
     steps: int = 20
-    repeats: int = 7
+    repeats: int = 5
 
     def parameters(self) -> dict[str, Any]:
         """Return every configured input as JSON values, for the evidence key."""

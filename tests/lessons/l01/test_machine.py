@@ -1,7 +1,10 @@
 """The processes that L01 starts: what they print, and failures on purpose."""
 
 import json
+import tempfile
+from pathlib import Path
 
+from robo_genesis.core import project
 from robo_genesis.lessons.l01 import machine, mistakes, text
 
 
@@ -44,6 +47,8 @@ def test_both_starts_share_one_folder_of_kernels(monkeypatch):
 
     monkeypatch.setattr(machine, "run_python", output)
     found = machine.measure_starts()
-    assert seen[0] == seen[1] != {}
+    assert seen[0] == seen[1]
+    assert seen[0][project.BACKEND] == "cpu"
+    assert Path(seen[0][project.KERNELS]).is_relative_to(tempfile.gettempdir())
     assert list(found) == [f"{start}_{part}" for start in machine.STARTS for part in machine.PARTS]
     assert (found["first_more_steps"], found["second_more_steps"]) == (1, 2)
