@@ -14,7 +14,7 @@ from packaging.requirements import Requirement
 MEASURES = False
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = sysconfig.get_path("purelib")  # Python reads its configuration for each answer
+PACKAGES = sysconfig.get_path("purelib")  # Asked once: each answer reads Python's configuration
 BOOK = ROOT / "book"
 PUBLISHED = "_build"  # The folder of a book that holds its published site
 

@@ -14,7 +14,7 @@ from robo_genesis.evidence.refusals import AGAIN, BundleRefused
 LARGEST = 2**53 - 1
 """The largest magnitude of a number: up to here, a float holds every integer."""
 
-DEEPEST = 32  # Levels of lists and objects. Those of a bundle have less than 10.
+DEEPEST = 32  # Levels of lists and objects. Those of a bundle have fewer than 10.
 
 
 def write_json(path: Path, value: Any) -> None:

@@ -5,15 +5,18 @@ import inspect
 import sys
 import textwrap
 import traceback
+from contextlib import suppress
 from functools import lru_cache
 from types import CodeType, FunctionType
 from typing import Any
 
+import numpy as np
+
 IMPORT = "<frozen importlib._bootstrap>"  # What Python names as the file of its own import
 
-OBJECTS = 20_000  # New ones, after which Python looks for those that nobody uses; usually 700
+OBJECTS = 20_000  # New objects after which Python looks for unused ones; by default 700
 
-FRAMES = 10  # Of the calls that lead to an array of the engine; a cell of a notebook has 50 more
+FRAMES = 10  # Calls written down; the engine drops its own. A cell of a notebook has 50 more
 
 
 def spare_repeated_work() -> None:
@@ -26,24 +29,24 @@ def spare_repeated_work() -> None:
     - For each expression it wraps the line of source for the message of a possible error, and it
       does so again in each pass and in each unrolled loop.
     - For each call of a function inside a kernel it splits that function's source into tokens.
-    - For each array it writes down all calls that led there, for the message of a possible error.
-      Here these are the last `FRAMES`.
-    - In each scene, for each pair of links that could touch, the engine fills both meshes with
-      small cubes.
+    - For each array it writes down all calls that led there, for the message of a possible error,
+      and some of its warnings name them. Here these are at most the last `FRAMES`.
+    - In each scene, for each two shapes of a robot whose boxes overlap, the engine covers both
+      surfaces with small cubes.
 
     An answer is that for the same line and settings, for the same function with the same code, or
-    for a mesh with the same numbers. Python looks for unused objects after each `OBJECTS` new ones:
-    a kernel has many, and all of them are used.
+    for a surface with the same numbers. Python looks for unused objects after each `OBJECTS` new
+    ones: a kernel has many, and all of them are used. All this lasts as long as the process.
     """
     if IMPORT in inspect.modulesbyfile:
         return
-    gc.set_threshold(OBJECTS)
-    from trimesh import Trimesh
-
+    if 0 < gc.get_threshold()[0] < OBJECTS:  # 0: never
+        gc.set_threshold(OBJECTS)
+    with suppress(ImportError):  # the engine, which needs trimesh, says it better
+        _keep_covered_surfaces()
     inspect.modulesbyfile[IMPORT] = ""
     wrap, lines = textwrap.TextWrapper.wrap, inspect.getsourcelines
-    stack, voxelized = traceback.extract_stack, Trimesh.voxelized
-    filled: dict[tuple[bytes, bytes, str], Any] = {}
+    stack = traceback.extract_stack
 
     @lru_cache(2**16)
     def wrapped(text: str, settings: tuple[tuple[str, Any], ...]) -> list[str]:
@@ -71,13 +74,25 @@ def spare_repeated_work() -> None:
         engine = f.f_globals.get("__name__") == "quadrants.lang.util"
         return stack(f, FRAMES if engine and limit is None else limit)
 
-    def fill_once(self: Any, *given: Any, **settings: Any) -> Any:
-        key = self.vertices.tobytes(), self.faces.tobytes(), str((given, settings))
-        if key not in filled:
-            filled[key] = voxelized(self, *given, **settings)
-        return filled[key].copy()
-
     textwrap.TextWrapper.wrap = wrap_once  # type: ignore[method-assign]
     inspect.getsourcelines = find_once
     traceback.extract_stack = last_calls
-    Trimesh.voxelized = fill_once  # type: ignore[method-assign]
+
+
+def _keep_covered_surfaces() -> None:
+    from trimesh import Trimesh
+
+    voxelized = Trimesh.voxelized
+
+    @lru_cache(2**8)
+    def covered(vertices: bytes, faces: bytes, pitch: float) -> Any:
+        points, corners = np.frombuffer(vertices), np.frombuffer(faces, np.int64)
+        mesh = Trimesh(points.reshape(-1, 3), corners.reshape(-1, 3), process=False)
+        return voxelized(mesh, pitch)
+
+    def cover_once(self: Any, pitch: Any, *how: Any, **settings: Any) -> Any:
+        if how or settings or type(self) is not Trimesh or not isinstance(pitch, float):
+            return voxelized(self, pitch, *how, **settings)
+        return covered(self.vertices.tobytes(), self.faces.tobytes(), pitch).copy()
+
+    Trimesh.voxelized = cover_once  # type: ignore[method-assign]

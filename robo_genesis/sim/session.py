@@ -196,9 +196,9 @@ def import_engine() -> Any:
     Raises:
         EngineError: saying what is missing and the command that installs it.
     """
-    spare_repeated_work()
     if sys.platform == "linux":
         require_libraries()
+    spare_repeated_work()
     try:
         return importlib.import_module("genesis")
     except ImportError as error:

@@ -28,17 +28,34 @@ def spared(monkeypatch):
     def counted(name, function):
         return lambda *given, **how: (asked.update([name]), function(*given, **how))[1]
 
-    monkeypatch.setattr(Trimesh, "voxelized", counted("filled", Trimesh.voxelized))
+    monkeypatch.setattr(Trimesh, "voxelized", counted("covered", Trimesh.voxelized))
     monkeypatch.setattr(traceback, "extract_stack", traceback.extract_stack)
     monkeypatch.setattr(textwrap.TextWrapper, "wrap", counted("wrap", wrap))
     monkeypatch.setattr(inspect, "getsourcelines", counted("lines", lines))
     before = gc.get_threshold()
-    gc.set_threshold(700)
-    for _ in range(2):  # the second time changes nothing
-        spare_repeated_work()
-    assert gc.get_threshold()[0] == OBJECTS
-    yield asked
-    gc.set_threshold(*before)
+    try:
+        gc.set_threshold(700)
+        for _ in range(2):  # the second time changes nothing
+            spare_repeated_work()
+        assert gc.get_threshold() == (OBJECTS, *before[1:])
+        yield asked
+    finally:
+        gc.set_threshold(*before)
+
+
+@pytest.mark.parametrize("already", [0, 1_000_000])
+def test_python_looks_for_unused_objects_no_more_often_than_before(spared, already):
+    gc.set_threshold(already)
+    inspect.modulesbyfile.pop(IMPORT)
+    spare_repeated_work()
+    assert gc.get_threshold()[0] == already
+
+
+def test_without_trimesh_the_rest_is_spared(spared, monkeypatch):
+    monkeypatch.setitem(sys.modules, "trimesh", None)  # as if it were not installed
+    inspect.modulesbyfile.pop(IMPORT)
+    spare_repeated_work()
+    assert inspect.modulesbyfile[IMPORT] == ""
 
 
 class Searched(ModuleType):
@@ -116,10 +133,10 @@ def test_a_function_whose_code_was_replaced_is_read_again(spared):
     assert "return 2" in inspect.getsource(first)
 
 
-def test_equal_meshes_are_filled_once_for_each_size_of_the_cubes_and_others_anew(spared):
+def test_equal_surfaces_are_covered_once_for_each_size_of_the_cubes_and_others_anew(spared):
     boxes = [creation.box((0.2, 0.1, width)) for width in (0.1, 0.1, 0.3)]
     found = [box.voxelized(pitch=pitch).matrix for box in boxes for pitch in (0.02, 0.05)]
-    assert spared["filled"] == 4
+    assert spared["covered"] == 4
     assert np.array_equal(found[0], found[2])
     assert np.array_equal(found[1], found[3])
     shapes = [matrix.shape for matrix in found]
@@ -127,6 +144,10 @@ def test_equal_meshes_are_filled_once_for_each_size_of_the_cubes_and_others_anew
     points = boxes[0].voxelized(pitch=0.02).points
     boxes[0].voxelized(pitch=0.02).apply_scale(2)
     assert np.array_equal(boxes[1].voxelized(pitch=0.02).points, points)
+    for settings in ({"method": "ray"}, {"max_iter": 9}):
+        box = boxes[0].voxelized(0.02, **settings)
+        assert np.array_equal(box.points, boxes[0].voxelized(0.02, **settings).points)
+    assert spared["covered"] == 8
 
 
 def calls(depth):
@@ -137,5 +158,6 @@ def calls(depth):
 @pytest.mark.parametrize(("asks", "short"), [("a_page", False), ("quadrants.lang.util", True)])
 def test_the_engine_alone_gets_the_last_calls_only(spared, monkeypatch, asks, short):
     monkeypatch.setitem(globals(), "__name__", asks)
-    found = [frame.name for frame in calls(20)]
-    assert (found[-FRAMES:], len(found) == FRAMES) == (["calls"] * FRAMES, short)
+    found = calls(20)
+    assert {(call.name, call.lineno) for call in found[-FRAMES:]} == {("calls", found[-1].lineno)}
+    assert (len(found) == FRAMES) == short

@@ -51,7 +51,7 @@ class Page:
 
     @property
     def own_kernels(self) -> bool:
-        """Whether its first long cell is tagged `own-kernels`: it compiles in its own folder."""
+        """Whether an early cell first compiles in a folder of its own, for long (`own-kernels`)."""
         return any("own-kernels" in tags for tags in self._tags())
 
     def _tags(self) -> list[list[str]]:

@@ -110,7 +110,7 @@ def execute_pages(
     Those whose last run with this engine failed start first, then the longest. From its first cell
     tagged `alone`, a page runs when no other does; it starts last. While no kernel is compiled, the
     first lab runs, beside it only pages with kernels of their own: the engine saves kernels when a
-    page ends, so others would compile the same ones.
+    page ends, so others would compile the same ones as the lab.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed, and leaves kernels on Ctrl-C.
 
@@ -144,8 +144,8 @@ def execute_pages(
     waiting = in_order(waiting, last, failed)
     first = []
     if labs and project.nothing_compiled(environment):
-        first = [labs[0], *(page for page in waiting if page.own_kernels)]
-        waiting.sort(key=lambda page: page not in first)
+        first = [labs[0], *(page for page in waiting if page.own_kernels and not page.alone)]
+        waiting.sort(key=lambda page: first.index(page) if page in first else len(first))
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
@@ -154,7 +154,7 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running or ended:
-                while waiting and len(running) < _most(running, len(first) or jobs, jobs):
+                while waiting and (waiting[0] in first or not first) and _room(running, jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -178,7 +178,7 @@ def execute_pages(
                     if result is None:
                         continue
                     del running[connection]
-                    first = []
+                    first = [] if result.page in first[:1] else first
                     results[result.page.docname] = result
                     report.say(result.page.docname, result.ended)
                     ended.append(result)
@@ -229,9 +229,9 @@ def in_order(
     return sorted(pages, key=sooner)
 
 
-def _most(running: Running, cold: int, jobs: int) -> int:
-    """Return how many pages may run at once: one where it is alone, or waits for that."""
-    return 1 if any(underway.alone for *_, underway in running.values()) else min(cold, jobs)
+def _room(running: Running, jobs: int) -> bool:
+    """Whether one more page may run: fewer than `jobs` do, and none is alone or waits for that."""
+    return len(running) < jobs and not any(underway.alone for *_, underway in running.values())
 
 
 def _let_one_go_on(running: Running) -> None:

@@ -191,6 +191,7 @@ def test_a_page_with_kernels_of_its_own_compiles_them_before_it_needs_those_of_t
     second = {page.docname: page.code.sources[1:2] for page in PAGES if page.own_kernels}
     starts = [code for page in PAGES for code in page.code.sources if "measure_starts(" in code]
     assert [*second.values()] == [starts] != [[]]
+    assert starts[0].index("measure_starts(") < starts[0].index("examine(")
 
 
 def keys(root, pages):
