@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, equal, masses, model_counts
+from robo_genesis.core.checks import Finding, above, at_most, equal, masses, model_counts, noted
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.falling import free_fall
@@ -49,6 +49,7 @@ def speed(run: Experiment) -> Iterator[Finding]:
         trace = run.traces[name]
         error = float(np.abs(-trace.link_vel[:, 0, 2] - case.gravity * trace.t).max())
         allowed = spec.SPEED_SHARE * case.gravity * float(trace.t[-1])
+        yield noted(f"{name}.after_one_step_m_s", float(trace.link_vel[1, 0, 2]))
         yield at_most(f"{name}.speed_error_m_s", error, allowed)
 
 
