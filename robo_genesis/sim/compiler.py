@@ -14,7 +14,7 @@ import numpy as np
 
 IMPORT = "<frozen importlib._bootstrap>"  # What Python names as the file of its own import
 
-OBJECTS = 20_000  # New objects after which Python looks for unused ones; by default 700
+OBJECTS = 20_000  # New objects after which Python looks for unused ones; by default 700 or 2000
 
 FRAMES = 10  # Calls written down; the engine drops its own. A cell of a notebook has 50 more
 
@@ -31,7 +31,7 @@ def spare_repeated_work() -> None:
     - For each call of a function inside a kernel it splits that function's source into tokens.
     - For each array it writes down all calls that led there, for the message of a possible error,
       and some of its warnings name them. Here these are at most the last `FRAMES`.
-    - In each scene, for each two shapes of a robot whose boxes overlap, the engine covers both
+    - In each scene, for every two shapes of a robot whose boxes overlap, the engine covers both
       surfaces with small cubes.
 
     An answer is that for the same line and settings, for the same function with the same code, or

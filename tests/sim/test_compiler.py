@@ -12,6 +12,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from trimesh import Trimesh, creation
+from trimesh.voxel.creation import voxelize
 
 from robo_genesis.sim.compiler import FRAMES, OBJECTS, spare_repeated_work
 
@@ -54,8 +55,10 @@ def test_python_looks_for_unused_objects_no_more_often_than_before(spared, alrea
 def test_without_trimesh_the_rest_is_spared(spared, monkeypatch):
     monkeypatch.setitem(sys.modules, "trimesh", None)  # as if it were not installed
     inspect.modulesbyfile.pop(IMPORT)
+    before = inspect.getsourcelines
     spare_repeated_work()
     assert inspect.modulesbyfile[IMPORT] == ""
+    assert inspect.getsourcelines is not before
 
 
 class Searched(ModuleType):
@@ -142,6 +145,7 @@ def test_equal_surfaces_are_covered_once_for_each_size_of_the_cubes_and_others_a
     shapes = [matrix.shape for matrix in found]
     assert len({*shapes}) == 4
     points = boxes[0].voxelized(pitch=0.02).points
+    assert np.array_equal(points, voxelize(boxes[0], 0.02).points)
     boxes[0].voxelized(pitch=0.02).apply_scale(2)
     assert np.array_equal(boxes[1].voxelized(pitch=0.02).points, points)
     for settings in ({"method": "ray"}, {"max_iter": 9}):

@@ -63,7 +63,7 @@ for _ in range({spec.MORE_STEPS}):
 sphere.get_pos()
 mark()
 times = [b - a for a, b in zip(marks, marks[1:])]
-del times[1]  # of the course's own modules
+del times[1]  # what the course's own modules took
 print(json.dumps(times))
 """
 

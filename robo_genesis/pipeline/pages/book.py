@@ -51,7 +51,7 @@ class Page:
 
     @property
     def own_kernels(self) -> bool:
-        """Whether an early cell first compiles in a folder of its own, for long (`own-kernels`)."""
+        """Whether an early cell begins with a long compilation in a folder of its own."""
         return any("own-kernels" in tags for tags in self._tags())
 
     def _tags(self) -> list[list[str]]:

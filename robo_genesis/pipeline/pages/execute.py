@@ -108,9 +108,9 @@ def execute_pages(
     """Execute the pages that the store does not have yet; try all of them.
 
     Those whose last run with this engine failed start first, then the longest. From its first cell
-    tagged `alone`, a page runs when no other does; it starts last. While no kernel is compiled, the
-    first lab runs, beside it only pages with kernels of their own: the engine saves kernels when a
-    page ends, so others would compile the same ones as the lab.
+    tagged `alone`, a page runs when no other does; it starts last. If no kernel is compiled yet,
+    the first lab starts first, and until it ends only pages with kernels of their own run beside
+    it: the engine saves kernels when a page ends, so others would compile the same ones.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed, and leaves kernels on Ctrl-C.
 
@@ -140,7 +140,7 @@ def execute_pages(
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
     waiting = [page for page in pages if page.docname not in results]
     failed = [page.docname for page in waiting if failed_mark(places[page.docname]).exists()]
-    labs = [page for page in waiting if page.page == "lab"]
+    labs = [page for page in waiting if page.page == "lab" and not page.alone]
     waiting = in_order(waiting, last, failed)
     first = []
     if labs and project.nothing_compiled(environment):

@@ -51,4 +51,5 @@ def test_both_starts_share_one_folder_of_kernels(monkeypatch):
     assert seen[0][project.BACKEND] == "cpu"
     assert Path(seen[0][project.KERNELS]).is_relative_to(tempfile.gettempdir())
     assert list(found) == [f"{start}_{part}" for start in machine.STARTS for part in machine.PARTS]
+    assert machine.SCRIPT.count("\nmark()") == len(machine.PARTS) + 1
     assert (found["first_more_steps"], found["second_more_steps"]) == (1, 2)

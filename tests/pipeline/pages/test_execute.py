@@ -240,6 +240,7 @@ def test_beside_the_first_lab_runs_what_has_kernels_of_its_own_while_none_is_com
     more, own = cell("1"), cell("1", ":tags: [own-kernels]\n")
     own_first = notebook(own, more, more)  # more cells than the lab, which yet starts first
     books = {"a": notebook(more, more), "b": notebook(lab, front=LAB_FRONT), "c": own_first}
+    books["d"] = notebook(own, cell("1", ":tags: [alone]\n"))  # never among the first
     make_book(tmp_path, **books)
     environment = engine_cache_environment(cache=tmp_path / "cache")
     kernels = engine_cache_folder(cache=tmp_path / "cache") / "kernels"
@@ -250,11 +251,20 @@ def test_beside_the_first_lab_runs_what_has_kernels_of_its_own_while_none_is_com
     results = execute(tmp_path, jobs=2, environment=environment, report=report)
     assert {result.status for result in results.values()} == {"executed"}
     if saved:
-        assert [name for name, event in said if event == "started"] == ["c", "a", "b"]
+        assert [name for name, event in said if event == "started"] == ["c", "a", "b", "d"]
     else:
         start, end = "started", "execute"
-        order = [("b", start), ("c", start), ("c", end), ("b", end), ("a", start), ("a", end)]
-        assert said == order
+        order = [("b", start), ("c", start), ("c", end), ("b", end), ("a", start), ("d", start)]
+        assert said[:6] == order
+
+
+def test_with_one_job_the_first_lab_starts_first_while_no_kernel_is_compiled(tmp_path):
+    own = notebook(cell("1", ":tags: [own-kernels]\n"), cell("1"))
+    make_book(tmp_path, a=own, b=notebook(cell(WRITE_BUNDLE), front=LAB_FRONT))
+    said, caches = [], engine_cache_environment(cache=tmp_path / "cache")
+    report = Lines(lambda name, event: said.append((name, event[:7])))
+    execute(tmp_path, environment=caches, report=report)
+    assert [name for name, event in said if event == "started"] == ["b", "a"]
 
 
 def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
