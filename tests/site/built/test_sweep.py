@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from browsers import answered
 from built_site import CompressingHandler, served
 from sweep import EVERY_STATE, IN_EVERY_COLOUR, KINDS, Kind, Visit
 from watching import SERVED_ONLY, page_names
@@ -33,12 +34,12 @@ def visits(browser, site, unpacked):
         @functools.cache
         def visited(way: str) -> dict[str, Visit]:
             disk = unpacked.as_uri() if way == "phone" else address
-            return {
-                name: Visit(
-                    browser, address if name in SERVED_ONLY else disk, name, of(KINDS[way], name)
-                )
-                for name in names
-            }
+            found, last = {}, browser
+            for name in names:
+                base = address if name in SERVED_ONLY else disk
+                visit = functools.partial(Visit, base=base, name=name, kind=of(KINDS[way], name))
+                last, found[name] = answered(last, visit)
+            return found
 
         yield visited
 
