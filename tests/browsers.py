@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from threading import Event, Timer
 from typing import TYPE_CHECKING, Any
 
@@ -72,5 +72,6 @@ def answered(
 def kill_browsers() -> None:
     """Kill the browsers of this process; Playwright then raises an error."""
     for process in psutil.Process().children(recursive=True):
-        if process.name() == "chromium":
-            process.kill()
+        with suppress(psutil.NoSuchProcess):  # it ended with the one before
+            if process.name() == "chromium":
+                process.kill()
