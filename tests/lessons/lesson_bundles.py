@@ -1,33 +1,25 @@
 """Writer and spoilers of bundles, shared by the tests of all lessons."""
 
-import csv
 import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from bundles import written
-from spoilers import ARRAYS, METRICS, both, manifest, pop, predicate, put, remove, seal
+from spoilers import METRICS, predicate, put, seal
 
 from robo_genesis.core import project
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.npz_archive import write_archive
 from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles import verify as evidence_key
 from robo_genesis.pipeline.bundles.status import bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
-from robo_genesis.site.takeaways.files import csv_text
 
 
 def metric(group, name, value):
     return put(METRICS, group, name, value=value)
-
-
-def without_run(name):
-    """Remove a run and its description."""
-    return both(remove(f"arrays/{name}.npz"), pop(ARRAYS, "cases", name))
 
 
 def in_archive(case, change):
@@ -57,13 +49,6 @@ def accepted_then_refused(engine, outputs, lesson, page, run, spoil) -> str:
     assert all(check.passed for check in verify_bundle(folder).predicate.checks)
     spoil(folder)
     return refused(folder)
-
-
-def table(folder, case) -> list[dict[str, str]]:
-    """Return the rows of a run's CSV file."""
-    arrays = bundle.read_arrays(folder)
-    text = csv_text(read_any_trace(folder, arrays, case), arrays, case)
-    return list(csv.DictReader(text.splitlines()))
 
 
 def judged_again(folder, monkeypatch, judgements):
@@ -99,14 +84,3 @@ def judged_again(folder, monkeypatch, judgements):
         record["passed"] = record["name"] not in failed
     predicate(checks=claimed)(folder)
     assert all(record.passed for record in verify_bundle(folder).predicate.checks)
-
-
-def altered(check):
-    """Alter the first value that a check found by more than rounding."""
-
-    def alter(content):
-        checks = content["predicate"]["checks"]
-        (found,) = [one["found"] for one in checks if one["name"] == check]
-        found[next(iter(found))] += 1e-3
-
-    return manifest(alter)

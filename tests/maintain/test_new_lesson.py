@@ -3,6 +3,7 @@
 import pytest
 import yaml
 from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
+from tiny_book import contents
 
 from robo_genesis.core.project import BOOK, ProjectError
 from robo_genesis.maintain.new_lesson import OUTCOME, TEMPLATE, add_lesson, with_chapter, with_entry
@@ -43,10 +44,6 @@ def test_the_template_is_small():
     assert 100 < lines <= 350
 
 
-def files(root):
-    return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
-
-
 @pytest.fixture
 def small(tmp_path):
     """The files that adding a lesson reads and changes."""
@@ -69,11 +66,11 @@ def small(tmp_path):
     ],
 )
 def test_a_name_that_cannot_be_used_changes_nothing(small, name, message):
-    before = files(small)
+    before = contents(small)
     with pytest.raises(ProjectError) as raised:
         add_lesson(small, name)
     assert message in str(raised.value)
-    assert files(small) == before
+    assert contents(small) == before
 
 
 @pytest.mark.parametrize(("lesson", "before"), [("l00", None), (PLANNED, LAST), ("l99", LAST)])

@@ -1,11 +1,10 @@
 """`make agree`: equal arrays pass; each difference is a line that names page and archive."""
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from checkout import make
 
 from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline.agreement import agree
@@ -69,12 +68,7 @@ def test_folders_without_arrays_and_a_page_twice_are_refused(machines, tmp_path)
 
 
 def test_make_passes_both_folders_and_explains_a_missing_one(machines):
-    command = ["make", "-C", str(ROOT), "agree", f"PYTHON={sys.executable}", f"FIRST={machines[0]}"]
-    done = subprocess.run(
-        [*command, f"SECOND={machines[1]}"], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    assert "Equal: 2 archives of arrays on 2 pages." in done.stdout.splitlines()
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert "SECOND='' is not a folder. Usage: make agree" in done.stderr
-    assert done.returncode
+    first, second = f"FIRST={machines[0]}", f"SECOND={machines[1]}"
+    said = make(ROOT, "agree", first, second)
+    assert "Equal: 2 archives of arrays on 2 pages." in said.splitlines()
+    assert "SECOND='' is not a folder. Usage: make agree" in make(ROOT, "agree", first, fails=True)

@@ -1,7 +1,6 @@
-"""The stages of a build in separate clones that share nothing but the executed pages.
+"""A page of the course executed alone and beside another, in a clone with caches of its own.
 
-Each clone is a copy of the checkout's files with caches of its own, and a small book: the cells of
-the L04 lab without its prose, and a ball that falls. The commands are those of the workflow.
+The clone has a small book: the cells of the L04 lab without its prose, and a ball that falls.
 """
 
 import re
@@ -47,44 +46,14 @@ def arrays(bundle: Path) -> dict[str, bytes]:
     return {path.stem: path.read_bytes() for path in (bundle / "arrays").glob("*.npz")}
 
 
-def kernels(work: Path) -> list[Path]:
-    """Return the kernels that were compiled in a clone."""
-    return list(work.glob(".cache/engine/*/kernels/**/*.qdc"))
-
-
-@pytest.fixture(scope="module")
-def clones(tmp_path_factory) -> Path:
-    """The folder of clone `lab`, whose kernels start cold, and clone `ball`, both executed."""
-    folder = tmp_path_factory.mktemp("clones")
-    for name, page in (("lab", "l04/lab"), ("ball", "ball")):
-        to = f"TO={folder / 'executed' / name}"
-        said = make(clone(folder, name), "execute", f"PAGE={page}", to)
-        assert f"{name}  executed in" in said
-    return folder
-
-
-@pytest.fixture(scope="module")
-def exported(clones) -> dict[str, bytes]:
-    """The lab's arrays as they were exported: executed alone, with a cold cache of kernels."""
-    found = arrays(clones / "executed/lab/lab/outputs/cpu")
-    assert found.keys() == {"baseline", "G1", "G2", "G3"}
-    return found
-
-
-def test_the_site_is_built_from_the_executed_pages_alone(clones, exported):
-    site = clone(clones, "site")  # it never runs the engine
-    said = make(site, "book", f"EXECUTED={clones / 'executed'}")
-    assert "Pages: 0 executed, 2 reused." in said
-    assert "lab  accepted" in said
-    assert "height 0.9" in (site / "book/_build/html/ball.html").read_text()
-    assert arrays(site / "book/_build/evidence/l04/cpu") == exported
-    assert kernels(clones / "lab")
-    assert not kernels(site)
-
-
-def test_results_depend_neither_on_jobs_nor_on_the_caches(clones, exported):
-    """The same lab, executed again beside another page, with the kernels of the first run."""
-    work = clones / "lab"
+def test_results_depend_neither_on_jobs_nor_on_the_caches(tmp_path):
+    """The lab alone with a cold cache, then beside another page with the kernels of that run."""
+    work = clone(tmp_path, "lab")
+    said = make(work, "execute", "PAGE=l04/lab", f"TO={tmp_path / 'executed'}")
+    assert "lab  executed in" in said
+    exported = arrays(tmp_path / "executed/lab/outputs/cpu")
+    assert exported.keys() == {"baseline", "G1", "G2", "G3"}
+    assert list(work.glob(".cache/engine/*/kernels/**/*.qdc"))
     for folder in (work / ".cache" / "pages").iterdir():
         shutil.rmtree(folder)
     said = make(work, "book", "JOBS=2")

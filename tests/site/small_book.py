@@ -93,12 +93,12 @@ SECONDS = {"timed": [0.26, 12.345, 3.0], "other": [2.0]}
 """Seconds of the cells of the executed pages."""
 
 
-def as_executed(page: Page, folder: Path, seconds: list[float]) -> PageResult:
-    """Return the result of a page whose cells took these times and left no outputs."""
-    ran, place = deepcopy(page.notebook), folder / "store" / page.docname
+def as_executed(page: Page, place: Path, seconds: list[float]) -> PageResult:
+    """Return the result of a page whose cells took these times and left no outputs of their own."""
+    ran = deepcopy(page.notebook)
     ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
     run = {"run_id": "0" * 32, "seconds": 1.0}
-    write_page(place, page, ran, folder, cell_seconds=seconds, **run)
+    write_page(place, page, ran, place.parent, cell_seconds=seconds, **run)
     return PageResult(page, "reused", 0.0, "0" * 32, folder=place)
 
 
@@ -117,7 +117,8 @@ def draft_of(book: Path, folder: Path, results: list[PageResult]) -> Draft:
 
 def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Path:
     """Render a book whose executed pages took these times, pack the site and return its folder."""
-    results = [as_executed(page, folder, seconds[page.docname]) for page in find_pages(book)]
+    store, pages = folder / "store", find_pages(book)
+    results = [as_executed(page, store / page.docname, seconds[page.docname]) for page in pages]
     draft = draft_of(book, folder, results)
     draft.pack()
     return draft.html

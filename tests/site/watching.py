@@ -81,6 +81,12 @@ def violations(page: Page, part: str = "html", **options: Any) -> list[str]:
     return found
 
 
+def readout(page: Page, block: str, values: str = "dd") -> dict[str, str]:
+    """Return the terms and values that a block shows."""
+    terms, found = (page.locator(f"{block} {tag}").all_inner_texts() for tag in ("dt", values))
+    return dict(zip(terms, found, strict=True))
+
+
 def show_model(page: Page, replay: str = ".replay") -> None:
     """Load the model with the first Play, and pause if it still plays."""
     play = page.locator(f"{replay} .play")

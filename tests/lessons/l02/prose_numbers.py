@@ -1,7 +1,7 @@
 """The decimal numbers that prose of L02 may hold: configured inputs."""
 
 from robo_genesis.core.scene import DT
-from robo_genesis.lessons.l02.spec import BALL, BASELINE, MOON, RIM
+from robo_genesis.lessons.l02.spec import BALL, BASELINE, RIM
 
 CONFIGURED = {
     "outer step [s]": DT,
@@ -10,7 +10,6 @@ CONFIGURED = {
     "length of the drop [s]": BASELINE.dt * BASELINE.steps,
     "rim of the tray [m]": RIM,
     "radius of the ball [m]": BALL,
-    "gravity of the Moon [m/s²]": MOON,
     "height of the table in the third calculation [m]": 0.7,
     "centre of the box on it [m]": 0.75,
     "volume of the box [m³]": 0.001,

@@ -1,9 +1,10 @@
 """Bundles of bodies on a surface, with contacts: accepted, compared, tabulated, refused."""
 
+import csv
 import shutil
 
 import pytest
-from lessons.lesson_bundles import in_archive, judged_again, metric, refused, table
+from lessons.lesson_bundles import in_archive, judged_again, refused
 from spoilers import ARRAYS, pop, predicate
 
 from robo_genesis.core.comparison import same_arrays
@@ -11,15 +12,16 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons.l03 import spec, study_spec
+from robo_genesis.site.takeaways.files import csv_text
 
 
 def test_contacts_are_read_as_they_were_recorded(sound, contact_traces):
-    found = read_any_trace(sound["lab"], bundle.read_arrays(sound["lab"]), "baseline")
+    arrays = bundle.read_arrays(sound["lab"])
+    found = read_any_trace(sound["lab"], arrays, "baseline")
     assert same_arrays(found, contact_traces["baseline"])
-    rows = table(sound["lab"], "dt20_sub1")
-    assert len(rows) == 76
-    assert rows[-1]["contacts body [1]"] == "4"
-    assert float(rows[-1]["penetration body [m]"]) > 0
+    *_, last = csv.DictReader(csv_text(found, arrays, "baseline").splitlines())
+    assert last["contacts body [1]"] == "4"
+    assert float(last["penetration body [m]"]) > 0
 
 
 @pytest.mark.parametrize(("page", "claims"), [("lab", 2), ("lecture", 1), ("energy", 0)])
@@ -44,18 +46,13 @@ def copied(name, other):
 
 
 SPOILED = {
-    "a position was moved": ("lab", "contact", changed(
-        "baseline", "link_pos_m", lambda a: a[25, 0, 2:].__isub__(0.01))),
     "a start elsewhere": ("lab", "start", changed(
         "baseline", "link_pos_m", lambda a: a[:, 0, 1].__iadd__(0.01))),
     "contacts that were never read": ("lab", "labels", without_contacts),
     "the lecture's parameters": ("lab", "stale", predicate(
         parameters=spec.parameters() | study_spec.parameters("lecture"))),
-    "a cube that slows down in the air": ("lecture", "motion", changed(
-        "h_5000us_10000", "link_vel_m_s", lambda a: a[5, 0].__imul__(0.98))),
     "a cube that turns without turning": ("lecture", "motion", changed(
         "h_20000us_10000", "link_ang_rad_s", lambda a: a[5, 0].__iadd__(1e-3))),
-    "another time constant": ("lecture", "checks", metric("time_constant", "h_20000us", 0.01)),
     "a run of Genesis in the place of one of MuJoCo": (
         "contact", "second-engine", copied("mujoco_baseline", "baseline")),
     "a hop of Genesis as one of MuJoCo, a little moved": ("contact", "second-engine", changed(

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
 
 STEP = 0.25
@@ -53,12 +52,3 @@ def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, 
 def test_what_cannot_be_measured_is_refused(make_trace, target, message):
     with pytest.raises(ValueError, match=message):
         step_metrics(make_trace([0, 0, 0], target), 0)
-
-
-def test_records_are_the_metrics_with_class_and_source(experiment):
-    found = experiment.records()
-    assert [*found] == ["model", *spec.CASES]
-    overshoot = {"value": experiment.metrics["G1"].overshoot, "unit": "rad", "class": "value"}
-    assert found["G1"]["overshoot"] == overshoot | {"from": ["q_rad_or_m", "target_rad_or_m"]}
-    links = {"value": 11, "unit": "1", "class": "exact", "from": ["engine"]}
-    assert found["model"]["links"] == links

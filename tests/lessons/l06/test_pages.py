@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import shift, trace
-from lessons.lesson_bundles import accepted_then_refused, in_archive, metric
+from lessons.lesson_bundles import accepted_then_refused, in_archive
 
 from robo_genesis.core.palette import MARKS
 from robo_genesis.lessons.l06 import plots, spec, study, target_parts, text
@@ -63,18 +63,7 @@ def test_the_replay_has_a_sphere_at_each_target_in_the_colour_of_its_run():
     assert parts[1].rgb == tuple(bytes.fromhex(MARKS["first"].light[1:]))
 
 
-SPOILED = {
-    "a hand that was moved": ("link_pos", in_archive(
-        "beside_0", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))),
-    "a force of another gain": ("control_force", in_archive(
-        "stiff_robot", lambda arrays: arrays["control_force_Nm_or_N"].__imul__(0.5))),
-    "a residual that was written": ("checks", metric("mixed", "row_0_m", 1.0)),
-}  # fmt: skip
-
-
 @pytest.mark.parametrize("run", [True], indirect=True)
-@pytest.mark.parametrize("how", SPOILED)
-def test_a_sound_bundle_is_accepted_and_a_spoiled_one_is_refused(engine, tmp_path, run, how):
-    code, spoil = SPOILED[how]
-    refusal = accepted_then_refused(engine, tmp_path, "l06", "lecture", run, spoil)
-    assert code in refusal
+def test_a_sound_bundle_is_accepted_and_a_moved_hand_is_refused(engine, tmp_path, run):
+    spoil = in_archive("beside_0", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))
+    assert "link_pos" in accepted_then_refused(engine, tmp_path, "l06", "lecture", run, spoil)

@@ -5,11 +5,11 @@ import shutil
 from pathlib import Path
 
 import pytest
+from checkout import copy_checkout
 from spoilers import SPOILED, TORCH, both, moved, on, packages, part, predicate, seal
 from tiny_book import commit, git
 
 import robo_genesis
-from robo_genesis.core import project
 from robo_genesis.core.checks import FAILED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
@@ -115,14 +115,8 @@ def test_run_lesson_and_page_are_the_expected_ones(folder):
 
 @pytest.fixture
 def checkout(tmp_path):
-    """A copy of the files that decide the evidence key."""
-    root = tmp_path / "checkout"
-    for name in ("book", "robo_genesis"):
-        ignored = shutil.ignore_patterns("_build*", "__pycache__")
-        shutil.copytree(project.ROOT / name, root / name, ignore=ignored)
-    for name in ("pyproject.toml", "requirements.lock"):
-        shutil.copy(project.ROOT / name, root)
-    return root
+    """A copy of the checkout, to change."""
+    return copy_checkout(tmp_path / "checkout")
 
 
 LAB = "book/lessons/l04-joint-control/lab.md"

@@ -9,7 +9,8 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 import yaml
-from tiny_book import cell, make_book, notebook
+from small_book import as_executed
+from tiny_book import cell, contents, make_book, notebook
 
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.html import kept
@@ -19,7 +20,7 @@ from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import DOCTREES, SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.folder import NOTEBOOK, RECORD
+from robo_genesis.pipeline.pages.folder import RECORD
 from robo_genesis.site.frame.incremental import forget_own_pictures
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
@@ -37,22 +38,15 @@ def publish(folder: Path, built: BuiltPages, keep: bool = True) -> dict[str, byt
     """Render a book and return its files."""
     kept_folder = folder / "kept" if keep else None
     sphinx = SphinxProcess(folder / "book", folder / "log")
-    html = render(sphinx, folder / "staging", built, kept_folder).html
-    return {p.relative_to(html).as_posix(): p.read_bytes() for p in html.rglob("*") if p.is_file()}
+    return contents(render(sphinx, folder / "staging", built, kept_folder).html)
 
 
 def ran(folder: Path, printed: str) -> BuiltPages:
     """Return the book's executed page with an output, without a run."""
-    place = folder / f"run {printed}"
-    place.mkdir()
     (page,) = find_pages(folder / "book")
     (code,) = (c for c in page.notebook.cells if c.cell_type == "code")
     code.outputs = [nbformat.v4.new_output("stream", name="stdout", text=printed)]
-    page.notebook.cells = [code]
-    page.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "python"}
-    nbformat.write(page.notebook, place / NOTEBOOK)
-    (place / RECORD).write_text(printed)
-    return BuiltPages(folders={page.docname: place})
+    return BuiltPages.of([as_executed(page, folder / f"run {printed}", [1.0])])
 
 
 def replace(page: Path, *pairs: tuple[str, str]) -> None:

@@ -14,6 +14,7 @@ import psutil
 import pytest
 import tiny_book
 from checkout import copy_checkout
+from small_book import as_executed
 from tiny_book import cell, fails, make_book, notebook, start
 
 from robo_genesis.core.files import write_whole
@@ -21,7 +22,6 @@ from robo_genesis.core.project import STORE
 from robo_genesis.pipeline.html import live as live_module
 from robo_genesis.pipeline.html.live import Live, LiveEndedError
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.folder import write_page
 from robo_genesis.pipeline.pages.store import places
 
 TEXT = "# Text\n\nFirst words.\n"
@@ -177,9 +177,7 @@ def test_sphinx_is_started_again_after_it_was_killed(live):
 def run_of(folder: Path, place: Path, code: str) -> None:
     """Store a run of the page `page` with other code."""
     [page] = find_pages(make_book(folder, page=notebook(cell(code))))
-    page.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
-    run = {"run_id": "0" * 32, "seconds": 1.0, "cell_seconds": [1.0]}
-    write_page(place, page, page.notebook, folder, **run)
+    as_executed(page, place, [1.0])
 
 
 @pytest.fixture

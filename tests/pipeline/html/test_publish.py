@@ -11,11 +11,6 @@ from robo_genesis.pipeline.pages.results import PageResult
 
 
 @pytest.fixture
-def book(tmp_path):
-    return make_book(tmp_path, lab=notebook(cell("1"), front=LAB_FRONT))
-
-
-@pytest.fixture
 def draft(tmp_path):
     rendered = tmp_path / "rendered"
     rendered.mkdir()
@@ -48,7 +43,8 @@ def test_site_and_bundles_are_published_together_and_labs_apart_from_other_pages
     assert names(book) == {"_build"}
 
 
-def test_a_failure_leaves_the_old_site_alone(book, draft):
+def test_a_failure_leaves_the_old_site_alone(tmp_path, draft):
+    book = make_book(tmp_path)
     marker = published_marker(book)
     with pytest.raises(KeyboardInterrupt):
         publish(book, draft.folder, Mock(side_effect=KeyboardInterrupt))

@@ -1,11 +1,10 @@
-import os
 import signal
 import subprocess
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 
+import psutil
 import pytest
 from built_site import parsed
 from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
@@ -91,11 +90,7 @@ def test_a_child_of_sphinx_does_not_outlive_it(tmp_path):
         [sys.executable, "-c", FORKS], start_new_session=True, **pipes
     )
     with sphinx:
-        pass
-    assert sphinx.process.returncode == -signal.SIGKILL
-    deadline = time.monotonic() + 30
-    with suppress(ProcessLookupError):  # the group ends with its last process
-        while True:
-            os.killpg(sphinx.process.pid, 0)
-            assert time.monotonic() < deadline
+        while not (below := psutil.Process(sphinx.process.pid).children()):
             time.sleep(0.05)
+    assert sphinx.process.returncode == -signal.SIGKILL
+    assert psutil.wait_procs(below, timeout=30)[1] == []

@@ -29,12 +29,6 @@ def test_the_rest_of_a_page_is_estimated_from_its_last_run(page, now, said):
     assert page.state(now) == said
 
 
-def test_the_first_line_of_a_page_names_its_log_and_what_is_expected(tmp_path):
-    assert underway(last=None).started() == "started: 3 cells"
-    log = tmp_path / "lab.log"
-    assert underway(log=log).started() == f"started: 3 cells, about 20 s; its log: {log}"
-
-
 @pytest.mark.parametrize(("every", "lines"), [(0.0, 2), (1e6, 0)])
 def test_running_pages_are_reported_only_after_a_silence(every, lines):
     said: list[str] = []

@@ -1,7 +1,5 @@
 """`make evidence`: exit status, what is printed, and the real lab on the CPU."""
 
-import signal
-
 import pytest
 import tiny_book
 
@@ -15,21 +13,10 @@ def test_a_recording_without_a_camera_is_refused(tmp_path):
     assert "RENDER='0' is not valid for a recording, which always has camera fr" in report
 
 
-def test_ctrl_c_leaves_the_old_bundle_and_no_part_of_a_new_one(tmp_path):
-    old, started = tiny_book.old_bundle(tmp_path, "cpu"), tmp_path / "started"
-    waits = f"pathlib.Path({str(started)!r}).write_text('1')\nimport time\ntime.sleep(60)"
-    leaves = tiny_book.cell(f"{tiny_book.WRITE_BUNDLE}\n{waits}")
-    tiny_book.make_book(tmp_path, lab=tiny_book.notebook(leaves, front=tiny_book.LAB_FRONT))
-    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(tmp_path / "kept")}
-    process = tiny_book.start("evidence.py", tmp_path, **given)
-    tiny_book.wait_for(process, started)
-    process.send_signal(signal.SIGINT)
-    out, _ = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert "interrupted" in out
-    assert [path.name for path in old.parents[1].iterdir()] == ["cpu"]
-    assert old.read_text() == "old"
-    assert not (tmp_path / "cache/recording").exists()
+def test_a_lesson_without_a_lab_is_status_1(tmp_path):
+    tiny_book.make_book(tmp_path)
+    given = {"LESSON": "l09", "BACKEND": "cpu", "TO": str(tmp_path / "kept")}
+    assert "LESSON='l09' is not valid" in tiny_book.fails("evidence.py", tmp_path, **given)
 
 
 @pytest.mark.engine

@@ -8,8 +8,6 @@ from watching import errors
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-LECTURE = "lessons/l04-joint-control/lecture"
-
 
 @pytest.fixture
 def page(page):
@@ -23,13 +21,6 @@ def results(page) -> list[str]:
         "/Search finished|did not match/.test(document.querySelector('#search-results').innerText)"
     )
     return page.eval_on_selector_all("#search-results li > a", "links => links.map(a => a.href)")
-
-
-def test_search_finds_names_of_joints_and_calls(page, address):
-    names = "joint4 finger_joint1 set_dofs_kp dofs_kp control_dofs_position control_force overshoot"
-    for words in (*names.split(), "get_dofs_control_force"):
-        page.goto(f"{address}/search.html?q={words}")
-        assert [url for url in results(page) if f"/{LECTURE}.html" in url], words
 
 
 class WithNotFound(QuietHandler):

@@ -11,10 +11,10 @@ from pathlib import Path
 import nbformat
 import pytest
 from built_site import LESSON_PAGES, parsed
+from lessons.exercise_cells import page_of
 
 from robo_genesis.core import project
 from robo_genesis.pipeline import stages
-from robo_genesis.pipeline.pages.book import find_pages
 
 pytestmark = [pytest.mark.engine, pytest.mark.slow]
 LABS = {lesson: name for (lesson, page), name in LESSON_PAGES.items() if page == "lab"}
@@ -47,10 +47,8 @@ def taken(site: Path, lab: str, home: Path) -> list[str]:
 
 def write_solutions(notebook: Path, lesson: str) -> None:
     """Write the lab's own solutions where the student's notebook leaves functions to write."""
-    (lab,) = (
-        page for page in find_pages(project.BOOK) if (page.lesson, page.page) == (lesson, "lab")
-    )
-    solved = [c.source for c in lab.notebook.cells if "solution" in c.metadata.get("tags", [])]
+    cells = page_of(lesson, "lab").notebook.cells
+    solved = [c.source for c in cells if "solution" in c.metadata.get("tags", [])]
     left = nbformat.read(notebook, as_version=4)
     for solution in solved:
         head = solution.partition("(")[0] + "("

@@ -16,7 +16,7 @@ from browsers import chromium
 from docutils import nodes
 from falling import LINKS, G, falling
 from playwright.sync_api import Page
-from watching import call, choose, show_model, violations
+from watching import call, choose, readout, show_model, violations
 from without_sphinx import Panel, box, rows_of
 
 from robo_genesis import lessons as registry
@@ -122,18 +122,15 @@ def page(block, open_block) -> Page:
     return open_block(block)
 
 
-def readout(page: Page) -> dict[str, str]:
-    terms, values = (page.locator(f".replay {tag}").all_inner_texts() for tag in ("dt", "dd"))
-    return dict(zip(terms, values, strict=True))
-
-
 @pytest.mark.browser
 def test_keys_read_the_record_out_and_the_plots_draw_it(page):
-    assert readout(page)["time"] == "0.00 s, before the first step"  # nothing plays by itself
+    assert (
+        readout(page, ".replay")["time"] == "0.00 s, before the first step"
+    )  # nothing plays by itself
     slider = choose(page, "low", 19)
     slider.press("ArrowRight")
     fallen = {"time": "0.20 s", "height": "0.8000 m", "vertical velocity": "−2.0000 m/s"}
-    assert readout(page) == fallen
+    assert readout(page, ".replay") == fallen
     spoken = "low: time 0.20 s; height 0.8000 m; vertical velocity −2.0000 m/s"
     assert slider.get_attribute("aria-valuetext") == spoken
     labels = page.locator(".replay svg").evaluate_all("all => all.map(e => e.ariaLabel)")
@@ -203,7 +200,7 @@ def test_reduced_motion_goes_by_steps(block, open_block):
     play.click()
     page.get_by_text("Turn the view").wait_for(timeout=120_000)
     assert call(page, "frames_asked") == 0  # it stands still
-    assert readout(page)["time"] == "0.05 s"
+    assert readout(page, ".replay")["time"] == "0.05 s"
 
 
 @pytest.mark.browser

@@ -99,10 +99,8 @@ def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
 @pytest.mark.parametrize(("drift", "followed"), [(3.0, 0), (0.1, None)])
 def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed):
     trace = falling(1.0, drift=drift)
-    one = replace(
-        trace, **{name: getattr(trace, name)[:, 1:] for name in ("link_pos", "link_quat")},
-        **{name: getattr(trace, name)[:, 1:] for name in ("link_vel", "link_ang")},
-    )  # fmt: skip
+    arrays = ("link_pos", "link_quat", "link_vel", "link_ang")
+    one = replace(trace, **{name: getattr(trace, name)[:, 1:] for name in arrays})
     runs = body_channels.runs({"run": one}, ["box"], Replay(("run",), "box", "box"))
     found = scenery.scenery([box("box")], runs)
     assert (found.followed, found.axis, found.target) == (followed, False, {})
