@@ -183,6 +183,7 @@ has-packages:
 	  "Remove the link, or use that environment as it is: make PYTHON=.venv/bin/python ..." >&2; exit 1; }
 	@echo "Setting up .venv from requirements.lock (once; some minutes)"
 	@"$(BASE_PYTHON)" -m venv --clear .venv
-	@.venv/bin/python -m pip install -qq --no-compile --disable-pip-version-check --requirement requirements.lock
+	@.venv/bin/python -m pip install -qq --no-compile --no-deps --disable-pip-version-check --requirement requirements.lock
+	@.venv/bin/python -m pip check >/dev/null # the lock has every package, so pip needs no search
 	@.venv/bin/python -m compileall -qq -j 0 .venv/lib >/dev/null || true  # some packages have files that do not compile
 	@touch $@

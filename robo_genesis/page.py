@@ -17,7 +17,7 @@ from IPython.display import Markdown, display
 
 from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check
-from robo_genesis.core.exercises import Mistake
+from robo_genesis.core.exercises import FUNCTIONS, FunctionFailed, Mistake, Written
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons import find_page
@@ -92,6 +92,8 @@ class LessonPage:
         self.frames: dict[str, np.ndarray] = {}
         self.joints: Any = None
         self.links: Sequence[str] = list(self._declared.links)
+        declared = self._declared.readings.get(FUNCTIONS)
+        self._written = dict.fromkeys(declared.units if declared else (), 0)
 
     @property
     def experiment(self) -> Experiment:
@@ -100,7 +102,7 @@ class LessonPage:
             page=self._declared,
             traces={name: self.traces[name] for name in self._declared.runs if name in self.traces},
             links=self.links,
-            readings=dict(self.readings),
+            readings=self.readings | ({FUNCTIONS: self._written} if self._written else {}),
             frames=dict(self.frames),
             rendered=self.render,
             joints=self.joints,
@@ -151,6 +153,27 @@ class LessonPage:
         """
         print(checks.require(f"{self._lesson} {what}", found))
 
+    def test(self, test: Callable[..., Check], function: Written, *given: Any) -> None:
+        """Test a function that a student wrote, and print that it passed; `finish` counts it.
+
+        Args:
+            test: of the lesson's `exercises`.
+            function: has one of the names that the page declares.
+            given: further arguments of the test.
+
+        Raises:
+            LookupError: the page does not declare the function.
+            FunctionFailed: naming the call, what it returned, and the line if it raised.
+        """
+        name = function.__name__
+        if name not in self._written:
+            raise LookupError(f"{name} is not declared. Functions: {', '.join(self._written)}.")
+        outcome = test(function, *given)
+        self._written[name] = int(outcome.passed)
+        if not outcome.passed:
+            raise FunctionFailed(f"{name} does not pass its test yet.\n  {outcome.detail}")
+        print(f"{name} passes its test")
+
     def glue(self, failures: Sequence[Mistake]) -> None:
         """Keep evidence and curves of deliberate mistakes for the panels of a page of the site."""
         from myst_nb import glue  # the site alone needs it
@@ -164,7 +187,10 @@ class LessonPage:
                 glue(f"curves_{failure.name}", figure, display=False)
 
     def finish(self, scene: Any) -> None:
-        """Measure, show the table of checks, write the bundle, and print that all checks passed.
+        """Measure, show the table of checks, write the bundle, and print the verdict.
+
+        The verdict is `PASSED` if all checks passed. Where nothing but functions is missing, it is
+        `INCOMPLETE` and names them.
 
         Args:
             scene: the scene with the camera; only its renderer is read.
@@ -178,7 +204,15 @@ class LessonPage:
         folder = self._recorder.write(experiment, renderer)
         files = sum(path.is_file() for path in folder.rglob("*"))
         print(f"{files} files in {self._recorder.lesson}/{self._recorder.page}/{folder.name}")
-        print(checks.require(self._lesson, experiment.outcomes()))
+        missing = [name for name, passed in self._written.items() if not passed]
+        measured = [c for c in experiment.outcomes() if not missing or c.name != FUNCTIONS]
+        verdict = checks.require(self._lesson, measured)
+        if self._written:
+            count = len(self._written)
+            print(f"functions {count - len(missing)} of {count}")
+        if missing:
+            verdict = f"{self._lesson.upper()} CHECK: INCOMPLETE, to write: {', '.join(missing)}"
+        print(verdict)
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> Markdown:

@@ -9,15 +9,18 @@ import numpy as np
 import pytest
 from bundles import RENDERER, RUN_ID
 from lessons.body_runs import make_drop
+from lessons.exercise_cells import solutions
 
 import robo_genesis as rg
 from robo_genesis import page as pages
 from robo_genesis.core import project, shown
 from robo_genesis.core.checks import CheckFailed
+from robo_genesis.core.exercises import FunctionFailed
 from robo_genesis.lessons import l02
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim import session
 
+SOLVED = solutions("l02")
 FRAME = np.arange(540 * 720 * 3, dtype=np.uint32).astype(np.uint8).reshape(540, 720, 3)
 
 
@@ -133,12 +136,14 @@ def test_only_functions_of_lessons_and_core_that_return_a_table_or_figure_are_sh
 
 def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(page, displayed, capsys):
     measure(page)
+    page._written |= dict.fromkeys(page._written, 1)
     page.finish(None)
     assert displayed[-1][1] == {"function": shown.CHECKS, "arguments": []}
     assert "**FAILED**" not in displayed[-1][0]["text/markdown"]
     lines = capsys.readouterr().out.splitlines()
     assert lines[-1] == "L02 CHECK: PASSED"
-    assert lines[-2].endswith("files in l02/lab/cpu")
+    assert lines[-2] == "functions 4 of 4"
+    assert lines[-3].endswith("files in l02/lab/cpu")
     manifest = json.loads((page.folder / "cpu" / "manifest.json").read_text())
     assert manifest["predicate"]["run_id"] == RUN_ID
     page.readings["body"] = {"mass": 2 * spec.BASELINE.mass}
@@ -146,6 +151,30 @@ def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(page, 
         page.finish(None)
     assert "**FAILED**" in displayed[-1][0]["text/markdown"]
     assert "PASSED" not in capsys.readouterr().out
+
+
+def usable_frame(rgb):
+    return rgb["wide"]
+
+
+def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(page, capsys):
+    measure(page)
+    page._written |= {"make_scene": 1, "record": 1}
+    page.test(l02.exercises.stepped, SOLVED["stepped"])
+    with pytest.raises(FunctionFailed) as failed:
+        page.test(l02.exercises.usable_frame, usable_frame)
+    first, *_, line = failed.value._render_traceback_()
+    assert first == "usable_frame does not pass its test yet."
+    assert line.endswith('of its cell: return rgb["wide"]')
+    with pytest.raises(
+        LookupError, match=r"test_\w+ is not declared\. Functions: make_scene, record"
+    ):
+        page.test(l02.exercises.stepped, test_without_a_camera_no_frame_is_taken)
+    page.finish(None)
+    last = capsys.readouterr().out.splitlines()[-2:]
+    assert last == ["functions 3 of 4", "L02 CHECK: INCOMPLETE, to write: usable_frame"]
+    metrics = json.loads((page.folder / "cpu" / "metrics.json").read_text())
+    assert {name: of["value"] for name, of in metrics["functions"].items()} == page._written
 
 
 def test_without_a_camera_no_frame_is_taken(page, monkeypatch):

@@ -15,5 +15,7 @@ document.addEventListener("change", ({ target }) => {
     shown = target.value ? texts.find((text) => text.dataset.key === key) : null;
     for (const text of texts) text.classList.toggle("shown", text === shown);
   }
-  question.querySelector("output").textContent = shown?.textContent ?? "";
+  const waits = question.classList.contains("waits"); // for the replay below
+  const said = waits ? "Noted. Now press Play." : shown?.textContent;
+  question.querySelector("output").textContent = said ?? "";
 });

@@ -5,7 +5,7 @@
 /* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const KEYS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
-  const UNKNOWN = "these runs cannot show it";
+  const UNKNOWN = "this record cannot tell";
   const HEIGHT = 210;
 
   function make(parent, name, text = "", attributes = {}) {

@@ -19,7 +19,8 @@ globalThis.timePlot = (() => {
   /* Draws a plot from the start; all lengths are CSS pixels.
      curves: [{times, values, mark, chosen}], `mark` a class of palette.css; levels: [{value, mark}];
      ticks: [{value, label}]; low, high: ends of the value axis; end: of time [s], which begins at 0.
-     Returns x and y, from time and value to pixels, and share, from pixels to a share of the time. */
+     Returns x and y, from time and value to pixels, share, from pixels to a share of the time, and grow,
+     which leaves of the curves what lies before a sample and at it. */
   function draw(svg, { title, height, curves, levels, ticks, low, high, end }) {
     const width = svg.parentElement.clientWidth;
     const across = width - EDGE.left - EDGE.right;
@@ -46,11 +47,17 @@ globalThis.timePlot = (() => {
     for (const { value, mark } of levels) {
       add(svg, "line", { x1: x(0), x2: x(end), y1: y(value), y2: y(value), class: `level ${mark}` });
     }
-    for (const { times, values, mark, chosen } of curves) {
-      const points = values.map((v, k) => `${x(times[k]).toFixed(1)},${y(v).toFixed(1)}`).join(" ");
-      add(svg, "polyline", { points, class: `curve ${mark}${chosen ? " chosen" : ""}` });
+    const lines = curves.map(({ times, values, mark, chosen }) => {
+      const points = values.map((v, k) => `${x(times[k]).toFixed(1)},${y(v).toFixed(1)}`);
+      const line = { class: `curve ${mark}${chosen ? " chosen" : ""}`, points: points.join(" ") };
+      return { line: add(svg, "polyline", line), points };
+    });
+    function grow(sample) {
+      for (const { line, points } of lines) {
+        line.setAttribute("points", points.slice(0, sample + 1).join(" "));
+      }
     }
-    return { x, y, floor, top: EDGE.top, share: (pixels) => (pixels - EDGE.left) / across };
+    return { x, y, floor, top: EDGE.top, share: (pixels) => (pixels - EDGE.left) / across, grow };
   }
 
   return { add, draw, write };

@@ -7,6 +7,7 @@
 document.addEventListener("DOMContentLoaded", () => {
   const { add, write } = globalThis.timePlot;
   const { Scene, draws3D } = globalThis.stage;
+  const { kept, keep } = globalThis.memory;
   const HEIGHT = 150;
   const STRIDE = 5; // samples that one press advances where reduced motion is preferred
   const ROOM = 0.1; // share of an axis below which two labels would overlap
@@ -38,14 +39,15 @@ document.addEventListener("DOMContentLoaded", () => {
     return [...ends.filter((end) => Math.abs(end) > ROOM * (most - least)), 0];
   }
 
-  /* Draws one plot of all cases; returns the function that moves its cursor. */
+  /* Draws one plot of all cases; returns the function that moves its cursor, and shows of the curves
+     what was seen. */
   function draw(svg, { curves, chosen, levels, title }) {
     const drawn = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
     const all = [...Object.values(curves).flatMap((c) => c.values), ...drawn.map((l) => l.value)];
     const [least, most] = [Math.min(...all), Math.max(...all)];
     const margin = 0.08 * (most - least || 1); // a constant value also needs a range
     const { times, values, mark } = curves[chosen];
-    const { x, y, floor, top, share } = globalThis.timePlot.draw(svg, {
+    const { x, y, floor, top, share, grow } = globalThis.timePlot.draw(svg, {
       title, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
       end: times.at(-1),
       curves: Object.entries(curves).map(([name, curve]) => ({ ...curve, chosen: name === chosen })),
@@ -60,12 +62,30 @@ document.addEventListener("DOMContentLoaded", () => {
       const detail = share(event.clientX - svg.getBoundingClientRect().left);
       svg.dispatchEvent(new CustomEvent("pick", { detail, bubbles: true }));
     };
-    return (time, sample) => {
+    return (time, sample, seen) => {
+      grow(seen);
       line.setAttribute("x1", x(time));
       line.setAttribute("x2", x(time));
       dot.setAttribute("cx", x(times[sample]));
       dot.setAttribute("cy", y(values[sample]));
     };
+  }
+
+  const questionAbove = (root) => [...document.querySelectorAll("fieldset.choice")]
+    .findLast((one) => one.compareDocumentPosition(root) & Node.DOCUMENT_POSITION_FOLLOWING);
+
+  /* Hides a later explorer of the same runs, and says why. */
+  function veil(explorer) {
+    explorer.classList.add("veiled");
+    const note = document.createElement("p");
+    note.className = "veil";
+    note.textContent = "This shows the runs of the first question on this page. Answer it first.";
+    explorer.before(note);
+  }
+
+  function unveil(explorer) {
+    explorer.classList.remove("veiled");
+    explorer.previousElementSibling.remove();
   }
 
   function start(root) {
@@ -80,7 +100,15 @@ document.addEventListener("DOMContentLoaded", () => {
     const scene = new Scene(root);
     const [terms, texts, places] = ["dt", "dd", ".plot"].map((name) => root.querySelectorAll(name));
     const svgs = [...places].map((place) => add(place, "svg", { role: "img" }));
-    const last = Number(slider.max);
+    const rest = root.querySelector(".rest");
+    const all = Number(slider.max);
+    let last = rest ? Number(rest.dataset.until) : all; // the motion first, the rest on request
+    const block = root.parentElement;
+    /* Of a blind replay, nothing shows before the question above has an answer, and its feedback waits
+       for the curves. They appear with the time: `seen` is the last sample so far. */
+    const blind = "blind" in root.dataset && !kept(root.dataset.name);
+    const question = blind && questionAbove(root);
+    let seen = blind ? 0 : last;
     let cursors = [];
     let began = null; // {clock, time}: when playing started [ms], and at which time of the run [s]
     let frame = 0; // the request for the next frame while playing
@@ -109,7 +137,9 @@ document.addEventListener("DOMContentLoaded", () => {
         .map((text, k) => `${terms[k].textContent} ${text}`).join("; ");
       slider.setAttribute("aria-valuetext", `${chosen()}: ${spoken}`);
       lines.forEach((text, k) => { texts[k].textContent = text; });
-      for (const cursor of cursors) cursor(time, sample());
+      seen = Math.max(seen, sample());
+      for (const cursor of cursors) cursor(time, sample(), seen);
+      if (seen === last && block.classList.contains("growing")) reveal();
       scene.pose(chosen(), time);
     }
 
@@ -125,7 +155,7 @@ document.addEventListener("DOMContentLoaded", () => {
       const { levels } = run();
       cursors = channels.map(({ name, unit }, k) => {
         const curves = Object.fromEntries(Object.entries(runs).map(([one, { time, values, mark }]) => [
-          one, { times: time, values: values[k], mark },
+          one, { times: time.slice(0, last + 1), values: values[k].slice(0, last + 1), mark },
         ]));
         const title = `${capital(name)} [${unit}]`;
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
@@ -134,6 +164,18 @@ document.addEventListener("DOMContentLoaded", () => {
         return draw(svgs[k], { curves, chosen: chosen(), levels: drawn, title });
       });
       showSample();
+    }
+
+    /* Shows everything, and announces what the answer was worth. */
+    function reveal() {
+      seen = last;
+      keep(root.dataset.name, true);
+      block.classList.remove("veiled", "growing");
+      question?.classList.remove("waits");
+      question?.querySelector("input:checked, input[type=number]")
+        ?.dispatchEvent(new Event("change", { bubbles: true }));
+      for (const other of document.querySelectorAll(".explorer.veiled")) unveil(other);
+      drawPlots();
     }
 
     function stop() {
@@ -198,6 +240,12 @@ document.addEventListener("DOMContentLoaded", () => {
     speed.addEventListener("change", () => {
       if (began) began = { clock: null, time: run().time[sample()] };
     });
+    rest?.addEventListener("click", () => {
+      slider.max = last = all;
+      seen = all;
+      rest.remove();
+      drawPlots();
+    });
     root.querySelector(".plots").addEventListener("pick", (event) => {
       slider.value = Math.round(event.detail * last);
       jump();
@@ -205,7 +253,16 @@ document.addEventListener("DOMContentLoaded", () => {
     for (const radio of radios) radio.addEventListener("change", drawPlots);
     calm.addEventListener("change", () => (began ? stop() : label()));
 
+    slider.max = last;
     for (const part of [play, root.querySelector(".panel")]) part.hidden = false;
+    if (blind) block.classList.add("growing");
+    if (question) {
+      block.classList.add("veiled");
+      question.classList.add("waits");
+      question.addEventListener("change", () => block.classList.remove("veiled"));
+      root.querySelector(".veil button").addEventListener("click", reveal);
+      document.querySelectorAll(".explorer:has(.plots)").forEach(veil);
+    }
     label();
     new ResizeObserver(drawPlots).observe(root.querySelector(".plots"));
     drawPlots();

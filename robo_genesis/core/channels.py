@@ -1,12 +1,11 @@
-"""What a lesson compares, and its runs as channels, which pictures draw and replays show."""
+"""What a lesson compares, and its runs as channels, which figures draw and replays show."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.text import listed
 from robo_genesis.core.trace import BodyTrace, Trace
 
 MEASURES = False
@@ -56,14 +55,14 @@ class Replay:
     | `cases` | names of the runs |
     | `follows` | the joint of a robot, or the link of free bodies, whose motion the curves show |
     | `thing` | what moves, for a reader: "box" |
-    | `axes` | of the world, along which a link is followed; the first is that of small pictures |
+    | `axes` | of the world, along which a link is followed |
+    | `goal` | by case and number of the state, the point (3,) that the hand is to reach [m] |
     | `band` | half width of the settling band around the target of a joint |
     | `quality` | a sentence on one case, with its metrics in braces: `Rise time {rise_time}.` |
-    | `until` | end of the time axis of the small picture [s], None for the end of the runs |
+    | `until` | end of the motion [s], which is shown first; None for the end of the runs |
     | `places` | for all cases in one view, the horizontal position (x, y) of each [m] |
     | `credit` | authors of the shape, None for a shape of the scene itself |
     | `view` | alternative text of the 3D view |
-    | `alt`, `caption` | of a picture of the first channel |
     | `filmed`, `filmed_run` | subject of the camera frames, and its run |
 
     Texts that are not given are made from the names.
@@ -73,14 +72,13 @@ class Replay:
     follows: str
     thing: str
     axes: tuple[str, ...] = ("z",)
+    goal: Callable[[str, int], FloatArray] | None = None
     band: float = 0.0
     quality: str = ""
     until: float | None = None
     places: tuple[tuple[float, float], ...] = ()
     credit: str | None = None
     view: str = ""
-    alt: str = ""
-    caption: str = ""
     filmed: str = ""
     filmed_run: str = "the baseline"
 
@@ -89,8 +87,7 @@ class Replay:
 class Runs:
     """Runs with the same times; `subject` is the joint or body of the channels: `the box`.
 
-    `source` is the call of the engine that reads the first channel. `moves` describes by case the
-    motion, with `**strong**` and code as its only markup.
+    `moves` describes by case the motion, with `**strong**` and code as its only markup.
 
     Raises:
         ValueError: there are no runs or no channels, or the runs differ in their times.
@@ -98,7 +95,6 @@ class Runs:
 
     replay: Replay
     subject: str
-    source: str
     traces: Mapping[str, Run]
     links: Sequence[str]
     channels: Sequence[Channel]
@@ -128,22 +124,6 @@ class Runs:
     def t(self) -> FloatArray:
         """Times of the states, (n+1,) [s]."""
         return self.first.t
-
-    @property
-    def title(self) -> str:
-        """The first channel in words: `Height of the box`."""
-        return f"{self.channels[0].name.capitalize()} of {self.subject}"
-
-    @property
-    def alt(self) -> str:
-        """The alternative text of a picture of the first channel."""
-        cases = f": {listed(list(self.traces))}" if len(self.traces) > 1 else ""
-        return self.replay.alt or f"{self.title} over time{cases}."
-
-    @property
-    def caption(self) -> str:
-        """The caption of a picture of the first channel."""
-        return self.replay.caption or f"{self.title}, from {self.source}."
 
     def levels_of(self, channel: Channel) -> list[Level]:
         """Return the levels of a channel."""

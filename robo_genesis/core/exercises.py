@@ -4,14 +4,16 @@ A test of a student's function judges what the function returns; a mistake is ju
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import wraps
 from inspect import signature
-from typing import Any, ParamSpec
+from traceback import extract_tb
+from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, at_most, equal, evaluate
+from robo_genesis.core.checks import Check, CheckFailed, Finding, at_most, equal
+from robo_genesis.core.experiment import Experiment, MeasuringPage, counts
 from robo_genesis.core.scene import FloatArray
 
 MEASURES = False
@@ -55,29 +57,93 @@ def quoted(error: Exception | None) -> str:
     return f"`{type(error).__name__}`: {error}" if error else "No exception was raised."
 
 
+FUNCTIONS = "functions"
+"""The group of readings with 1 for each function of a page that passed its test, else 0."""
+
+
+def functions(run: Experiment) -> Iterator[Finding]:
+    """Each function that the page leaves to write passed its test."""
+    for name, passed in run.readings[FUNCTIONS].items():
+        yield equal(name, passed, 1)
+
+
+def with_functions(page: MeasuringPage, *names: str) -> MeasuringPage:
+    """Return a page on which a student writes these functions; its check requires them all."""
+    readings = {**page.readings, FUNCTIONS: counts(names)}
+    return replace(page, readings=readings, checks=(*page.checks, functions))
+
+
+class FunctionFailed(CheckFailed):
+    """A student's function did not pass its test. A notebook shows the message alone."""
+
+    def _render_traceback_(self) -> list[str]:
+        return str(self).splitlines()
+
+
+class Watched:
+    """A student's function that notes its last call in words."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function, self.call = function, ""
+        self.name = getattr(function, "__name__", "the function")
+
+    def __call__(self, *given: Any, **named: Any) -> Any:
+        """Call the function."""
+        words = [*map(brief, given), *(f"{name}={brief(value)}" for name, value in named.items())]
+        self.call = f"{self.name}({', '.join(words)})"
+        result = self.function(*given, **named)
+        self.call += f" returned {brief(result)}"
+        return result
+
+    def raised(self, error: Exception) -> str:
+        """Return what an exception says, with the line of the function that raised it."""
+        own = [f for f in extract_tb(error.__traceback__) if f.filename == self._file]
+        line = f"\n  line {own[-1].lineno} of its cell: {own[-1].line}" if own else ""
+        return f"{self.call or self.name}: {type(error).__name__}: {error}{line}"
+
+    @property
+    def _file(self) -> str:
+        return getattr(getattr(self.function, "__code__", None), "co_filename", "")
+
+
+def brief(value: Any) -> str:
+    """Return an argument or a result in a few words; sequences begin with three items."""
+    if isinstance(value, float | np.floating):
+        return f"{value:.6g}"
+    if value is None or isinstance(value, bool | int | str | np.generic):
+        return str(value)[:40]
+    if isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim):
+        return f"[{', '.join(map(brief, value[:3]))}{', …' * (len(value) > 3)}]"
+    return type(value).__name__
+
+
 Given = ParamSpec("Given")
+Written = Callable[..., Any]  # A function that a student wrote
 
 
-def as_test(findings: Callable[Given, Iterable[Finding]]) -> Callable[Given, list[Check]]:
-    """Make a test of a function that yields findings about a student's function.
+def as_test(
+    findings: Callable[Concatenate[Written, Given], Iterable[Finding]],
+) -> Callable[Concatenate[Written, Given], Check]:
+    """Make a test of what yields findings about its first argument, a function of a student.
 
-    The test raises TypeError if it is called with wrong arguments. Other exceptions are those of
-    the student's function and fail the check.
+    The outcome names the call of the first value that is not allowed. The test raises TypeError if
+    it is called with wrong arguments. Other exceptions are those of the student's function and fail
+    the test.
     """
 
     @wraps(findings)
-    def judge(*given: Given.args, **named: Given.kwargs) -> list[Check]:
-        signature(findings).bind(*given, **named)
-
-        def of_function(_: None) -> Iterable[Finding]:
-            """The function does what its docstring says."""
-            return findings(*given, **named)
-
-        of_function.__name__ = findings.__name__
+    def judge(function: Written, /, *given: Given.args, **named: Given.kwargs) -> Check:
+        signature(findings).bind(function, *given, **named)
+        watched, judged, problems = Watched(function), 0, list[str]()
         try:
-            return list(evaluate((of_function,), None))
+            for finding in findings(watched, *given, **named):
+                judged += 1
+                if not finding.passed:
+                    of_first = "" if problems else f"{watched.call}\n  "
+                    problems.append(f"{of_first}{finding.problem}")
         except Exception as error:  # whatever a student's function raises
-            return [Check(findings.__name__, False, f"it raised {type(error).__name__}: {error}")]
+            problems.append(watched.raised(error))
+        return Check(findings.__name__, judged > 0 and not problems, "\n  ".join(problems))
 
     return judge
 

@@ -44,14 +44,6 @@ def git_or_none(root: Path, *arguments: str) -> str | None:
         return None
 
 
-def history(book: Path) -> list[str | None]:
-    """Return what decides the pages' histories: the commit, and the uncommitted changes."""
-    return [
-        git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository"),
-        git_or_none(book, "status", "--porcelain", "-z", "--", "."),
-    ]
-
-
 def unclean(root: Path, reason: str = "A release is built from one commit") -> list[str]:
     """Return why a checkout differs from its commit, nothing if it does not.
 

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from robo_genesis.core.channels import Channel, Level, Runs
+from robo_genesis.core.channels import Channel, Level
 from robo_genesis.core.palette import MARKS, PARTS, marks_of
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, Trace
@@ -135,12 +135,6 @@ def channel(
         ax.plot(t, drawn.values[case], label=case, **look(mark))
     ax.margins(x=0.01)
     return finish(ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]")
-
-
-def first_channel(ax: Axes, runs: Runs, marks: Mapping[str, str]) -> Axes:
-    """Draw the first channel, which represents the runs in small pictures."""
-    first = runs.channels[0]
-    return channel(ax, runs.t, first, runs.subject, marks, runs.levels_of(first))
 
 
 def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], quantity: str) -> Axes:

@@ -12,7 +12,7 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 from robo_genesis.core.files import files_below, files_digest, json_digest
-from robo_genesis.core.git import history
+from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import (
     PUBLISHED,
     ProjectError,
@@ -46,13 +46,14 @@ def inputs_digest(root: Path, book: Path, environment: Mapping[str, str] | None 
         environment: variables, by default those of this process.
     """
     parts = other_inputs(root, book, (), environment)
-    return json_digest(parts | {"history": history(book)})
+    commit = git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository")
+    return json_digest(parts | {"commit": commit})  # a recorded run names one in the history
 
 
 def other_inputs(
     root: Path, book: Path, pages: Collection[Path], environment: Mapping[str, str] | None = None
 ) -> dict[str, object]:
-    """Return what decides a build's site apart from some pages and the history of the book.
+    """Return what decides a build's site apart from some pages and the commit.
 
     Args:
         root: the checkout.

@@ -185,7 +185,7 @@ LACKING = ("present", "missing")
          {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "missing")}),
         (without_g3, without_g3, "Coverage", {"case G3": ("missing", "missing")}),
         (same, pop("manifest.json", "predicate", "checks", -1), "Coverage",
-         {"check posture": LACKING}),
+         {"check functions": LACKING}),
         (same, put(METRICS, "G1", "overshoot", unit="degree"), "Coverage",
          {"metric G1.overshoot": ("rad, value", "degree, value")}),
         (same, joint(3, dof_idx_local=4, lower=None), "Coverage",

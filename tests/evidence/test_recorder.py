@@ -93,10 +93,10 @@ def test_a_new_bundle_replaces_an_old_one_and_what_an_earlier_failure_left(recor
     [
         (lambda e: {"traces": {n: t for n, t in e.traces.items() if n != "G2"}}, RecordError,
          "the runs G1, G3, baseline; its declaration names G1, G2, G3, baseline. Run each"),
-        (lambda e: {"readings": {"model": e.readings["model"] | {"links": float("nan")}}},
+        (lambda e: {"readings": e.readings | {"model": e.readings["model"] | {"links": np.nan}}},
          RecordError, "Not finite or beyond limits: model.links. A bundle needs others"),
-        (lambda e: {"readings": {"model": e.readings["model"] | {"dofs": 2**60}}}, ValueError,
-         "is not a number within ±2⁵³"),
+        (lambda e: {"readings": e.readings | {"model": e.readings["model"] | {"dofs": 2**60}}},
+         ValueError, "is not a number within ±2⁵³"),
         (lambda e: {"frames": {"initial": np.zeros((2, 2, 7), np.uint8)}}, FrameError, "shape"),
     ],
 )  # fmt: skip

@@ -5,7 +5,9 @@ import re
 import pytest
 from lessons.exercise_cells import page_of
 
+from robo_genesis.core.exercises import FUNCTIONS
 from robo_genesis.core.project import BOOK
+from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages.book import find_pages
 
 STUBS = [
@@ -13,7 +15,7 @@ STUBS = [
     for page in find_pages(BOOK)
     for cell in page.notebook.cells
     if "raise NotImplementedError" in cell.source
-    and (stub := re.match(r"def (\w+)\(", cell.source))
+    and (stub := re.search(r"^def (\w+)\(", cell.source, re.M))
 ]
 
 
@@ -22,12 +24,14 @@ def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(stub):
     """Only the site shows the solution, and a cell tests what the student wrote."""
     lesson, name, page = stub
     all_cells = page_of(lesson, page).notebook.cells
-    empty, solution = [c for c in all_cells if c.source.startswith(f"def {name}(")]
+    empty, solution = [c for c in all_cells if f"def {name}(" in c.source]
     assert '"""' in empty.source
     assert "solution" not in empty.metadata.get("tags", [])
     assert "solution" in solution.metadata["tags"]
     assert len(solution.source.splitlines()) - 1 <= 15
-    assert re.search(rf"exercises\.\w+\({name}[,)]", "\n".join(c.source for c in all_cells))
+    assert re.search(rf"page\.test\([\w.]+, {name}[,)]", "\n".join(c.source for c in all_cells))
+    declared = find_page(lesson, page).readings[FUNCTIONS].units
+    assert [*declared] == [stub[1] for stub in STUBS if (stub[0], stub[2]) == (lesson, page)]
 
 
 def test_each_lab_leaves_functions_to_write():

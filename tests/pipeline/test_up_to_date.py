@@ -80,7 +80,6 @@ CHANGES: dict[str, Callable[[Path], None]] = {
     "a new file that git ignores": lambda root: (root / "book" / "new.tmp").write_text(""),
     "a new module": lambda root: (root / "robo_genesis" / "new.py").write_text(""),
     "an edit committed": lambda root: git(root, "commit", "--allow-empty", "-m", "second"),
-    "an edit staged": lambda root: git(root, "rm", "--cached", "book/index.md"),
     "another version of a package": lambda root: (root / INSTALLED).rename(root / UPGRADED),
     "a package installed again": lambda root: os.utime(root / INSTALLED, (1, 1)),
     "a file behind a link": lambda root: (root.parent / "elsewhere" / "new.json").touch(),

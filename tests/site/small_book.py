@@ -41,8 +41,7 @@ Four was measured.
 :::
 
 :::{featured} L05
-```{glance} l05
-```
+Five was measured.
 :::
 
 ```{course-status}

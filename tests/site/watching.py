@@ -87,8 +87,17 @@ def readout(page: Page, block: str, values: str = "dd") -> dict[str, str]:
     return dict(zip(terms, found, strict=True))
 
 
+def show_all(page: Page, replay: str = ".replay") -> None:
+    """Show a blind replay without an answer, and the whole runs."""
+    for button in (f"{replay} .veil button", f"{replay} .rest"):
+        for found in page.locator(button).all():
+            if found.is_visible():
+                found.click()
+
+
 def show_model(page: Page, replay: str = ".replay") -> None:
-    """Load the model with the first Play, and pause if it still plays."""
+    """Show all of a replay, load the model with the first Play, and pause if it still plays."""
+    show_all(page, replay)
     play = page.locator(f"{replay} .play")
     play.click()
     page.locator(replay).get_by_text("Turn the view").wait_for(timeout=120_000)

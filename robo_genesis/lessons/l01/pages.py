@@ -2,6 +2,7 @@
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l01 import checks, machine, spec
@@ -10,7 +11,7 @@ from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
 MEASURES = False
 
 
-LAB = MeasuringPage(
+FALL = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=BodyTrace,
     links=(spec.LINK,),
@@ -19,7 +20,10 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
-LECTURE = LAB.with_more(spec.lecture_parameters, readings=machine.READINGS, checks=(checks.doctor,))
+LAB = with_functions(FALL, "height_after", "fall")
+LECTURE = FALL.with_more(
+    spec.lecture_parameters, readings=machine.READINGS, checks=(checks.doctor,)
+)
 
 LESSON = Lesson(
     spec=spec,

@@ -6,6 +6,7 @@ from dataclasses import replace
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_deeper, study_spec
@@ -30,7 +31,7 @@ def readings(cases: Mapping[str, ContactCase]) -> dict[str, Readings]:
     return found
 
 
-LAB = MeasuringPage(
+CUBE = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=ContactTrace,
     links=(spec.LINK,),
@@ -39,6 +40,7 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
+LAB = with_functions(CUBE, "make_scene", "read_contacts", "landing", "push", "stop")
 
 
 def further(
@@ -47,7 +49,7 @@ def further(
     """Return a page with runs in Genesis and checks of its own."""
     cases = study_spec.CASES_OF[name]
     return replace(
-        LAB,
+        CUBE,
         runs=runs_of(cases),
         readings=readings(cases),
         checks=(*checks.OF_ALL_PAGES, *own),

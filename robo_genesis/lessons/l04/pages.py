@@ -5,8 +5,8 @@ from functools import partial
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Readings, Run, counts, runs_of
-from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import checks, lecture_checks, spec, study, study_checks, study_spec
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
@@ -15,7 +15,7 @@ from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 MEASURES = False
 
 
-LAB = MeasuringPage(
+STEPS = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=Trace,
     joints=JOINT_NAMES,
@@ -24,7 +24,8 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
-MISTAKES = replace(LAB, checks=checks.WITHOUT_CAMERA, camera=False)
+LAB = with_functions(STEPS, "resolve", "record", "pd_effort", "measure")
+MISTAKES = replace(STEPS, checks=checks.WITHOUT_CAMERA, camera=False)
 
 
 ASSIGNED = Run(
@@ -32,7 +33,7 @@ ASSIGNED = Run(
     measured=False,
     note="state overwritten at each sample, no step taken; its time is nominal",
 )
-LECTURE = LAB.with_more(
+LECTURE = STEPS.with_more(
     partial(study_spec.parameters, "lecture"),
     runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES) | {study_spec.ASSIGNED: ASSIGNED},
     {study.GROUP: Readings(study.GRAVITY)},
@@ -45,6 +46,7 @@ FORMULA = MISTAKES.with_more(
     {study.GROUP: Readings(study.AT_START | study.MASSES | study.GRAVITY)},
     study_checks.FORMULA,
 )
+FORMULA = with_functions(FORMULA, "stepped")
 IN_MUJOCO = {
     name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
     for name, second in study_spec.SECOND_RUNS.items()
@@ -83,10 +85,6 @@ LESSON = Lesson(
             credit=CREDIT,
             view="The robot in 3D, in the posture of the sample that is shown. "
             f"{spec.STEPPED_JOINT} moves.",
-            alt=f"Position of {spec.STEPPED_JOINT} over time with the gains of "
-            f"{listed(tuple(study_spec.COMPARED))}, its target and the settling band around it.",
-            caption=f"Position of {spec.STEPPED_JOINT}, three settings of its controller, from "
-            "get_dofs_position.",
             quality="Rise time {rise_time}, overshoot {overshoot}, final error {final_error}; at "
             "the force limit: {saturation_samples}.",
             filmed="the Franka",

@@ -7,6 +7,7 @@ import numpy as np
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import checks, restarts, spec, study
@@ -37,13 +38,14 @@ MOTION = MeasuringPage(
     parameters=spec.parameters,
     camera=False,
 )
-LAB = replace(
+LECTURE = replace(
     MOTION,
     readings=MODEL | study.READINGS | SEEN | view_record.groups(spec.VIEWED),
     checks=checks.CHECKS,
     camera=True,
     frames=("initial", "final", *view_record.frame_names(spec.VIEWED)),
 )
+LAB = with_functions(LECTURE, "chain", "damped", "accept", "project", "back_project")
 
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
 ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
@@ -68,7 +70,7 @@ LESSON = Lesson(
     metrics=dict.fromkeys(spec.CASES, ReachMetrics),
     pages={
         "lab": LAB,
-        "lecture": LAB,
+        "lecture": LECTURE,
         "mistakes": replace(MOTION, camera=True, frames=()),
         "solutions": SOLUTIONS,
         "cameras": CAMERAS,
@@ -78,12 +80,9 @@ LESSON = Lesson(
             tuple(spec.CASES),
             follows="joint4",
             thing="robot",
-            band=0.01,
-            until=0.6,
+            goal=lambda case, state: spec.TARGET,
             credit=CREDIT,
             view="The robot in the posture of the sample; a sphere marks the target of the hand.",
-            alt="Position of joint4 over time in three runs, and its command.",
-            caption="Position of joint4 in three runs, from get_dofs_position.",
             quality="The hand starts {start_distance} from its target and ends {final_distance} "
             "and {final_angle} from it.",
             filmed="the Franka",

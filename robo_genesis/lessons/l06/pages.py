@@ -6,6 +6,7 @@ import numpy as np
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Run, runs_of
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
@@ -52,6 +53,7 @@ def timed(page: MeasuringPage, protocol: throughput.Protocol) -> MeasuringPage:
 
 
 LAB = timed(LECTURE, throughput.PROTOCOL)
+LAB = with_functions(LAB, "accept", "command", "step_time")
 THROUGHPUT = timed(MISTAKES, throughput.DEEPER)
 """The page that explains why the curve of throughput bends."""
 
@@ -64,13 +66,11 @@ LESSON = Lesson(
             tuple(spec.WORLDS),
             follows="joint1",
             thing="robots",
-            band=0.01,
+            goal=lambda name, state: spec.WORLDS[name].positions[-1 if state >= spec.SWITCH else 0],
             places=spec.PLACES,
             credit=CREDIT,
             view="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
             "colours of the runs are at the targets of the hands.",
-            alt="Position of joint1 over time in four environments.",
-            caption="Position of joint1 in four environments, from get_dofs_position.",
             quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
             "{moved_later}.",
             filmed="the robots of all environments",

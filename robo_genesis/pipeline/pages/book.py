@@ -108,7 +108,7 @@ def _read(book: Path, docname: str) -> Iterator[Page]:
     path = (book / name).with_name(Path(name).name + ".md")
     if not path.is_file():
         raise PageError(f"_toc.yml names {docname!r}, but there is no {path}. Pages are .md files.")
-    notebook = _notebook(name, path)
+    notebook = read_notebook(path, name)
     if notebook is None:
         return
     if "name" not in notebook.metadata.get("kernelspec", {}):
@@ -121,8 +121,16 @@ def _read(book: Path, docname: str) -> Iterator[Page]:
     yield Page(name, path, notebook, *_declared(name, notebook))
 
 
-def _notebook(name: str, path: Path) -> NotebookNode | None:
-    """Return the parsed page, None if it has no code cells."""
+def read_notebook(path: Path, name: str = "") -> NotebookNode | None:
+    """Return the parsed page, None if it has no code cells.
+
+    Args:
+        path: of the page.
+        name: of the page in messages.
+
+    Raises:
+        PageError: it cannot be read.
+    """
     try:
         text = path.read_text("utf8")
         # Parse first: MyST-NB mistakes a notebook with a broken front matter for plain text.

@@ -1,10 +1,11 @@
 """Runs of a joint as channels: position, velocity, control force, target and effort limit."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from robo_genesis.core.channels import Channel, Level, Replay, Runs, farthest_link
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import with_unit
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.joints import JointMap
@@ -26,15 +27,15 @@ def runs(
     Raises:
         ValueError: the robot has no such joint; as `Runs`.
     """
-    joint = replay.follows
+    joint, of_joint = replay.follows, channels(traces, joints, replay.follows)
+    reaching = distances(traces, links, replay.goal) if replay.goal else []
     return Runs(
         replay,
-        subject=joint,
-        source="get_dofs_position",
+        subject="the hand" if reaching else joint,
         traces=traces,
         links=links,
-        channels=channels(traces, joints, joint),
-        levels=levels(traces, joints, joint, replay.band),
+        channels=reaching or of_joint,
+        levels=[] if reaching else levels(traces, joints, joint, replay.band),
         moves={
             case: f"**{case}**: {motion(trace, joints, joint)} {farthest_link(links, trace)}"
             for case, trace in traces.items()
@@ -61,6 +62,20 @@ def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[
         Channel("velocity", "q̇", f"{unit}/s", 4, qd),
         Channel("control force", "force", effort, 2, force),
     ]
+
+
+def distances(
+    traces: Mapping[str, Trace], links: Sequence[str], goal: Callable[[str, int], FloatArray]
+) -> list[Channel]:
+    """Return the distance of the hand from its goal, which each state has."""
+    found = {
+        case: 1000 * np.linalg.norm(
+            trace.link_pos[:, links.index("hand")] - [goal(case, k) for k in range(len(trace.t))],
+            axis=1,
+        )
+        for case, trace in traces.items()
+    }  # fmt: skip
+    return [Channel("distance from the target", "distance", "mm", 1, found)]
 
 
 def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: float) -> list[Level]:

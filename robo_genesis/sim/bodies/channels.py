@@ -54,7 +54,6 @@ def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], replay: Replay) 
     return Runs(
         replay,
         subject=f"the {thing}",
-        source="get_links_pos",
         traces=traces,
         links=links,
         channels=[channel for axis in followed for channel in _channels(traces, k, axis)],

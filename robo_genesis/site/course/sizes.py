@@ -1,17 +1,38 @@
-"""The size of each page in its source, and the limits for its kind; `make lint` compares them."""
+"""The size of each page in its source and its minutes, and the limits of `make lint`."""
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from docutils.parsers.rst.directives.misc import TestDirective
 from myst_parser.parsers.directives import parse_directive_text
 from nbformat import NotebookNode
+from nbformat.v4 import new_markdown_cell, new_notebook
 
-from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.course.facts import HIDDEN, STUB, WORDS_A_MINUTE, has_sheet, work_minutes
-from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER, excerpt
+from robo_genesis.pipeline.pages.book import Page, read_notebook
+from robo_genesis.site.takeaways.plain_markdown import (
+    ADMONITIONS,
+    ANSWER,
+    DIRECTIVE,
+    PARSER,
+    excerpt,
+)  # fmt: skip
 from robo_genesis.site.text.left_out import without_docstrings
+
+WORDS_A_MINUTE = 150  # A slow pace, for technical prose; code, tables and formulas are not counted
+LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
+MINUTES_A_QUESTION = 2
+MINUTES_A_CHECKPOINT = 1  # To answer in one's mind what a fold answers
+MINUTES_A_FUNCTION = 10  # An estimate of the time to write a function until its test passes
+MINUTES_A_RUN = 5
+"""An estimate of the time of one run of a lab, in which the engine compiles its kernels."""
+MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
+STUB = "raise NotImplementedError"  # Occurs in a cell with a function that the reader writes
+HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
+"""Tags of cells whose code is not visible."""
+LAB, WORK_SHEET = "lab", "worksheet.md"
+"""The name of a lesson's lab, and the file with its work sheet."""
 
 COLUMN = 80  # Most characters in a line of an excerpt that the column shows without scrolling
 
@@ -23,7 +44,7 @@ MEASURES = {
 """What is counted on a page, in words."""
 
 LIMITS = {
-    "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 45},
+    "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 60},
     "lab": {"minutes": 80},
     "mistakes": {"words": 2000},
     "deeper": {"words": 2000},
@@ -34,6 +55,62 @@ SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
 INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
+FOLD = re.compile(r"^ *[`:]{3,}\{dropdown\} *(.*)", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Minutes:
+    """The time that a page takes, in whole minutes: to read it, and for its code and questions.
+
+    `sheet` is true if the work includes a work sheet.
+    """
+
+    read: int
+    work: int
+    sheet: bool = False
+
+    @property
+    def total(self) -> int:
+        """The minutes together."""
+        return self.read + self.work
+
+    def __str__(self) -> str:
+        if self.sheet:
+            return f"{5 * round(self.total / 5)} min with the work sheet"
+        if self.work:
+            return f"{self.total} min ({self.read} to read, {self.work} for code and questions)"
+        return f"{self.total} min to read"
+
+
+def count_minutes(page: Path) -> Minutes:
+    """Return the time that a page takes."""
+    text = new_notebook(cells=[new_markdown_cell(page.read_text("utf8"))])
+    return _minutes(read_notebook(page) or text, page)
+
+
+def _minutes(notebook: NotebookNode, file: Path) -> Minutes:
+    """Return the time that a page takes; a page with functions to write is also run."""
+    texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
+    visible = visible_code(notebook)
+    functions = sum(STUB in code for code in visible)
+    work = sum(map(_lines, visible)) / LINES_A_MINUTE
+    work += functions * MINUTES_A_FUNCTION + bool(functions) * MINUTES_A_RUN
+    for text in texts:
+        work += len(QUESTION.findall(text)) * MINUTES_A_QUESTION
+        work += sum(map(bool, map(ANSWER.match, FOLD.findall(text)))) * MINUTES_A_CHECKPOINT
+    sheet = file.stem == LAB and file.with_name(WORK_SHEET).is_file()
+    read = max(1, round(sum(map(count_words, texts)) / WORDS_A_MINUTE))
+    return Minutes(read, round(work + sheet * MINUTES_A_SHEET), sheet)
+
+
+def visible_code(notebook: NotebookNode) -> list[str]:
+    """Return the code that a page shows without a click."""
+    code = (cell for cell in notebook.cells if cell.cell_type == "code")
+    return [c.source for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))]
+
+
+def _lines(code: str) -> int:
+    return sum(bool(line.strip()) for line in code.splitlines())
 
 
 def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
@@ -44,20 +121,15 @@ def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
         file: of the page; its excerpts are relative to its folder.
     """
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
-    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    visible = [c for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))]
-    lines = [sum(bool(line.strip()) for line in cell.source.splitlines()) for cell in visible]
-    widths = [0, *(len(line) for cell in visible for line in cell.source.splitlines())]
-    words = sum(map(count_words, texts))
-    questions = sum(len(QUESTION.findall(text)) for text in texts)
-    functions = sum(STUB in cell.source for cell in visible)
-    work = work_minutes(sum(lines), questions, functions, has_sheet(file))
+    code = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    visible = visible_code(notebook)
+    widths = [0, *(len(line) for one in visible for line in one.splitlines())]
     return {
-        "words": words,
+        "words": sum(map(count_words, texts)),
         "cells": len(visible),
-        "longest": max(lines, default=0),
-        "plots": sum(bool(PLOT.search(cell.source)) for cell in code),
-        "minutes": round(words / WORDS_A_MINUTE + work),
+        "longest": max(map(_lines, visible), default=0),
+        "plots": sum(map(bool, map(PLOT.search, code))),
+        "minutes": _minutes(notebook, file).total,
         "widest": max(sum((excerpt_widths(t, file.parent) for t in texts), widths)),
     }
 

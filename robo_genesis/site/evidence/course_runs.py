@@ -4,35 +4,21 @@
 |---|---|
 | {course-measured} (directive) | a line: engine version and dates of this build's runs |
 | {course-status} (directive) | the state of the runs of each published lesson |
-| {glance} l04 (directive) | a plot of this build's lab and its last camera frame |
 """
 
-import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.core.channels import Replay
 from robo_genesis.core.text import listed
-from robo_genesis.evidence.bundle import Predicate, read_manifest
-from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons import course_marks, find_replay
-from robo_genesis.pipeline.pages.built import LAST_OUTPUTS
 from robo_genesis.site.course.course_map import MapDirective, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, page_run, status_list
-from robo_genesis.site.evidence.panel import drawn_figure, frames
+from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, status_list
 from robo_genesis.site.evidence.plain_nodes import paragraph
 from robo_genesis.site.evidence.provenance import all_runs
-from robo_genesis.site.pages import PageDirective
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 EVIDENCE = "evidence/index"  # The page that explains the evidence
 
@@ -85,57 +71,7 @@ class CourseStatus(MapDirective):
         return found
 
 
-class Glance(PageDirective):
-    """Show pictures of a lesson's accepted run on CPU."""
-
-    required_arguments = 1
-
-    def shown(self) -> list[nodes.Node]:
-        """Return the figures."""
-        lesson = self.arguments[0]
-        run = page_run(Path(self.env.srcdir), lesson)
-        predicate = shown_predicate(run)
-        if predicate is None:
-            raise LookupError(f"{lesson} has no accepted run: {run.status.reason}")
-        box = nodes.container(classes=["glance"], evidence_runs=(run.key,))
-        prefix, replay = f"glance-{lesson}", find_replay(lesson)
-        box += response(self.env, prefix, run.folder, replay)
-        box += frames(self.env, prefix, run.folder, replay, run.status.backend, ["final"])
-        if predicate.render.mode != "camera":
-            box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
-        return [box]
-
-
-def shown_predicate(run: PageRun) -> Predicate | None:
-    """Return what the manifest of a run that may be shown states, None for another run.
-
-    With the outputs of last runs, a stale run is shown. The lines of provenance give its state.
-    """
-    if run.status.code == "stale" and LAST_OUTPUTS in os.environ:
-        return read_manifest(run.folder).predicate
-    return run.predicate
-
-
-def response(env: BuildEnvironment, prefix: str, folder: Path, replay: Replay) -> nodes.figure:
-    """Return the first channel of the compared cases, drawn from a bundle's arrays."""
-    from robo_genesis.core import plotting  # it loads slowly
-
-    runs = read_runs(folder, replay)
-
-    def draw(drawing: "Figure") -> None:
-        ax = drawing.subplots()
-        plotting.first_channel(ax, runs, course_marks())
-        ax.set_xlim(0, replay.until)
-        ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
-        fall = sum(last < first for first, last in ends) > len(ends) / 2
-        ax.set_title(ax.get_title(loc="left"), loc="left", pad=6)
-        ax.legend(loc="upper right" if fall else "lower right")
-
-    return drawn_figure(env, prefix, 3.2, draw, runs.alt, runs.caption)
-
-
 def setup(app: Sphinx) -> None:
     """Register the directives."""
     app.add_directive("course-measured", CourseMeasured)
     app.add_directive("course-status", CourseStatus)
-    app.add_directive("glance", Glance)

@@ -9,8 +9,6 @@ A page depends on its own source, on what is the same for all pages, and on this
 | while it is written | what happens |
 |---|---|
 | titles, contents, targets, equations, terms, ledger items of any page | all are written again |
-| the commit, for the history | all are written again |
-| whether its source is committed | it is written again |
 
 A page does not depend on the pictures that Sphinx itself writes while it reads: they follow from
 runs, whose change empties the folder. Reading another page may write an equal picture again.
@@ -22,6 +20,7 @@ import hashlib
 import os
 import shutil
 from collections.abc import Iterator, Mapping, Sequence, Set
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +31,6 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.nodes import clean_astext
 
-from robo_genesis.core.git import history
 from robo_genesis.pipeline.html.kept import UNFIT
 from robo_genesis.site.text.glossary import glossary_terms
 
@@ -84,8 +82,21 @@ def keep_outline(app: Sphinx, doctree: nodes.document) -> None:
 
 
 def number_by_outlines(app: Sphinx, env: BuildEnvironment) -> list[str]:
-    """Give Sphinx outlines in place of doctrees until `outdated_pages` is called."""
+    """Give Sphinx outlines in place of doctrees until `outdated_pages` is called.
+
+    It compares its numbers with those that it gave before.
+    """
+    env.toc_fignumbers = vars(env).get("robo_genesis_numbers", {})
     vars(env)["get_doctree"] = lambda name: env.metadata[name][OUTLINE]
+    return []
+
+
+def number_by_page(app: Sphinx, env: BuildEnvironment) -> list[str]:
+    """Number figures, tables and code of each page from one, where Sphinx counts through a book."""
+    vars(env)["robo_genesis_numbers"] = deepcopy(env.toc_fignumbers)
+    for kinds in env.toc_fignumbers.values():
+        for numbers in kinds.values():
+            numbers.update({name: (k,) for k, name in enumerate(numbers, 1)})
     return []
 
 
@@ -116,22 +127,14 @@ def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Return the pages that must be written again, beside those that were read again."""
     vars(app.builder)["robo_genesis_home"] = True
     vars(env).pop("get_doctree", None)
-    commit, status = history(Path(env.srcdir))
-    entries = set((status or "").split("\0"))
-    shown = hashlib.sha256(repr((commit, sorted(_shown(env)))).encode()).hexdigest()
-    before = vars(env).get("robo_genesis_shown"), vars(env).get("robo_genesis_status", set())
-    vars(env).update(robo_genesis_shown=shown, robo_genesis_status=entries)
-    if before[0] != shown:
+    shown = hashlib.sha256(repr(sorted(_shown(env))).encode()).hexdigest()
+    before, vars(env)["robo_genesis_shown"] = vars(env).get("robo_genesis_shown"), shown
+    if before != shown:
         return sorted(env.found_docs)
-    changed = tuple(before[1] ^ entries)
-    names = {name: str(env.doc2path(name, base=False)) for name in env.found_docs}
-    edited = [name for name, file in names.items() if any(e.endswith(file) for e in changed)]
     reads: Sequence[str] = vars(app.builder)["robo_genesis_reads"]
     home = env.config.root_doc
-    if not edited and not reads:
-        return [home]  # without any page, Sphinx would write no style sheet
-    vars(app.builder)["robo_genesis_home"] = home in (*edited, *reads)
-    return edited
+    vars(app.builder)["robo_genesis_home"] = home in reads or not reads
+    return [] if reads else [home]  # without any page, Sphinx would write no style sheet
 
 
 def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
@@ -239,6 +242,7 @@ def setup(app: Sphinx) -> None:
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
     app.connect("doctree-read", keep_outline, priority=950)  # after the others, which may add ids
     app.connect("env-get-updated", number_by_outlines, priority=0)
+    app.connect("env-get-updated", number_by_page, priority=600)  # after Sphinx's own numbers
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
     app.connect("write-started", leave_out_parents)

@@ -29,6 +29,7 @@ NEEDED_BY = {
     ".explorer": {"explorer.js"},
     ".explorer .plots, .replay": {"plot.js"},
     ".replay": {"replay.js"},
+    ".memory, article": {"memory.js"},
     ".explorer .play, .replay": {"stage.js"},
     "#search-results": {
         "language_data.js", "search-from-disk.js", "searchindex.js", "searchtools.js",
@@ -167,7 +168,10 @@ def wait_for_the_title(page: BeautifulSoup) -> None:
 
 
 def place_images(page: BeautifulSoup, folder: Path) -> None:
-    """Give images their size, so that nothing moves when they load, and load them when in sight."""
+    """Give images their size, so that nothing moves when they load, and load them when in sight.
+
+    The first picture of a replay, the largest of the first screen, loads at once.
+    """
     images = [image for image in page.find_all("img", src=True) if image.find_parent("article")]
     for image in images:
         file = folder / unquote(urlsplit(str(image["src"])).path)
@@ -175,6 +179,8 @@ def place_images(page: BeautifulSoup, folder: Path) -> None:
             width, height = drawings.image_size(file)
             image["width"], image["height"] = str(width), str(height)
         image["loading"], image["decoding"] = "lazy", "async"
+    for image in page.select(".replay .still")[:1]:
+        image["loading"], image["fetchpriority"] = "eager", "high"
 
 
 def drop_unused_files(html: Path) -> None:

@@ -18,7 +18,7 @@ from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.command import output_of
 
-OWN = ("print", "calm", "course", "explorer", "replay", "look", "plot", "home")
+OWN = ("print", "calm", "course", "explorer", "replay", "look", "plot", "home", "icons")
 THEME = ("basic", "styles/pydata-sphinx-theme", "pygments", "styles/sphinx-book-theme")
 EXTENSIONS = ("palette", "togglebutton", "copybutton", "mystnb.*", "sphinx-design.min")
 SHEETS = tuple(f"_static/{name}.css" for name in (*THEME, *EXTENSIONS, *OWN))

@@ -46,6 +46,13 @@ def opening(kind: str, words: Mapping[str, str]) -> str:
     return f'<div class="{kind}" {data}>'
 
 
+VEIL = (
+    '<p class="veil">Answer the question above, then press Play. '
+    '<button type="button">Show me without an answer</button></p>'
+)
+"""What is on top of a replay until its question has an answer; without the script it is hidden."""
+
+
 def over_the_picture(button: str) -> str:
     """Return what is on top of the still picture: the state that it shows, and a button."""
     return (
@@ -91,10 +98,19 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         f'<p><label for="{name}-time">Time</label><input type="range" id="{name}-time" min="0" '
         f'max="{len(runs.t) - 1}" step="1" value="0"></p>'
         f'<p><label for="{name}-speed">Speed</label><select id="{name}-speed">{speeds}</select></p>'
-        f"</div><dl>{''.join(map(term, terms))}</dl>"
+        f"</div>{_rest(runs)}<dl>{''.join(map(term, terms))}</dl>"
         f'<div class="plots">{PLOT * len(runs.channels)}</div>'
         f'<p class="legend">{escape(_legend(runs))}</p></div></div>'
     )
+
+
+def _rest(runs: Runs) -> str:
+    """Return the button that adds the rest of the runs to their motion, if there is a rest."""
+    until = runs.replay.until
+    if until is None:
+        return ""
+    state, words = round(until / runs.first.dt), f"Show the rest, to {runs.t[-1]:g} s"
+    return f'<p><button type="button" class="rest" data-until="{state}">{words}</button></p>'
 
 
 def data(runs: Runs, camera: "Camera") -> dict[str, str]:

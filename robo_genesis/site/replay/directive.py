@@ -2,9 +2,10 @@
 
 A page writes ```` ```{replay} l04/lecture ```` for the first replay that its lesson declares, for
 another one its name as well: ```` ```{replay} l03/lecture slides ````. The option `:brief:` leaves
-out all channels but the first, and the sentences on each case. The panel of a recorded run also has
-a replay. Poses and curves come from the record; the shape comes from the model, which the lecture
-writes to a file.
+out all channels but the first, and the sentences on each case. With `:blind:` the curves appear
+with the time that is played, and nothing shows before the question above has an answer. The panel
+of a recorded run also has a replay. Poses and curves come from the record; the shape comes from the
+model, which the lecture writes to a file.
 """
 
 import base64
@@ -48,13 +49,14 @@ class ReplayDirective(PageDirective):
 
     required_arguments = 1
     optional_arguments = 1
-    option_spec = {"brief": flag}  # noqa: RUF012 - as docutils declares it
+    option_spec = {"brief": flag, "blind": flag}  # noqa: RUF012 - as docutils declares it
 
     def shown(self) -> list[nodes.Node]:
         """Return the replay."""
         lesson_page, *chosen = self.arguments
-        folder, brief = bundle_of(lesson_page), "brief" in self.options
-        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *chosen, brief=brief)]
+        key, folder = f"{lesson_page}/{BACKEND}", bundle_of(lesson_page)
+        brief, blind = (option in self.options for option in self.option_spec)
+        return [replay_block(self, key, folder, *chosen, brief=brief, blind=blind)]
 
 
 def bundle_of(lesson_page: str) -> Path:
@@ -70,8 +72,9 @@ def bundle_of(lesson_page: str) -> Path:
 
 
 def replay_block(
-    directive: SphinxDirective, key: str, folder: Path, chosen: str = "", *, brief: bool = False
-) -> nodes.Node:
+    directive: SphinxDirective, key: str, folder: Path, chosen: str = "", *,
+    brief: bool = False, blind: bool = False,
+) -> nodes.Node:  # fmt: skip
     """Return the replay of an accepted bundle, with all its information as text and as a table.
 
     Args:
@@ -80,6 +83,7 @@ def replay_block(
         folder: of the bundle.
         chosen: name of the replay, empty for the first of the lesson.
         brief: whether to show the first channel alone, and no sentences on the cases.
+        blind: whether nothing shows before the question above it has an answer.
 
     Raises:
         LookupError: the lesson has no such replay.
@@ -107,13 +111,14 @@ def replay_block(
     shown, (first, *_) = runs, runs.channels
     if brief:  # the model is the same
         shown = replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
-    opening = controls.opening("replay", files | controls.data(shown, around.camera))
+    veiled = {"blind": ""} if blind else {}
+    opening = controls.opening("replay", files | controls.data(shown, around.camera) | veiled)
     samples = f"samples of {', '.join(runs.traces)} as a table"
     summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += html(opening)
-    over = controls.over_the_picture("Play")
+    over = controls.over_the_picture("Play") + controls.VEIL * blind
     block += stage(still, over, controls.caption(runs, around), f"{name}-model")
     fold = f"<details><summary>{summary}</summary>"
     block += html(controls.panel(name, shown, weight) + fold)
@@ -161,7 +166,7 @@ def leave_model(
         write_whole(folder / file, content)
         note_files(env, folder / file)
     weight = round(sum(len(gzip.compress(of)) for of in (script, viewer.viewer())) / 1000)
-    shown = image(env, f"{name}.jpg", still, alt)
+    shown = image(env, f"{name}.webp", still, alt)
     shown["kind"], shown["classes"] = "model", ["still"]
     return {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"}, weight, shown
 

@@ -35,6 +35,9 @@ STILL, TARGET = "still", "target"
 GHOST = (*bytes.fromhex(MARKS["target"].light[1:]), 0.35)
 """Colour of the copies: red, green, blue 0 to 255, and opacity."""
 
+SMALLER = 0.95
+"""Size of a copy by that of its link: surfaces in one place would flicker at the target."""
+
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 """Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
 
@@ -104,11 +107,16 @@ def glb(
     model.nodes[0].children = list(range(1, len(model.nodes)))
     if scenery.target:
         model.nodes[0].children.append(len(model.nodes))
-        below = range(len(model.nodes) + 1, len(model.nodes) + 1 + len(scenery.target))
+        below = range(len(model.nodes) + 1, len(model.nodes) + 1 + 2 * len(scenery.target), 2)
         model.nodes.append(gltf.Node(name=TARGET, children=list(below)))
     for link, pose in scenery.target.items():
-        mesh, matrix = _mesh(binary, link, simple, GHOST), pose.T.ravel().tolist()
-        model.nodes.append(gltf.Node(name=f"{TARGET}_{link}", matrix=matrix, mesh=mesh))
+        mesh, inside = _mesh(binary, link, simple, GHOST), [len(model.nodes) + 1]
+        matrix = pose.T.ravel().tolist()
+        model.nodes.append(gltf.Node(name=f"{TARGET}_{link}", matrix=matrix, children=inside))
+        parts = [part.vertices for part in scenery.parts if part.link == link]
+        middle = (1 - SMALLER) * np.concatenate(parts).mean(axis=0) if parts else np.zeros(3)
+        smaller = {"translation": middle.tolist(), "scale": [SMALLER] * 3}
+        model.nodes.append(gltf.Node(mesh=mesh, **smaller))
     followed = scenery.followed
     if followed is not None:
         model.nodes[0].translation = opposite(first, followed)[0].astype(float).tolist()

@@ -14,9 +14,6 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.site.replay.scenery import ASPECT, FIELD, Camera
 
 WIDTH, HEIGHT = 960, round(960 / ASPECT)
-GROUND = "#aab4c0"
-"""Colour behind the model, as in `replay.css`."""
-
 FINER = 2  # Pixels drawn for one of the picture, along each side
 
 LIGHT = np.array([0.35, 0.8, 0.5])  # Direction to the light, in the frame of the viewer, y up
@@ -28,7 +25,7 @@ DARKEST, BRIGHTEST = 0.35, 1.0
 
 
 def picture(model: bytes, camera: Camera) -> bytes:
-    """Return the start of a model's replay as JPEG."""
+    """Return the start of a model's replay as WebP; behind the model it is transparent."""
     scene = trimesh.load_scene(BytesIO(model), file_type="glb")
     back = camera.axes[2]
     edge = camera.centre + back * (camera.distance - NEAREST)
@@ -96,15 +93,12 @@ def drawn(corners: FloatArray, colours: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 def packed(image: FloatArray) -> bytes:
-    """Return linear colours (h, w, 4), multiplied by their opacity, as a smaller JPEG."""
+    """Return linear colours (h, w, 4), multiplied by their opacity, as a smaller WebP."""
     blocks = image.reshape(HEIGHT, FINER, WIDTH, FINER, 4).mean(axis=(1, 3))
     opacity = blocks[..., 3:]
     linear = blocks[..., :3] / np.maximum(opacity, 1e-9)
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    ground = np.array([*bytes.fromhex(GROUND[1:])])
-    pixels = 255 * np.clip(srgb, 0, 1) * opacity + ground * (1 - opacity)
+    pixels = 255 * np.clip(np.concatenate([srgb, opacity], axis=2), 0, 1)
     content = BytesIO()
-    Image.fromarray(np.round(pixels).astype(np.uint8)).save(
-        content, "JPEG", quality=70, optimize=True, progressive=True
-    )
+    Image.fromarray(np.round(pixels).astype(np.uint8)).save(content, "WEBP", quality=70, method=6)
     return content.getvalue()

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import pairwise
+from textwrap import indent
 
 import nbformat
 from markdown_it import MarkdownIt
@@ -12,10 +13,20 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.course.facts import WORK_SHEET
+from robo_genesis.site.course.sizes import WORK_SHEET
 from robo_genesis.site.takeaways.plain_markdown import SOLUTION, Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
+
+AFTER_YOURS = "after-yours"  # The tag of a cell that a student runs after an own answer
+WAITS = "# Write your own text first. Then take away the # of the lines below, and run this cell.\n"
+
+HIDDEN = {
+    "hide-input": {"source_hidden": True},
+    "hide-output": {"outputs_hidden": True},
+    "hide-cell": {"source_hidden": True, "outputs_hidden": True},
+}
+"""What Jupyter's own interfaces hide of a cell, by its tag for the site."""
 
 BEFORE = "before the run"  # Words in the heading of each part of the work sheet that comes first
 PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
@@ -173,7 +184,12 @@ def _code(
 ) -> list[NotebookNode]:
     """Return a code cell, and its caption below it where it draws a figure."""
     tags = list(cell.metadata.get("tags", []))
+    hidden = {key: value for tag in tags for key, value in HIDDEN.get(tag, {}).items()}
     code = new_code_cell(cell.source, metadata={"tags": tags} if tags else {})
+    if ran is None and AFTER_YOURS in tags:
+        code.source = WAITS + indent(cell.source, "# ")
+    elif hidden:
+        code.metadata["jupyter"] = hidden
     if ran is not None:
         code.outputs = [_output(output) for output in ran.outputs]
         code.execution_count = ran.execution_count

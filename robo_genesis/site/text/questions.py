@@ -20,7 +20,8 @@ stale. A list below the question gives the cause for each answer; it may be left
     ```
 
 The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent;
-it may be below one.
+it may be below one. With the option `:absent:` a choice asks for a second case that the bundle
+lacks, so that unknown is right; its cause says which measurement would tell.
 `:unit: mm` asks for a length in millimetres, and other units for their thousandths.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
@@ -31,7 +32,7 @@ from contextlib import suppress
 from typing import Any
 
 from docutils import nodes
-from docutils.parsers.rst.directives import unchanged
+from docutils.parsers.rst.directives import flag, unchanged
 from sphinx.application import Sphinx
 
 from robo_genesis.core.comparison import Comparison, compare_values
@@ -50,7 +51,7 @@ EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
 """The options by order; `{}` is the smallest difference that counts."""
 CLOSE = "about the same (less than {} apart)"
-UNDECIDED = "these two runs cannot show it"
+UNDECIDED = "this record cannot tell"
 UNKNOWN = "unknown"  # The key of the option that no order was observed
 JUDGED = ("right", "low", "high")  # The keys of an answer that is a number
 WRONG = "x57.3"  # Represents the keys of typical wrong numbers, which `FACTOR` matches
@@ -102,12 +103,14 @@ class Choice(Question):
     """Ask how the second of two cases compares with the first in one metric."""
 
     required_arguments = 4
+    option_spec = {"absent": flag}  # noqa: RUF012 - as docutils declares it
 
     def ask(self, name: str) -> tuple[str, question]:
         """See `Question.ask`."""
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
-        found, answer, origin = measured_order(lesson_page, metric, cases)
+        measure = no_order if "absent" in self.options else measured_order
+        found, answer, origin = measure(lesson_page, metric, cases)
         smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
         resolution = small(smallest, found.unit)
         shown = options(found.unit, found.order, resolution, causes, found.margin)
@@ -191,6 +194,23 @@ def measured_order(lesson_page: str, metric: str, cases: list[str]) -> tuple[Com
     found = compare_values(noun, first.unit, *values, resolution, margin)
     names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
     return found, measured_sentence(names, found), origin
+
+
+def no_order(lesson_page: str, metric: str, cases: list[str]) -> tuple[Comparison, str, str]:
+    """Return what `measured_order` does where the second case is in no record of the page.
+
+    Raises:
+        LookupError: it is in the bundle, or the first case or the metric is not.
+    """
+    first, absent = cases
+    origin = measured(lesson_page, f"{first}.{metric}")[1]
+    records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
+    if absent in records:
+        raise LookupError(f"{lesson_page} recorded {absent}; ask for it without `:absent:`.")
+    lesson = find_lesson(lesson_page.split("/")[0])
+    noun, unit = lesson.about_metrics("noun")[metric], records[first][metric].unit
+    found = compare_values(noun, unit, None, None, lesson.spec.RESOLUTION, 0.0)
+    return found, f"The record of {lesson_page} has no such run.", origin
 
 
 def measured_sentence(names: tuple[str, str], found: Comparison) -> str:

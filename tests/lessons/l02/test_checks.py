@@ -9,7 +9,7 @@ from lessons.changed_runs import case, copied, failed, frames, put, reading, tra
 
 from robo_genesis.lessons.l02 import life_cycle, plots, spec, text, trials
 from robo_genesis.lessons.l02.metrics import drop_metrics
-from robo_genesis.lessons.l02.pages import LAB
+from robo_genesis.lessons.l02.pages import DROP
 
 
 def test_the_metrics_are_the_largest_of_all_samples():
@@ -57,7 +57,7 @@ SPOILED = {
 
 def test_a_sound_run_passes_all_checks_and_the_lab_says_so(run):
     assert failed(run) == set()
-    lab = replace(run, page=LAB)
+    lab = replace(run, page=DROP)
     assert [name for name in text.SENTENCES if f"`{name}` failed" in text.conclusions(lab)] == []
     assert "The box fell 0.2011 m in 0.20 s" in text.conclusions(lab)
 
@@ -85,7 +85,7 @@ def test_the_task_of_the_lab_fails_the_checks_of_its_answer(run, frames, changes
     case = replace(spec.BASELINE, **changes)
     changed = replace(
         reading("body", "mass", case.mass)(run),
-        page=LAB, traces={"baseline": make_drop(case)}, frames=frames,
+        page=DROP, traces={"baseline": make_drop(case)}, frames=frames,
     )  # fmt: skip
     assert {check.name for check in changed.outcomes() if not check.passed} == names
 

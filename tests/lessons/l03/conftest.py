@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.body_runs import slide_on_corners
-from lessons.changed_runs import beginning
+from lessons.changed_runs import beginning, passed
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import ContactTrace
@@ -24,6 +24,7 @@ def readings_of(page: str) -> dict[str, Mapping[str, float]]:
     declared = LESSON.pages[page].readings
     cases = {n: c for n, c in LESSON.pages[page].cases.items() if n not in study_spec.IN_MUJOCO}
     known = {"model": spec.EXPECTED_MODEL, "mass": MASSES, study.GROUP: SECONDS}
+    known |= passed(LESSON.pages["lab"])
     known |= {name: {n: getattr(of, name) for n, of in cases.items()} for name in SETTINGS}
     return {
         group: {name: known[group][name] for name in of.units} for group, of in declared.items()

@@ -3,13 +3,15 @@
 from dataclasses import replace
 
 import pytest
+from lessons.changed_runs import passed
 from robot_runs import assigned, driven
 
+from robo_genesis.core.exercises import FUNCTIONS, functions
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.lessons.l04 import study as studies
 from robo_genesis.lessons.l04 import study_spec
-from robo_genesis.lessons.l04.pages import LECTURE, LESSON
+from robo_genesis.lessons.l04.pages import LECTURE, LESSON, STEPS
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 
@@ -23,7 +25,7 @@ PAGES = {name: page for name, page in LESSON.pages.items() if name not in ("lab"
 def own_checks():
     """Return each check of these pages that the lab does not have, once."""
     found = dict.fromkeys(check for page in PAGES.values() for check in page.checks)
-    return tuple(check for check in found if check not in LESSON.pages["lab"].checks)
+    return tuple(check for check in found if check not in STEPS.checks and check is not functions)
 
 
 def of_page(run: Experiment, name: str) -> Experiment:
@@ -31,6 +33,8 @@ def of_page(run: Experiment, name: str) -> Experiment:
     page, group = LESSON.pages[name], studies.GROUP
     kept = page.readings.get(group)
     readings = {"model": run.readings["model"]}
+    if FUNCTIONS in page.readings:
+        readings |= passed(page)
     if kept:
         readings[group] = {unit: run.readings[group][unit] for unit in kept.units}
     frames = run.frames if page.camera else {}
@@ -43,7 +47,7 @@ def of_page(run: Experiment, name: str) -> Experiment:
 def study_runs(joints, frames) -> Experiment:
     """All runs of L04's lecture and deeper pages, which pass every check, without Genesis."""
     every = {n: run for page in PAGES.values() for n, run in page.runs.items()}
-    page = replace(LECTURE, runs=every, checks=(*LESSON.pages["lab"].checks, *own_checks()))
+    page = replace(LECTURE, runs=every, checks=(*STEPS.checks, *own_checks()))
     cases = {n: run.case for n, run in every.items() if n not in study_spec.SECOND_RUNS}
     traces = {name: driven(case, LINKS) for name, case in cases.items()}
     for name, run in study_spec.SECOND_RUNS.items():

@@ -156,6 +156,15 @@ def test_figures_tables_and_code_with_captions_are_numbered_wherever_they_are(tm
     assert numbers == {kind: {name: (1,)} for kind, name in kinds.items()}
 
 
+def test_the_figures_of_each_page_are_numbered_from_one(tmp_path):
+    pages = {name: f"# {name}\n" + 2 * (FIGURE % "") for name in ("one", "two")}
+    (make_book(tmp_path, **pages) / "a.svg").write_text(DRAWING)
+    for keep in (True, True, False):
+        found = publish(tmp_path, BuiltPages(), keep)
+        for name in pages:
+            assert re.findall(r"Fig. (\d)", found[f"{name}.html"].decode()) == ["1", "2"]
+
+
 def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(tmp_path):
     written = "../.cache/render/_build/jupyter_execute/71f4.svg"
     files = {written, "a.svg", "text.md", str(tmp_path / "book/map.yml"), "../.cache/other.svg"}

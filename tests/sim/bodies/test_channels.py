@@ -2,11 +2,8 @@
 
 import numpy as np
 import pytest
-from axes import curves
 from falling import LINKS, G, falling
-from matplotlib.figure import Figure
 
-from robo_genesis.core import plotting
 from robo_genesis.core.channels import Replay
 from robo_genesis.sim.bodies import channels as body_channels
 
@@ -42,13 +39,6 @@ def test_channels_are_position_and_velocity_of_the_record_along_each_axis():
 def test_what_the_record_does_not_have_and_other_times_are_refused(given, message):
     with pytest.raises(ValueError, match=message):
         runs(**given)
-
-
-def test_a_picture_of_a_fall_draws_its_first_channel():
-    found, ax = runs(), Figure().subplots()
-    plotting.first_channel(ax, found, {})
-    assert (ax.get_title("left"), ax.get_ylabel()) == ("Height of the box", "z [m]")
-    assert np.array_equal(curves(ax)["low"][:, 1], found.traces["low"].link_pos[:, 1, 2])
 
 
 DROP = G * 0.3**2 / 2

@@ -8,7 +8,7 @@ import pytest
 from built_site import PAGES
 from PIL import Image
 from playwright.sync_api import Page
-from watching import call, choose, errors, show_model
+from watching import call, choose, errors, show_all, show_model
 
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence import bundle
@@ -88,6 +88,52 @@ def test_the_picture_is_that_of_the_model(lecture):
     assert (robot & drawn).sum() / (robot | drawn).sum() > 0.8
 
 
+CURVES = f"{REPLAY} polyline"
+
+
+def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(browser_3d, address):
+    """By keyboard; the answer and what was shown are remembered until the reader forgets them."""
+    context = browser_3d.new_context()
+    page = context.new_page()
+    page.goto(f"{address}/{LECTURE}.html")
+    hidden = [f"{REPLAY} .play", f"{REPLAY} dl", CURVES, ".explorer:has(.plots)"]
+    feedback, table = page.locator("fieldset .right").first, page.locator(f"{REPLAY} + details")
+    assert not any(page.locator(one).first.is_visible() for one in [*hidden, f"{REPLAY} + details"])
+    page.get_by_label("later").first.press("Space")
+    assert page.get_by_text("Noted. Now press Play.").count() == 1
+    assert not feedback.is_visible()
+    slider = page.locator(f"{REPLAY} input[type=range]")
+    lengths = "all => all.map(line => line.getAttribute('points').split(' ').length)"
+    for key, seen in (("Home", 1), ("ArrowRight", 2), ("ArrowLeft", 2), ("End", 61)):
+        slider.press(key)
+        assert {*page.locator(CURVES).evaluate_all(lengths)} == {seen}
+        assert table.is_visible() == (key == "End")
+    assert page.locator("fieldset .wrong").nth(1).is_visible()
+    page.get_by_role("button", name="Show the rest, to 1.2 s").first.click()
+    assert {*page.locator(CURVES).evaluate_all(lengths)} == {121}
+    page.reload()
+    assert page.locator("fieldset .wrong").nth(1).is_visible()
+    assert table.is_visible()
+    page.get_by_label("I have finished this page").check()
+    page.goto(f"{address}/index.html")
+    assert page.locator("#lesson-l04 .finished").is_visible()
+    assert page.locator(".memory a").get_attribute("href").endswith(f"{LECTURE}.html")
+    page.get_by_role("button", name="Forget all").click()
+    assert page.locator("#lesson-l04 .finished").count() == 0
+    page.goto(f"{address}/{LECTURE}.html")
+    assert not page.locator(f"{REPLAY} dl").is_visible()
+    context.close()
+
+
+@pytest.mark.parametrize("name", PLAYING)
+def test_without_javascript_the_samples_are_in_a_fold(browser_3d, address, name):
+    page = browser_3d.new_context(java_script_enabled=False).new_page()
+    page.goto(f"{address}/{name}.html")
+    assert page.locator(".replay + details summary").first.is_visible()
+    assert not page.locator(".veil").first.is_visible()
+    page.context.close()
+
+
 def lightness(page, stage, part) -> np.ndarray:
     """Return a screenshot of one part of the stage alone, 0 to 255."""
     only = f".stage > :not({part}) {{ visibility: hidden; }} .stage > {part} {{ display: block; }}"
@@ -105,6 +151,7 @@ def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser_
     page.goto(f"{address}/{name}.html")
     play = page.locator(".replay .play").first.bounding_box()
     assert play["y"] + play["height"] < 844 or name not in FIRST_SCREEN
+    show_all(page)
     page.emulate_media(reduced_motion="reduce")  # the theme's menu would slide in after a change
     for width in (1280, 320):
         page.set_viewport_size({"width": width, "height": 800})

@@ -73,8 +73,8 @@ def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(s
     assert [[p.get_text() for p in card.select("p")] for card in cards] == [
         ["L04 Four", "read a qpos", "stop", "Builds on L01 and L02.", "Lecture: 1 min to read"],
         [
-            "L06 Six", "walk", "Lecture: 3 min to read", "Lab: 15 min with the work sheet",
-            "2 more pages: 6 min to read",
+            "L06 Six", "walk", "Lecture: 4 min to read", "Lab: 15 min with the work sheet",
+            "2 more pages: 8 min to read",
         ],
     ]  # fmt: skip
     pages = ("lecture", "lecture", "lab")

@@ -29,7 +29,8 @@ EXCERPT = "```{literalinclude} code.py\n:language: python\n:pyobject: f\n```"
 
 def test_a_page_s_size(tmp_path):
     (tmp_path / "code.py").write_text(f'def f():\n    """{"x" * 90}"""\n    return {"1" * 70}\n')
-    asked = "```{choice} l04/lab a b c\nWhen?\n```"
+    asked = "```{choice} l04/lab a b c\nWhen?\n```\n\n:::{dropdown} Answer\nSo.\n:::"
+    asked += "\n\n:::{dropdown} Details\nMore.\n:::"
     cells = [
         new_markdown_cell(f"{'word ' * 400}\n\n{EXCERPT}\n\n{asked}"),
         new_code_cell("a = 1\n\nb = 2\npage.show(l04.plots.baseline)"),
@@ -38,7 +39,7 @@ def test_a_page_s_size(tmp_path):
     ]
     found = sizes.size(new_notebook(cells=cells), tmp_path / "lecture.md")
     assert found == {
-        "words": 400, "cells": 2, "longest": 3, "plots": 2, "minutes": 4, "widest": 81,
+        "words": 400, "cells": 2, "longest": 3, "plots": 2, "minutes": 6, "widest": 81,
     }  # fmt: skip
 
 
@@ -46,9 +47,9 @@ def test_the_minutes_of_a_lab_contain_its_functions_a_run_and_the_work_sheet(tmp
     stubs = [new_code_cell(f"def f{k}(x):\n    raise NotImplementedError") for k in range(3)]
     solution = new_code_cell("def f0(x):\n    return x", metadata={"tags": ["hide-cell"]})
     lab = new_notebook(cells=[new_markdown_cell("word " * 400), *stubs, solution])
-    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == round(2 + 0.6 + 3 * 10 + 5)
+    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(0.6 + 3 * 10 + 5)
     (tmp_path / "worksheet.md").touch()
-    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == round(2 + 0.6 + 3 * 10 + 5 + 10)
+    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(0.6 + 3 * 10 + 5 + 10)
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ import pytest
 
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.pipeline.bundles.status import Status
-from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_outputs
-from robo_genesis.site.evidence.course_runs import measured_line, shown_predicate
-from robo_genesis.site.evidence.ledger_data import PageRun, provenance
+from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.site.evidence.course_runs import measured_line
+from robo_genesis.site.evidence.ledger_data import PageRun
 
 
 @pytest.fixture
@@ -40,18 +40,3 @@ def test_the_line_names_versions_and_dates_of_the_accepted_runs_of_this_build(ac
     assert measured_line([later, one]) == (
         "Measured on CPU with Genesis 1.3.3 and 1.4.5 from 2026-11-22 to 2026-11-24."
     )
-
-
-@pytest.mark.parametrize(
-    ("code", "last_outputs", "is_shown"),
-    [("stale", True, True), ("stale", False, False), ("digest", True, False)],
-)
-def test_a_stale_run_is_shown_with_the_outputs_of_last_runs_alone(
-    outputs, monkeypatch, code, last_outputs, is_shown
-):
-    if last_outputs:
-        monkeypatch.setenv(LAST_OUTPUTS, "1")
-    status = Status(code, "cpu", "a reason", None, code)
-    run = PageRun("l04/lab", page_outputs("l04/lab") / "cpu", status)
-    assert (shown_predicate(run) is not None) == is_shown
-    assert provenance("figure", [run]) == f"No accepted evidence: cpu-{code}."

@@ -18,7 +18,6 @@ def runs() -> Runs:
     return Runs(
         Replay(CASES, "body", "cube"),
         subject="the cube",
-        source="",
         traces=dict.fromkeys(CASES, trace),
         links=("body",),
         channels=(Channel("height", "z", "m", 4, by_case),),

@@ -12,7 +12,7 @@ from robo_genesis.site.replay import model, poster
 from robo_genesis.site.replay.scenery import Camera, Scenery
 
 RED, BLUE, GREY = (255, 0, 0), (0, 0, 255), (200, 200, 200)
-GROUND = np.array([*bytes.fromhex(poster.GROUND[1:])])
+GROUND = np.array([170, 180, 192])  # what is behind the picture
 CAMERA = Camera(np.array([0.0, 0.5, 0.0]), 3.0)
 
 
@@ -21,8 +21,9 @@ def drawn(*parts, target=None, camera=CAMERA):
     scenery = Scenery(parts, camera, target=target or {})
     glb = model.glb(scenery, ("stand", "box"), {"run": falling(0.5)})
     with Image.open(BytesIO(poster.picture(glb, camera))) as image:
-        assert (image.format, image.mode) == ("JPEG", "RGB")
-        return np.asarray(image).astype(int)
+        assert (image.format, image.mode) == ("WEBP", "RGBA")
+        behind = Image.new("RGBA", image.size, (*GROUND.tolist(), 255))
+        return np.asarray(Image.alpha_composite(behind, image).convert("RGB")).astype(int)
 
 
 def middle(image):

@@ -52,7 +52,7 @@ def turning(
     position = Channel("position", "q", unit, 4, {"run": q + np.linspace(0, off, 11)})
     level = Level("target", "position", "target", "", {"run": (target,)}, {"run": "x"})
     replay = Replay(("run",), "joint", "arm")
-    return Runs(replay, "joint", "", {"run": trace}, LINKS, [position], {}, [level])
+    return Runs(replay, "joint", {"run": trace}, LINKS, [position], {}, [level])
 
 
 def test_the_axis_of_a_joint_is_found_while_other_joints_move():

@@ -17,6 +17,8 @@ CELLS = (
     cell("x = 1"),
     PROSE,
     cell("print('SECRET code')", ":tags: [hide-cell, solution]\n"),
+    cell("log()", ":tags: [hide-output]\n"),
+    cell("show(text)", ":tags: [hide-cell, after-yours]\n"),
     cell("plot()", ":tags: [figure]\n:mystnb: {figure: {caption: 'Drawn by {term}`plot`.'}}\n"),
     '\n+++ {"tags": ["site-only"]}\n\nOnly on the site.\n',
 )
@@ -46,7 +48,10 @@ def test_the_student_s_notebook_is_clean(page):
     sources = [cell.source for cell in student.cells]
     assert (sources[0], sources[-1]) == ("The origin.", "*Drawn by plot.*")
     code = [c for c in student.cells if c.cell_type == "code"]
-    assert [c.source for c in code] == [CHECK, "x = 1", "plot()"]
+    waits = f"{notebooks.WAITS}# show(text)"
+    assert [c.source for c in code] == [CHECK, "x = 1", "log()", waits, "plot()"]
+    hidden = {c.source: c.metadata.jupyter for c in code if "jupyter" in c.metadata}
+    assert hidden == {"log()": {"outputs_hidden": True}}
     assert all(c.outputs == [] and c.execution_count is None for c in code)
 
 
@@ -144,7 +149,7 @@ def executed(page, folder, *outputs):
     return [c for c in found.cells if c.cell_type == "code"], nbformat.writes(found)
 
 
-@pytest.mark.parametrize(("shown", "counts"), [("1", [1, 2, 3]), ("0", [1, 3])])
+@pytest.mark.parametrize(("shown", "counts"), [("1", [1, 2, 3, 4, 5]), ("0", [1, 3, 4, 5])])
 def test_the_executed_notebook_has_outputs_and_the_solutions_only_if_the_site_has(
     page, tmp_path, monkeypatch, shown, counts
 ):
@@ -152,7 +157,7 @@ def test_the_executed_notebook_has_outputs_and_the_solutions_only_if_the_site_ha
     stack = ["File /home/me/secret.py", "\x1b[31mValueError\x1b[0m: no"]
     error = new_output("error", ename="ValueError", evalue="no", traceback=stack)
     hello = new_output("stream", text="hello")
-    cells, text = executed(page, tmp_path, hello, hello, error)
+    cells, text = executed(page, tmp_path, *[hello] * 4, error)
     assert [c.execution_count for c in cells] == counts
     assert cells[0].outputs[0].text == "hello"
     assert cells[-1].outputs[0].traceback == ["ValueError: no"]

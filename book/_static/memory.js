@@ -1,0 +1,109 @@
+/* What this browser remembers of a reader: answers, what was shown, finished pages, and the last page.
+   Nothing leaves the browser. Some browsers keep nothing for pages that were opened from disk. */
+"use strict";
+
+globalThis.memory = (() => {
+  const STORE = "robo-genesis";
+  const page = location.pathname.split("/").slice(-3).join("/");
+
+  function read() {
+    try {
+      return JSON.parse(localStorage.getItem(STORE)) ?? {};
+    } catch {
+      return {};
+    }
+  }
+
+  /* Returns whether the browser keeps it. */
+  function write(all) {
+    try {
+      localStorage.setItem(STORE, JSON.stringify(all));
+      return true;
+    } catch {
+      return false;
+    }
+  }
+
+  const ofPage = (all) => ((all.pages ??= {})[page] ??= {});
+
+  /* A value of this page by its name. */
+  const kept = (name) => ofPage(read())[name];
+
+  function keep(name, value) {
+    const all = read();
+    ofPage(all)[name] = value;
+    write(all);
+  }
+
+  function forget() {
+    try {
+      localStorage.removeItem(STORE);
+    } catch {
+      // nothing was kept
+    }
+  }
+
+  return { read, write, kept, keep, forget, page };
+})();
+
+document.addEventListener("DOMContentLoaded", () => {
+  const { read, write, kept, keep, forget, page } = globalThis.memory;
+  const article = document.querySelector("article");
+  const title = article?.querySelector("h1")?.firstChild?.textContent;
+
+  /* Answers, which the scripts of questions and replays treat as if they were given now. */
+  for (const input of document.querySelectorAll("fieldset.choice :is([type=radio], [type=number])")) {
+    const answer = kept(input.id);
+    if (answer === undefined) continue;
+    if (input.type === "radio") input.checked = true;
+    else input.value = answer;
+    setTimeout(() => input.dispatchEvent(new Event("change", { bubbles: true })));
+  }
+  document.addEventListener("change", ({ target }) => {
+    const question = target.closest("fieldset.choice");
+    if (!question) return;
+    for (const input of question.querySelectorAll("[type=radio]")) keep(input.id, undefined);
+    keep(target.id, target.value);
+  });
+
+  /* The home page: where to go on, what is finished, and how to forget it. */
+  const place = document.querySelector(".memory");
+  const all = read();
+  if (place) {
+    if (!all.last) return;
+    const go = Object.assign(document.createElement("a"), { href: all.last.href, textContent: all.last.title });
+    const away = Object.assign(document.createElement("button"), { type: "button", textContent: "Forget all" });
+    away.addEventListener("click", () => {
+      forget();
+      place.replaceChildren("Forgotten.");
+      for (const mark of document.querySelectorAll(".finished")) mark.remove();
+    });
+    place.append("Continue where you left: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
+    for (const link of document.querySelectorAll(".course-map a[href]")) {
+      const name = new URL(link.href).pathname.split("/").slice(-3).join("/");
+      if (!all.pages?.[name]?.finished) continue;
+      link.after(Object.assign(document.createElement("span"), { className: "finished", textContent: " ✓ finished" }));
+    }
+    return;
+  }
+
+  /* The link to the form for feedback names the section at the top of the window. */
+  document.querySelector(".feedback a")?.addEventListener("click", ({ currentTarget: link }) => {
+    const above = [...article.querySelectorAll("h2, h3")].filter((one) => one.getBoundingClientRect().top < 200);
+    const address = new URL(link.href);
+    const section = above.at(-1)?.firstChild.textContent ?? title;
+    address.searchParams.set("page", `${address.searchParams.get("page")}, "${section}"`);
+    link.href = address;
+  }, { once: true });
+
+  /* A page of a lesson: it is the last one, and its end offers to mark it. */
+  if (!article || !/\/lessons\//.test(location.pathname)) return;
+  if (!write({ ...all, last: { href: location.href.split("#")[0], title } })) return;
+  const box = Object.assign(document.createElement("input"), { type: "checkbox", id: "finished" });
+  box.checked = Boolean(kept("finished"));
+  box.addEventListener("change", () => keep("finished", box.checked || undefined));
+  const label = Object.assign(document.createElement("label"), { htmlFor: box.id, textContent: " I have finished this page" });
+  const line = Object.assign(document.createElement("p"), { className: "finish-page" });
+  line.append(box, label);
+  article.append(line);
+});
