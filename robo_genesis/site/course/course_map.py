@@ -7,6 +7,7 @@
 | {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
 
+import fnmatch
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -22,10 +23,11 @@ from sphinx.environment import BuildEnvironment
 from robo_genesis.core.text import listed
 from robo_genesis.site.course.facts import MINUTES
 from robo_genesis.site.course.sizes import LAB, Minutes
-from robo_genesis.site.evidence.plain_nodes import bullets, marked, paragraph
+from robo_genesis.site.evidence.plain_nodes import bullets, html, marked, paragraph
 from robo_genesis.site.pages import PageDirective, PageRole
 
 FILE = "course_map.yml"
+POSTER = "replay-{}-lecture-cpu*.webp"  # The pictures of the replays of a lesson's lecture
 LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 """A link to a lesson's page: its words, the lesson and the page."""
 
@@ -145,6 +147,10 @@ class page_minutes(nodes.inline):  # noqa: N801 - docutils names nodes in lower 
     """Placeholder for the minutes of pages until all pages are read."""
 
 
+class card_picture(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
+    """Placeholder for the picture of a lesson's first replay until all pages are read."""
+
+
 class CourseMap(MapDirective):
     """Show the published lessons as cards, and the planned ones as a list."""
 
@@ -169,6 +175,7 @@ class CourseMap(MapDirective):
         title = page_link(self.env.docname, lesson.page, lesson.title)
         return nodes.list_item(
             "",
+            card_picture(lesson=lesson.id.lower()),
             named(lesson, title),
             bullets(*map(marked, lesson.outcomes)),
             *needs_line(lesson),
@@ -217,7 +224,14 @@ def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
 
 
 def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:
-    """Write the minutes of the pages, as each page itself shows them."""
+    """Write the minutes of the pages, as each page itself shows them, and the pictures of cards."""
+    for place in list(document.findall(card_picture)):
+        pictures = fnmatch.filter(
+            (name for _, name in app.env.images.values()), POSTER.format(place["lesson"])
+        )
+        up, alt = "../" * docname.count("/"), f"{place['lesson'].upper()}: the start of its replay."
+        shown = [html(f'<img src="{up}_images/{name}" alt="{alt}">') for name in pictures[:1]]
+        place.replace_self(shown)
     for place in list(document.findall(page_minutes)):
         place.replace_self(nodes.Text(str(total_minutes(app.env, place["pages"]))))
 
@@ -228,4 +242,5 @@ def setup(app: Sphinx) -> None:
     app.add_role("lesson", LessonLink())
     app.add_directive("course-map", CourseMap)
     app.add_node(page_minutes)
+    app.add_node(card_picture)
     app.connect("doctree-resolved", fill_in)

@@ -88,6 +88,28 @@ def test_the_picture_is_that_of_the_model(lecture):
     assert (robot & drawn).sum() / (robot | drawn).sum() > 0.8
 
 
+def test_the_arm_is_whole_where_it_meets_its_copy(browser_3d, address):
+    """Surfaces in one place would flicker: at the end of each run the copies hardly show."""
+    page = browser_3d.new_page(viewport={"width": 480, "height": 700})
+    page.goto(f"{address}/{LECTURE}.html")
+    show_model(page, REPLAY)
+    stage, shown = page.locator(f"{REPLAY} .stage"), {}
+    for copies in (True, False):
+        if not copies:
+            call(page, "hide_copies")
+        for case in find_replay("l04").cases:
+            choose(page, case, 0, REPLAY)
+            choose(page, case, 120, REPLAY)
+            page.wait_for_function(POSED, arg=[case, 1.2])
+            shown[case, copies] = lightness(page, stage, "model-viewer")
+    for case in find_replay("l04").cases:
+        with_copies, alone = shown[case, True], shown[case, False]
+        arm = np.abs(alone - alone[20, -20])[: int(0.7 * len(alone))] > 15
+        differ = np.abs(with_copies - alone)[: len(arm)] > 12
+        assert (arm & differ).sum() / arm.sum() < 0.03, case
+    page.close()
+
+
 CURVES = f"{REPLAY} polyline"
 
 
