@@ -88,7 +88,7 @@ document.addEventListener("DOMContentLoaded", () => {
   }
 
   /* The link to the form for feedback names the section at the top of the window. */
-  document.querySelector(".feedback a")?.addEventListener("click", ({ currentTarget: link }) => {
+  document.querySelector(".report a")?.addEventListener("click", ({ currentTarget: link }) => {
     const above = [...article.querySelectorAll("h2, h3")].filter((one) => one.getBoundingClientRect().top < 200);
     const address = new URL(link.href);
     const section = above.at(-1)?.firstChild.textContent ?? title;

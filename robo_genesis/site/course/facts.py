@@ -32,7 +32,7 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
         place = f"{docname}, Genesis {engine_pin()}"
         address = f"{repository}/issues/new?{urlencode({'template': FORM, 'page': place})}"
         words = "Report a mistake on this page, or ask"
-        section += html(f'<p class="feedback"><a href="{escape(address)}">{words}</a></p>')
+        section += html(f'<p class="report"><a href="{escape(address)}">{words}</a></p>')
 
 
 def keep_facts(app: Sphinx, document: nodes.document) -> None:

@@ -73,7 +73,7 @@ def caption(runs: Runs, around: "Scenery") -> str:
     if around.axis:
         parts.append(f"Yellow rod: the axis of {runs.subject}.")
     if around.target:
-        parts.append(f"Dark and translucent: {runs.subject} at its target, other joints at rest.")
+        parts.append(f"Blue and translucent: {runs.subject} at its target, other joints at rest.")
     if around.followed is not None:
         parts.append(f"The view follows the {runs.replay.thing} horizontally.")
     return " ".join(parts)

@@ -2,8 +2,9 @@
 
 Each link is a node, placed in the world and moved by one animation per case, whose keys are the
 samples of the record. One more node holds the parts that do not move, another one translucent
-copies of links at their target. If the view follows a link, the world moves against it. Nothing is
-compressed: the page would have to load a decoder.
+copies of links at their target. A third one holds the shadows: copies of the links that move as
+these do, pressed onto the ground as by light from straight above. If the view follows a link, the
+world moves against it. Nothing is compressed: the page would have to load a decoder.
 """
 
 import json
@@ -15,7 +16,6 @@ import pygltflib as gltf
 import trimesh
 
 from robo_genesis.core.channels import Run
-from robo_genesis.core.palette import MARKS
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part
 from robo_genesis.site.replay.scenery import Scenery
@@ -29,14 +29,17 @@ SMALLEST = 400
 
 CREASE = np.radians(40)  # Angle between triangles above which an edge is drawn sharp [rad]
 
-STILL, TARGET = "still", "target"
-"""The nodes of the parts that belong to no link, and of the copies at the target."""
+STILL, TARGET, SHADOWS = "still", "target", "shadows"
+"""The nodes of the parts that belong to no link, of the copies at the target, and of shadows."""
 
-GHOST = (*bytes.fromhex(MARKS["target"].light[1:]), 0.35)
+GHOST = (60, 110, 220, 0.4)
 """Colour of the copies: red, green, blue 0 to 255, and opacity."""
 
-SMALLER = 0.95
+SMALLER = 0.9
 """Size of a copy by that of its link: surfaces in one place would flicker at the target."""
+
+SHADOW, FLAT, ABOVE = (105, 105, 105), 1e-4, 1e-3
+"""Colour of shadows, their height by that of their links, and the gap to the ground below [m]."""
 
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 """Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
@@ -117,10 +120,20 @@ def glb(
         middle = (1 - SMALLER) * np.concatenate(parts).mean(axis=0) if parts else np.zeros(3)
         smaller = {"translation": middle.tolist(), "scale": [SMALLER] * 3}
         model.nodes.append(gltf.Node(mesh=mesh, **smaller))
+    first_shadow = len(model.nodes) + 1
+    moving = range(first_shadow, first_shadow + len(links))
+    flat = {"translation": [0.0, 0.0, scenery.ground + ABOVE], "scale": [1.0, 1.0, FLAT]}
+    model.nodes[0].children.append(len(model.nodes))
+    model.nodes.append(gltf.Node(name=SHADOWS, children=list(moving), **flat))
+    for k, link in enumerate(links, 1):
+        place, turn = model.nodes[k].translation, model.nodes[k].rotation
+        mesh = _mesh(binary, link, simple, SHADOW)
+        shadow = gltf.Node(name=f"shadow_{link}", translation=place, rotation=turn, mesh=mesh)
+        model.nodes.append(shadow)
     followed = scenery.followed
     if followed is not None:
         model.nodes[0].translation = opposite(first, followed)[0].astype(float).tolist()
-    model.animations = [_animation(binary, *run, followed) for run in traces.items()]
+    model.animations = [_animation(binary, *run, followed, first_shadow) for run in traces.items()]
     model.scene, model.scenes = 0, [gltf.Scene(nodes=[0])]
     model.buffers = [gltf.Buffer(byteLength=len(binary.data))]
     model.set_binary_blob(bytes(binary.data))
@@ -188,22 +201,29 @@ def linear(srgb: FloatArray) -> FloatArray:
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
-def _animation(binary: Binary, name: str, trace: Run, followed: int | None) -> gltf.Animation:
-    """Return the animation of a case: every link's position and orientation at every sample."""
+def _animation(
+    binary: Binary, name: str, trace: Run, followed: int | None, first_shadow: int
+) -> gltf.Animation:
+    """Return the animation of a case: every link's position and orientation at every sample.
+
+    The nodes of the links begin at 1, and those of their shadows at `first_shadow`.
+    """
     animation = gltf.Animation(name=name, channels=[], samplers=[])
     times = binary.add(_float32(trace.t), "SCALAR", bounds=True)
-    tracks = []
+    tracks = list[tuple[tuple[int, ...], str, FloatArray, str]]()
     for k in range(trace.link_pos.shape[1]):
-        tracks.append((k + 1, "translation", _float32(trace.link_pos[:, k]), "VEC3"))
-        tracks.append((k + 1, "rotation", rotations(trace.link_quat[:, k]), "VEC4"))
+        both = k + 1, first_shadow + k
+        tracks.append((both, "translation", _float32(trace.link_pos[:, k]), "VEC3"))
+        tracks.append((both, "rotation", rotations(trace.link_quat[:, k]), "VEC4"))
     if followed is not None:
-        tracks.append((0, "translation", opposite(trace, followed), "VEC3"))
-    for node, path, values, kind in tracks:
-        target = gltf.AnimationChannelTarget(node=node, path=path)
-        channel = gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
+        tracks.append(((0,), "translation", opposite(trace, followed), "VEC3"))
+    for moved, path, values, kind in tracks:
+        for node in moved:
+            target = gltf.AnimationChannelTarget(node=node, path=path)
+            channel = gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
+            animation.channels.append(channel)
         output = binary.add(values, kind)
         sampler = gltf.AnimationSampler(input=times, output=output, interpolation="LINEAR")
-        animation.channels.append(channel)
         animation.samplers.append(sampler)
     return animation
 

@@ -35,7 +35,9 @@ def picture(model: bytes, camera: Camera) -> bytes:
         mesh = scene.geometry[name]
         rgba = mesh.visual.material.baseColorFactor / 255
         places = trimesh.transform_points(mesh.vertices, matrix)
-        facing = mesh.vertex_normals @ matrix[:3, :3].T @ (LIGHT / np.linalg.norm(LIGHT))
+        normals = mesh.vertex_normals @ np.linalg.inv(matrix[:3, :3])  # a shadow's parts are flat
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+        facing = normals @ (LIGHT / np.linalg.norm(LIGHT))
         lit = DARKEST + (BRIGHTEST - DARKEST) * (1 + facing) / 2
         both = np.column_stack([lit, lit])  # as the function interpolates texture coordinates
         places, faces, both = slice_faces_plane(places, mesh.faces, -back, edge, uv=both)

@@ -88,6 +88,7 @@ class Scenery:
 
     `target` is by link its pose (4, 4) where the joint is at its target and the others at their
     start. The view follows the link number `followed` horizontally; None if it does not move.
+    `ground` is the height on which shadows fall [m].
     """
 
     parts: Sequence[Part]
@@ -95,6 +96,7 @@ class Scenery:
     axis: bool = False
     target: Mapping[str, FloatArray] = field(default_factory=dict)
     followed: int | None = None
+    ground: float = 0.0
 
 
 def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
@@ -107,11 +109,12 @@ def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
     hinge, followed = None if runs.replay.places else find_hinge(runs), find_followed(runs)
     moved = hinge.moved if hinge else range(len(runs.links))
     camera = fitted(swept(shape, runs, moved, followed))
-    parts = [*shape, *floor_of(shape)]
+    *_, tiles = floors = floor_of(shape)
+    parts, ground = [*shape, *floors], float(tiles.vertices[:, 2].max())
     if hinge is None:
-        return Scenery(parts, camera, followed=followed)
+        return Scenery(parts, camera, followed=followed, ground=ground)
     parts.append(rod(runs.links[hinge.parent], hinge))
-    return Scenery(parts, camera, axis=True, target=target_poses(runs, hinge))
+    return Scenery(parts, camera, axis=True, target=target_poses(runs, hinge), ground=ground)
 
 
 def find_followed(runs: Runs) -> int | None:

@@ -58,7 +58,7 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
             lecture.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
             found = call(lecture, "poses")
             added = [f"target_{link}" for link in BELOW]
-            assert sorted(found) == sorted([*links, *added, "still", "target"])
+            assert sorted(found) == sorted([*links, *added, "still", "target", "shadows"])
             places, turns = (
                 np.array([found[link][part] for link in links]) for part in ("position", "rotation")
             )

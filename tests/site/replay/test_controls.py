@@ -40,7 +40,7 @@ def test_the_controls_name_parts_and_levels_and_have_the_script_s_data(joint):
     picture = "The robot at the start of G1, drawn from the recorded poses."
     assert controls.alt(joint) == picture
     assert controls.caption(joint, AROUND) == (
-        "Recorded poses of the robot. Yellow rod: the axis of joint4. Dark and translucent: joint4 "
+        "Recorded poses of the robot. Yellow rod: the axis of joint4. Blue and translucent: joint4 "
         "at its target, other joints at rest."
     )
     terms = ["time", "position", "velocity", "control force", "target", "force limit"]
