@@ -130,6 +130,14 @@ document.addEventListener("DOMContentLoaded", () => {
       ];
     }
 
+    /* How far the first channel is from its target: 0 near it, 1 from a third of the way back. */
+    function distance() {
+      const { values: [of], levels } = run();
+      const [target] = levels.find(({ mark }) => mark.endsWith("target"))?.values ?? [NaN];
+      const share = Math.abs((of[sample()] - target) / (of[0] - target));
+      return Math.min(Math.max(4 * share - 0.4, 0), 1) || 0;
+    }
+
     /* A screen reader reads time and channels at the slider. */
     function showSample(time = run().time[sample()]) {
       const lines = readout();
@@ -141,6 +149,7 @@ document.addEventListener("DOMContentLoaded", () => {
       for (const cursor of cursors) cursor(time, sample(), seen);
       if (seen === last && block.classList.contains("growing")) reveal();
       scene.pose(chosen(), time);
+      scene.fade(distance());
     }
 
     /* Shows the case at the 3D model: the picker may be out of sight. Its picture is of the start. */

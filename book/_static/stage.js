@@ -73,6 +73,14 @@ globalThis.stage = (() => {
       this.viewer = element;
     }
 
+    /* Shows a share of the copies at the target, whose material alone is translucent. */
+    fade(share) {
+      const copies = this.viewer?.model?.materials.find((one) => one.getAlphaMode() === "BLEND");
+      const look = copies?.pbrMetallicRoughness;
+      this.opacity ??= look?.baseColorFactor[3];
+      look?.setBaseColorFactor([...look.baseColorFactor.slice(0, 3), this.opacity * share]);
+    }
+
     /* The case first: a new animation begins at its own start. */
     async pose(name, time) {
       const { viewer } = this;

@@ -33,10 +33,8 @@ STILL, TARGET, SHADOWS = "still", "target", "shadows"
 """The nodes of the parts that belong to no link, of the copies at the target, and of shadows."""
 
 GHOST = (60, 110, 220, 0.4)
-"""Colour of the copies: red, green, blue 0 to 255, and opacity."""
-
-SMALLER = 0.9
-"""Size of a copy by that of its link: surfaces in one place would flicker at the target."""
+"""Colour of the copies: red, green, blue 0 to 255, and opacity. The script fades them near the
+target, where surfaces in one place would flicker."""
 
 SHADOW, FLAT, ABOVE = (105, 105, 105), 1e-4, 1e-3
 """Colour of shadows, their height by that of their links, and the gap to the ground below [m]."""
@@ -110,16 +108,11 @@ def glb(
     model.nodes[0].children = list(range(1, len(model.nodes)))
     if scenery.target:
         model.nodes[0].children.append(len(model.nodes))
-        below = range(len(model.nodes) + 1, len(model.nodes) + 1 + 2 * len(scenery.target), 2)
+        below = range(len(model.nodes) + 1, len(model.nodes) + 1 + len(scenery.target))
         model.nodes.append(gltf.Node(name=TARGET, children=list(below)))
     for link, pose in scenery.target.items():
-        mesh, inside = _mesh(binary, link, simple, GHOST), [len(model.nodes) + 1]
-        matrix = pose.T.ravel().tolist()
-        model.nodes.append(gltf.Node(name=f"{TARGET}_{link}", matrix=matrix, children=inside))
-        parts = [part.vertices for part in scenery.parts if part.link == link]
-        middle = (1 - SMALLER) * np.concatenate(parts).mean(axis=0) if parts else np.zeros(3)
-        smaller = {"translation": middle.tolist(), "scale": [SMALLER] * 3}
-        model.nodes.append(gltf.Node(mesh=mesh, **smaller))
+        mesh, matrix = _mesh(binary, link, simple, GHOST), pose.T.ravel().tolist()
+        model.nodes.append(gltf.Node(name=f"{TARGET}_{link}", matrix=matrix, mesh=mesh))
     first_shadow = len(model.nodes) + 1
     moving = range(first_shadow, first_shadow + len(links))
     flat = {"translation": [0.0, 0.0, scenery.ground + ABOVE], "scale": [1.0, 1.0, FLAT]}

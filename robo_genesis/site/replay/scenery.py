@@ -107,10 +107,10 @@ def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
     """
     check_links(shape, runs.links)
     hinge, followed = None if runs.replay.places else find_hinge(runs), find_followed(runs)
-    moved = hinge.moved if hinge else range(len(runs.links))
-    camera = fitted(swept(shape, runs, moved, followed))
     *_, tiles = floors = floor_of(shape)
     parts, ground = [*shape, *floors], float(tiles.vertices[:, 2].max())
+    seen = swept(shape, runs, followed)
+    camera = fitted(np.concatenate([seen, seen * [1, 1, 0] + [0, 0, ground]]))  # with the shadows
     if hinge is None:
         return Scenery(parts, camera, followed=followed, ground=ground)
     parts.append(rod(runs.links[hinge.parent], hinge))
@@ -199,15 +199,13 @@ def floor_of(shape: Sequence[Part]) -> list[Part]:
     return [*added, Part(WORLD, TILE_RGB, vertices, halves.reshape(-1, 3))]
 
 
-def swept(
-    shape: Sequence[Part], runs: Runs, moved: Sequence[int], followed: int | None
-) -> FloatArray:
+def swept(shape: Sequence[Part], runs: Runs, followed: int | None) -> FloatArray:
     """Return the corners (n, 3) of the boxes around links at all samples of all runs [m].
 
     Positions are horizontally relative to the followed link.
     """
     found = []
-    for trace, k in product(runs.traces.values(), moved):
+    for trace, k in product(runs.traces.values(), range(len(runs.links))):
         own = [part.vertices for part in shape if part.link == runs.links[k]]
         if own:
             ends = np.concatenate(own).min(axis=0), np.concatenate(own).max(axis=0)

@@ -85,15 +85,18 @@ def test_runs_with_several_targets_show_none():
     assert scenery.target_poses(runs, scenery.find_hinge(runs)) == {}
 
 
-def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
+def test_an_arm_gets_floor_axis_and_target_and_the_view_of_all_of_it():
     shape = [box(link) for link in LINKS]
     found = scenery.scenery(shape, turning())
     assert found.axis
     assert found.followed is None
     assert [part.link for part in found.parts] == [*LINKS, WORLD, WORLD, "upper"]
-    hand = turned(0.1)[3][:3, 3]
-    assert np.linalg.norm(found.camera.centre - hand[[0, 2, 1]] * [1, 1, -1]) < 0.3
-    assert found.camera.distance < 2.0
+    links = np.array([pose[:3, 3] for pose in turned(0.1)])
+    for point in (*links, *(links * [1, 1, 0])):  # the shadows lie at z = 0
+        right, up, back = found.camera.axes @ (point[[0, 2, 1]] * [1, 1, -1] - found.camera.centre)
+        half = (found.camera.distance - back) * np.tan(scenery.FIELD / 2)
+        assert max(abs(right) / scenery.ASPECT, abs(up)) < half
+    assert found.camera.distance < 4.0
 
 
 @pytest.mark.parametrize(("drift", "followed"), [(3.0, 0), (0.1, None)])
@@ -104,9 +107,8 @@ def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed)
     runs = body_channels.runs({"run": one}, ["box"], Replay(("run",), "box", "box"))
     found = scenery.scenery([box("box")], runs)
     assert (found.followed, found.axis, found.target) == (followed, False, {})
-    lowest, highest = one.link_pos[:, 0, 2].min() - 0.1, one.link_pos[:, 0, 2].max() + 0.1
-    middle = [0, (lowest + highest) / 2, 0]
-    assert found.camera.centre == pytest.approx(middle, abs=0.02)
+    middle = [0, (one.link_pos[:, 0, 2].max() + 0.1) / 2, 0]  # of the top and the ground
+    assert found.camera.centre == pytest.approx(middle, abs=0.05)
 
 
 def test_tiles_lie_on_the_highest_still_part_and_a_marker_in_the_air_is_no_ground():
