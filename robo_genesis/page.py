@@ -92,8 +92,8 @@ class LessonPage:
         self.frames: dict[str, np.ndarray] = {}
         self.joints: Any = None
         self.links: Sequence[str] = list(self._declared.links)
-        declared = self._declared.readings.get(FUNCTIONS)
-        self._written = dict.fromkeys(declared.units if declared else (), 0)
+        names = getattr(self._declared.readings.get(FUNCTIONS), "units", ())
+        self._written = dict.fromkeys(names, 0)
 
     @property
     def experiment(self) -> Experiment:
@@ -207,8 +207,7 @@ class LessonPage:
         missing = [name for name, passed in self._written.items() if not passed]
         measured = [c for c in experiment.outcomes() if not missing or c.name != FUNCTIONS]
         verdict = checks.require(self._lesson, measured)
-        if self._written:
-            count = len(self._written)
+        if count := len(self._written):
             print(f"functions {count - len(missing)} of {count}")
         if missing:
             verdict = f"{self._lesson.upper()} CHECK: INCOMPLETE, to write: {', '.join(missing)}"

@@ -97,13 +97,10 @@ class Watched:
 
     def raised(self, error: Exception) -> str:
         """Return what an exception says, with the line of the function that raised it."""
-        own = [f for f in extract_tb(error.__traceback__) if f.filename == self._file]
+        file = getattr(getattr(self.function, "__code__", None), "co_filename", "")
+        own = [f for f in extract_tb(error.__traceback__) if f.filename == file]
         line = f"\n  line {own[-1].lineno} of its cell: {own[-1].line}" if own else ""
         return f"{self.call or self.name}: {type(error).__name__}: {error}{line}"
-
-    @property
-    def _file(self) -> str:
-        return getattr(getattr(self.function, "__code__", None), "co_filename", "")
 
 
 def brief(value: Any) -> str:

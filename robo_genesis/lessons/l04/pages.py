@@ -83,8 +83,6 @@ LESSON = Lesson(
             band=SETTLING_BAND,
             until=0.6,
             credit=CREDIT,
-            view="The robot in 3D, in the posture of the sample that is shown. "
-            f"{spec.STEPPED_JOINT} moves.",
             quality="Rise time {rise_time}, overshoot {overshoot}, final error {final_error}; at "
             "the force limit: {saturation_samples}.",
             filmed="the Franka",

@@ -69,8 +69,7 @@ LESSON = Lesson(
             goal=lambda name, state: spec.WORLDS[name].positions[-1 if state >= spec.SWITCH else 0],
             places=spec.PLACES,
             credit=CREDIT,
-            view="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
-            "colours of the runs are at the targets of the hands.",
+            view="Four robots in the postures of the sample; spheres mark the hands' targets.",
             quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
             "{moved_later}.",
             filmed="the robots of all environments",

@@ -27,7 +27,6 @@ from robo_genesis.site.evidence.plain_nodes import bullets, html, marked, paragr
 from robo_genesis.site.pages import PageDirective, PageRole
 
 FILE = "course_map.yml"
-POSTER = "replay-{}-lecture-cpu*.webp"  # The pictures of the replays of a lesson's lecture
 LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 """A link to a lesson's page: its words, the lesson and the page."""
 
@@ -226,12 +225,12 @@ def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
 def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:
     """Write the minutes of the pages, as each page itself shows them, and the pictures of cards."""
     for place in list(document.findall(card_picture)):
-        pictures = fnmatch.filter(
-            (name for _, name in app.env.images.values()), POSTER.format(place["lesson"])
+        lesson, names = place["lesson"], [name for _, name in app.env.images.values()]
+        up, alt = "../" * docname.count("/"), f"{lesson.upper()}: the start of its replay."
+        of_lesson = fnmatch.filter(names, f"replay-{lesson}-lecture-cpu*.webp")
+        place.replace_self(
+            [html(f'<img src="{up}_images/{n}" alt="{alt}">') for n in of_lesson[:1]]
         )
-        up, alt = "../" * docname.count("/"), f"{place['lesson'].upper()}: the start of its replay."
-        shown = [html(f'<img src="{up}_images/{name}" alt="{alt}">') for name in pictures[:1]]
-        place.replace_self(shown)
     for place in list(document.findall(page_minutes)):
         place.replace_self(nodes.Text(str(total_minutes(app.env, place["pages"]))))
 

@@ -2,7 +2,6 @@
 
 import textwrap
 from html import escape
-from itertools import islice
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -19,7 +18,6 @@ MINUTES = "minutes"  # The name of the time in a page's metadata
 
 
 FORM = "lesson.yml"  # The repository's form for a mistake or a question
-GITHUB = "https://github.com/"
 
 
 def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
@@ -28,11 +26,11 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     if docname != app.config.root_doc:
         time = f"About {app.env.metadata[docname][MINUTES]}."
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
-    if repository.startswith(GITHUB):
+    if repository.startswith("https://github.com/"):
         place = f"{docname}, Genesis {engine_pin()}"
         address = f"{repository}/issues/new?{urlencode({'template': FORM, 'page': place})}"
-        words = "Report a mistake on this page, or ask"
-        section += html(f'<p class="report"><a href="{escape(address)}">{words}</a></p>')
+        link = f'<a href="{escape(address)}">Report a mistake on this page, or ask</a>'
+        section += html(f'<p class="report">{link}</p>')
 
 
 def keep_facts(app: Sphinx, document: nodes.document) -> None:
@@ -41,7 +39,7 @@ def keep_facts(app: Sphinx, document: nodes.document) -> None:
     facts[MINUTES] = count_minutes(Path(app.env.doc2path(app.env.docname)))
     section = document.next_node(nodes.section)
     paragraphs = (n for n in section or () if isinstance(n, nodes.paragraph))
-    for node in islice(paragraphs, 1):
+    if node := next(paragraphs, None):
         facts["og:description"] = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
 
 

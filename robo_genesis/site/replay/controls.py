@@ -116,14 +116,13 @@ def _rest(runs: Runs) -> str:
 def data(runs: Runs, camera: "Camera") -> dict[str, str]:
     """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
     thing = runs.replay.thing
-    posture = f"The {thing} in 3D, where it is at the sample that is shown."
     channels = [{"name": c.name, "unit": c.unit, "digits": c.digits} for c in runs.channels]
     return {
         "subject": runs.subject,
         "channels": as_json(channels),
         "time-digits": str(time_digits(runs.first.dt)),
         "thing": thing,
-        "alt": runs.replay.view or posture,
+        "alt": runs.replay.view or f"The {thing} in 3D at the sample that is shown.",
         "orbit": camera.orbit,
         "target": camera.target,
     }

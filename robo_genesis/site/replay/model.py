@@ -113,16 +113,16 @@ def glb(
     for link, pose in scenery.target.items():
         mesh, matrix = _mesh(binary, link, simple, GHOST), pose.T.ravel().tolist()
         model.nodes.append(gltf.Node(name=f"{TARGET}_{link}", matrix=matrix, mesh=mesh))
-    first_shadow = len(model.nodes) + 1
-    moving = range(first_shadow, first_shadow + len(links))
-    flat = {"translation": [0.0, 0.0, scenery.ground + ABOVE], "scale": [1.0, 1.0, FLAT]}
+    first_shadow, flat = len(model.nodes) + 1, [1.0, 1.0, FLAT]
+    shadows = gltf.Node(name=SHADOWS, translation=[0.0, 0.0, scenery.ground + ABOVE], scale=flat)
+    shadows.children = list(range(first_shadow, first_shadow + len(links)))
     model.nodes[0].children.append(len(model.nodes))
-    model.nodes.append(gltf.Node(name=SHADOWS, children=list(moving), **flat))
+    model.nodes.append(shadows)
     for k, link in enumerate(links, 1):
         place, turn = model.nodes[k].translation, model.nodes[k].rotation
         mesh = _mesh(binary, link, simple, SHADOW)
-        shadow = gltf.Node(name=f"shadow_{link}", translation=place, rotation=turn, mesh=mesh)
-        model.nodes.append(shadow)
+        name = f"shadow_{link}"
+        model.nodes.append(gltf.Node(name=name, translation=place, rotation=turn, mesh=mesh))
     followed = scenery.followed
     if followed is not None:
         model.nodes[0].translation = opposite(first, followed)[0].astype(float).tolist()

@@ -109,8 +109,8 @@ class Choice(Question):
         """See `Question.ask`."""
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
-        measure = no_order if "absent" in self.options else measured_order
-        found, answer, origin = measure(lesson_page, metric, cases)
+        absent = "absent" in self.options
+        found, answer, origin = measured_order(lesson_page, metric, cases, absent)
         smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
         resolution = small(smallest, found.unit)
         shown = options(found.unit, found.order, resolution, causes, found.margin)
@@ -177,40 +177,37 @@ def asked_number(
     }  # fmt: skip
 
 
-def measured_order(lesson_page: str, metric: str, cases: list[str]) -> tuple[Comparison, str, str]:
+def measured_order(
+    lesson_page: str, metric: str, cases: list[str], absent: bool = False
+) -> tuple[Comparison, str, str]:
     """Return (comparison of the two cases, sentence, provenance).
 
+    Args:
+        lesson_page: as `l04/lab`.
+        metric: its name.
+        cases: names of both.
+        absent: whether the bundle must lack the second case; no order is known then.
+
     Raises:
-        LookupError: the metric or a case is not in the bundle; the message lists the known ones.
+        LookupError: the metric or a case is not in the bundle, and the message lists the known
+            ones; or the second case is, and must be absent.
         BundleRefused: the bundle cannot be read.
     """
-    _, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in cases)
+    observed = cases[:1] if absent else cases
+    *_, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in observed)
     records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
-    first, second = (records[case][metric] for case in cases)
+    if absent and cases[1] in records:
+        raise LookupError(f"{lesson_page} recorded {cases[1]}; ask for it without `:absent:`.")
     lesson_name = lesson_page.split("/")[0]
-    lesson = find_lesson(lesson_name)
+    lesson, unit = find_lesson(lesson_name), records[cases[0]][metric].unit
+    first, second = (None if absent else records[case][metric].value for case in cases)
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
-    values, margin = (first.value, second.value), declared_margin(lesson_name, metric)
-    found = compare_values(noun, first.unit, *values, resolution, margin)
+    margin = declared_margin(lesson_name, metric)
+    found = compare_values(noun, unit, first, second, resolution, margin)
+    if absent:
+        return found, f"The record of {lesson_page} has no such run.", origin
     names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
     return found, measured_sentence(names, found), origin
-
-
-def no_order(lesson_page: str, metric: str, cases: list[str]) -> tuple[Comparison, str, str]:
-    """Return what `measured_order` does where the second case is in no record of the page.
-
-    Raises:
-        LookupError: it is in the bundle, or the first case or the metric is not.
-    """
-    first, absent = cases
-    origin = measured(lesson_page, f"{first}.{metric}")[1]
-    records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
-    if absent in records:
-        raise LookupError(f"{lesson_page} recorded {absent}; ask for it without `:absent:`.")
-    lesson = find_lesson(lesson_page.split("/")[0])
-    noun, unit = lesson.about_metrics("noun")[metric], records[first][metric].unit
-    found = compare_values(noun, unit, None, None, lesson.spec.RESOLUTION, 0.0)
-    return found, f"The record of {lesson_page} has no such run.", origin
 
 
 def measured_sentence(names: tuple[str, str], found: Comparison) -> str:

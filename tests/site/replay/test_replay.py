@@ -158,7 +158,7 @@ def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
     assert not picture.is_visible()
     assert stage.bounding_box() == place
     model = page.locator("model-viewer")
-    assert model.get_attribute("alt").startswith("The box in 3D, where it is")
+    assert model.get_attribute("alt").startswith("The box in 3D at the sample")
     choose(page, "high", 30)
     assert page.locator(".shown").inner_text() == "high"
     page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.29")

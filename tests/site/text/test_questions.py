@@ -41,12 +41,14 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
 
 
 def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
-    found, sentence, _ = questions.no_order("l04/lab", "overshoot", ["G1", "with_a_load"])
+    found, sentence, _ = questions.measured_order(
+        "l04/lab", "overshoot", ["G1", "load"], absent=True
+    )
     assert (found.order, found.unit) == (None, "rad")
     assert sentence == "The record of l04/lab has no such run."
     for cases, said in ((["G1", "G2"], "recorded G2; ask"), (["G9", "no_run"], "G9")):
         with pytest.raises(LookupError, match=said):
-            questions.no_order("l04/lab", "overshoot", cases)
+            questions.measured_order("l04/lab", "overshoot", cases, absent=True)
 
 
 @pytest.mark.parametrize(
