@@ -128,10 +128,3 @@ class Runs:
     def levels_of(self, channel: Channel) -> list[Level]:
         """Return the levels of a channel."""
         return [level for level in self.levels if level.channel == channel.name]
-
-
-def farthest_link(links: Sequence[str], trace: Run) -> str:
-    """Return a sentence about the link that moves farthest from its start."""
-    distances = np.linalg.norm(trace.link_pos - trace.link_pos[0], axis=2).max(axis=0)  # (l,)
-    name, distance = links[distances.argmax()], 100 * distances.max()
-    return f"The link `{name}` moves farthest, by up to {distance:.1f} cm."

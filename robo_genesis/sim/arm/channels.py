@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from robo_genesis.core.channels import Channel, Level, Replay, Runs, farthest_link
+from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import with_unit
 from robo_genesis.core.trace import Trace
@@ -37,8 +37,7 @@ def runs(
         channels=reaching or of_joint,
         levels=[] if reaching else levels(traces, joints, joint, replay.band),
         moves={
-            case: f"**{case}**: {motion(trace, joints, joint)} {farthest_link(links, trace)}"
-            for case, trace in traces.items()
+            case: f"**{case}**: {motion(trace, joints, joint)}" for case, trace in traces.items()
         },
     )
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.channels import Channel, Replay, Runs, farthest_link
+from robo_genesis.core.channels import Channel, Replay, Runs
 from robo_genesis.core.text import time_digits, with_unit
 from robo_genesis.core.trace import BodyTrace
 
@@ -60,7 +60,7 @@ def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], replay: Replay) 
         moves={
             case: f"**{case}**: the {thing} "
             + "; it ".join(_along(trace, k, axis) for axis in followed)
-            + (f". {farthest_link(links, trace)}" if len(links) > 1 else ".")
+            + "."
             for case, trace in traces.items()
         },
     )

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
@@ -27,6 +27,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.command import output_of
+from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
@@ -96,9 +97,10 @@ def write_takeaways(
     origin = partial(origin_of, page, predicate, wheel.name, commands, config)
     needed = {project.ENGINE: project.engine_pin(), project.COURSE: package_facts()["version"]}
     check = version_check(needed, wheel.name, commands)
-    writer = Writer(page.path.parent, lambda _: NOT_SHOWN)
+    address = f"{site_address()}{page.docname}.html" if site_address() else ""
+    writer = Writer(page.path.parent, lambda _: NOT_SHOWN, address)
     _write(student, student_notebook(page, origin("student notebook"), check, writer))
-    writer = Writer(page.path.parent, measured)
+    writer = replace(writer, measured=measured)
     _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
     units = Path(shutil.copy(run / "arrays.json", own))
     arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))

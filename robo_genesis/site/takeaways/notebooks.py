@@ -21,12 +21,10 @@ SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
 AFTER_YOURS = "after-yours"  # The tag of a cell that a student runs after an own answer
 WAITS = "# Write your own text first. Then take away the # of the lines below, and run this cell.\n"
 
-HIDDEN = {
-    "hide-input": {"source_hidden": True},
-    "hide-output": {"outputs_hidden": True},
-    "hide-cell": {"source_hidden": True, "outputs_hidden": True},
-}
-"""What Jupyter's own interfaces hide of a cell, by its tag for the site."""
+SOURCE, OUTPUTS = "source_hidden", "outputs_hidden"
+HIDDEN = {"hide-input": (SOURCE,), "hide-output": (OUTPUTS,), "hide-cell": (SOURCE, OUTPUTS)}
+"""What Jupyter hides of a cell, by its tag for the site. Outputs are hidden in the executed notebook
+alone: JupyterLab shows those of a cell that it runs, and a student must see a failed test."""
 
 BEFORE = "before the run"  # Words in the heading of each part of the work sheet that comes first
 PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
@@ -184,7 +182,7 @@ def _code(
 ) -> list[NotebookNode]:
     """Return a code cell, and its caption below it where it draws a figure."""
     tags = list(cell.metadata.get("tags", []))
-    hidden = {key: value for tag in tags for key, value in HIDDEN.get(tag, {}).items()}
+    hidden = {key: True for tag in tags for key in HIDDEN.get(tag, ()) if ran or key == SOURCE}
     code = new_code_cell(cell.source, metadata={"tags": tags} if tags else {})
     if ran is None and AFTER_YOURS in tags:
         code.source = WAITS + indent(cell.source, "# ")

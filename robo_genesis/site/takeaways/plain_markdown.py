@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import urljoin
 
 from docutils.parsers.rst.directives.misc import TestDirective
 from markdown_it.renderer import RendererHTML
@@ -36,7 +37,7 @@ DIRECTIVE = re.compile(r"\{([\w:-]+)\}\s*(.*)")
 ANSWER = re.compile(r"(?:our |a )?(?:answer|solution)", re.IGNORECASE)
 ROLE = re.compile(r"\{([a-z][\w:-]*)\}(`+)(.+?)\2", re.DOTALL)
 TITLED = re.compile(r"(.+?)\s*<[^<>]+>", re.DOTALL)
-LINK = re.compile(r"!?\[([^\]]*)\]\((?!https?:|mailto:)[^)\s]*\)")
+LINK = re.compile(r"!?\[([^\]]*)\]\((?!https?:|mailto:)([^)\s]*)\)")
 PARSER = create_md_parser(
     MdParserConfig(enable_extensions={"amsmath", "colon_fence", "dollarmath"}), RendererHTML
 )
@@ -44,10 +45,14 @@ PARSER = create_md_parser(
 
 @dataclass(frozen=True, slots=True)
 class Writer:
-    """The page's folder, and the function that returns the text of a measured value."""
+    """The page's folder, and the function that returns the text of a measured value.
+
+    `address` is that of the page on the site, empty where it is not known.
+    """
 
     folder: Path
     measured: Callable[[str], str]
+    address: str = ""
 
 
 def plain(text: str, writer: Writer) -> str:
@@ -115,9 +120,14 @@ def excerpt(folder: Path, first_line: str, content: str) -> str:
 
 
 def _inline(lines: list[str], writer: Writer) -> str:
-    """Return running text without roles, and without links that do not work outside the site."""
+    """Return running text without roles; links lead to the site, or without its address are words."""
+
+    def link(found: re.Match[str]) -> str:
+        target = urljoin(writer.address, re.sub(r"\.md(?=#|$)", ".html", found[2]))
+        return f"[{found[1]}]({target})" if writer.address and found[1] else found[1]
+
     text = ROLE.sub(lambda role: _role(role[1], role[3], writer), "\n".join(lines))
-    return LINK.sub(r"\1", text)
+    return LINK.sub(link, text)
 
 
 def _role(name: str, text: str, writer: Writer) -> str:

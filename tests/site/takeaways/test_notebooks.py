@@ -51,7 +51,7 @@ def test_the_student_s_notebook_is_clean(page):
     waits = f"{notebooks.WAITS}# show(text)"
     assert [c.source for c in code] == [CHECK, "x = 1", "log()", waits, "plot()"]
     hidden = {c.source: c.metadata.jupyter for c in code if "jupyter" in c.metadata}
-    assert hidden == {"log()": {"outputs_hidden": True}}
+    assert hidden == {}  # a student sees what a cell printed
     assert all(c.outputs == [] and c.execution_count is None for c in code)
 
 
@@ -162,5 +162,6 @@ def test_the_executed_notebook_has_outputs_and_the_solutions_only_if_the_site_ha
     assert cells[0].outputs[0].text == "hello"
     assert cells[-1].outputs[0].traceback == ["ValueError: no"]
     assert ("SECRET code" in text) == (shown == "1")
+    assert next(c for c in cells if c.source == "log()").metadata.jupyter.outputs_hidden
     assert "It was 0.12 s." in text
     assert "Only on the site" not in text

@@ -69,3 +69,12 @@ def test_an_excerpt_is_cut_as_on_the_site(writer, tmp_path):
     (tmp_path / "code.py").write_text("a = 1\n\n\ndef f():\n    return 2\n\n\nb = 3\n")
     text = "```{literalinclude} code.py\n:language: python\n:pyobject: f\n```"
     assert plain(text, writer) == "```python\ndef f():\n    return 2\n```"
+
+
+def test_links_lead_to_a_site_whose_address_is_known(tmp_path):
+    writer = Writer(tmp_path, str, "https://x.org/a/lessons/l01/lab.html")
+    text = "[lecture](lecture.md#act), [words](../../glossary.md), ![](a.svg), [x](https://x.org)"
+    assert plain(text, writer) == (
+        "[lecture](https://x.org/a/lessons/l01/lecture.html#act), "
+        "[words](https://x.org/a/glossary.html), , [x](https://x.org)"
+    )
