@@ -23,7 +23,7 @@ WAITS = "# Write your own text first. Then take away the # of the lines below, a
 
 SOURCE, OUTPUTS = "source_hidden", "outputs_hidden"
 HIDDEN = {"hide-input": (SOURCE,), "hide-output": (OUTPUTS,), "hide-cell": (SOURCE, OUTPUTS)}
-"""What Jupyter hides of a cell, by its tag for the site. Outputs are hidden in the executed notebook
+"""What Jupyter hides of a cell, by its tag on the site. Outputs are hidden in the executed notebook
 alone: JupyterLab shows those of a cell that it runs, and a student must see a failed test."""
 
 BEFORE = "before the run"  # Words in the heading of each part of the work sheet that comes first

@@ -120,7 +120,7 @@ def excerpt(folder: Path, first_line: str, content: str) -> str:
 
 
 def _inline(lines: list[str], writer: Writer) -> str:
-    """Return running text without roles; links lead to the site, or without its address are words."""
+    """Return running text without roles. Links lead to the site, if its address is known."""
 
     def link(found: re.Match[str]) -> str:
         target = urljoin(writer.address, re.sub(r"\.md(?=#|$)", ".html", found[2]))
