@@ -79,7 +79,7 @@ document.addEventListener("DOMContentLoaded", () => {
       for (const mark of document.querySelectorAll(".finished")) mark.remove();
     });
     place.append("Continue where you left: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
-    for (const link of document.querySelectorAll(".course-map a[href]")) {
+    for (const link of document.querySelectorAll(".course-map .time a")) {
       const name = new URL(link.href).pathname.split("/").slice(-3).join("/");
       if (!all.pages?.[name]?.finished) continue;
       link.after(Object.assign(document.createElement("span"), { className: "finished", textContent: " ✓ finished" }));

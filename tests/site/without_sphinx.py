@@ -19,7 +19,7 @@ from robo_genesis.site.evidence.plain_nodes import between
 from robo_genesis.site.figures import palette_css
 from robo_genesis.site.replay import viewer
 
-SCRIPTS = ("plot.js", "stage.js", "replay.js", "explorer.js")
+SCRIPTS = ("memory.js", "plot.js", "stage.js", "replay.js", "explorer.js")
 SHEETS = ("course.css", "plot.css", "replay.css", "explorer.css")
 
 

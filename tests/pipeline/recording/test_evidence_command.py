@@ -14,7 +14,7 @@ def test_a_recording_without_a_camera_is_refused(tmp_path):
 
 
 def test_a_lesson_without_a_lab_is_status_1(tmp_path):
-    tiny_book.make_book(tmp_path)
+    tiny_book.make_book(tmp_path, text="# Text\n")
     given = {"LESSON": "l09", "BACKEND": "cpu", "TO": str(tmp_path / "kept")}
     assert "LESSON='l09' is not valid" in tiny_book.fails("evidence.py", tmp_path, **given)
 

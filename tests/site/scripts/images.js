@@ -1,7 +1,7 @@
 async () => {
   const early = [...document.querySelectorAll("article img")]
     .filter((image) => !(+image.getAttribute("width") && +image.getAttribute("height"))
-      || image.getAttribute("loading") !== "lazy")
+      || image.getAttribute("loading") !== (image.fetchPriority === "high" ? "eager" : "lazy"))
     .map(image => `without a size, or loaded at once: ${image.src}`);
   const all = [...document.images];
   for (const image of all) image.loading = "eager";
