@@ -128,6 +128,11 @@ compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder
 agree: $(ENVIRONMENT) ## require equal arrays from two machines (FIRST=folder SECOND=folder, each from make execute)
 	@"$(PY)" build_scripts/agree.py
 
+.PHONY: home-picture
+home-picture: ## renew the README's picture from the built site (needs Debian's chromium)
+	@chromium --headless --no-sandbox --hide-scrollbars --window-size=1280,900 --virtual-time-budget=5000 \
+	  --screenshot="$(CURDIR)/.github/home.png" "file://$(CURDIR)/book/_build/html/index.html" 2>/dev/null
+
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
 	@"$(PY)" build_scripts/serve.py

@@ -12,6 +12,7 @@ import tempfile
 import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 from robo_genesis.core.text import printable
@@ -90,7 +91,8 @@ def explained(comparison: BundleComparison) -> list[str]:
             "Engine, backend, settings and code are equal. Another processor can change the last "
             "digits; a larger difference comes from a changed cell of the notebook."
         ]
-    return [*report.summary(comparison).splitlines(), CONCLUSIONS[comparison.state], *found]
+    without_notes = report.summary(replace(comparison, notes=()))  # they are about recordings
+    return [*without_notes.splitlines(), CONCLUSIONS[comparison.state], *found]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -29,7 +29,9 @@ def archive(folder, tmp_path) -> str:
 def test_an_equal_run_agrees_with_the_archive_and_with_the_folder(mine, archive, folder, capsys):
     for site in (archive, str(folder)):
         assert main([str(mine), site]) == 0
-        assert "Your run agrees with the site's" in capsys.readouterr().out
+        said = capsys.readouterr().out
+        assert "Your run agrees with the site's" in said
+        assert "clean checkout" not in said
 
 
 accelerated = part("backend", actual="cuda", actual_at_end="cuda")

@@ -1,4 +1,17 @@
-/* A page from disk cannot read other files, so search results have no excerpts there. */
+/* Excerpts of search results: none from disk, where a page cannot read other files, and of articles
+   alone, without menus, tables and lines of provenance. */
 "use strict";
 
 if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
+
+document.addEventListener("DOMContentLoaded", () => {
+  const { htmlToText } = Search;
+  Search.htmlToText = (html, anchor) => {
+    const page = new DOMParser().parseFromString(html, "text/html");
+    const article = page.querySelector("article.bd-article");
+    if (!article) return htmlToText(html, anchor);
+    const left = "nav, summary, table, figure, pre, .provenance, .page-facts, .lesson-status, .headerlink";
+    for (const part of article.querySelectorAll(left)) part.remove();
+    return htmlToText(`<div role="main">${article.innerHTML}</div>`, anchor);
+  };
+});

@@ -132,8 +132,7 @@ def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     if before != shown:
         return sorted(env.found_docs)
     reads: Sequence[str] = vars(app.builder)["robo_genesis_reads"]
-    home = env.config.root_doc
-    vars(app.builder)["robo_genesis_home"] = home in reads or not reads
+    vars(app.builder)["robo_genesis_home"] = (home := env.config.root_doc) in reads or not reads
     return [] if reads else [home]  # without any page, Sphinx would write no style sheet
 
 

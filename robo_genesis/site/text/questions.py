@@ -109,8 +109,7 @@ class Choice(Question):
         """See `Question.ask`."""
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
-        absent = "absent" in self.options
-        found, answer, origin = measured_order(lesson_page, metric, cases, absent)
+        found, answer, origin = measured_order(lesson_page, metric, cases, "absent" in self.options)
         smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
         resolution = small(smallest, found.unit)
         shown = options(found.unit, found.order, resolution, causes, found.margin)
