@@ -210,7 +210,7 @@ class LessonPage:
         if count := len(self._written):
             print(f"functions {count - len(missing)} of {count}")
         if missing:
-            verdict = f"{self._lesson.upper()} CHECK: INCOMPLETE, to write: {', '.join(missing)}"
+            verdict = f"{self._lesson.upper()} CHECK: INCOMPLETE, not passed: {', '.join(missing)}"
         print(verdict)
 
 

@@ -172,7 +172,10 @@ def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(page
         page.test(l02.exercises.stepped, test_without_a_camera_no_frame_is_taken)
     page.finish(None)
     last = capsys.readouterr().out.splitlines()[-2:]
-    assert last == ["functions 3 of 4", "L02 CHECK: INCOMPLETE, to write: usable_frame"]
+    assert last == [
+        "functions 3 of 4",
+        "L02 CHECK: INCOMPLETE, not passed: usable_frame",
+    ]
     metrics = json.loads((page.folder / "cpu" / "metrics.json").read_text())
     assert {name: of["value"] for name, of in metrics["functions"].items()} == page._written
 

@@ -106,7 +106,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const block = root.parentElement;
     /* Of a blind replay, nothing shows before the question above has an answer, and its feedback waits
        for the curves. They appear with the time: `seen` is the last sample so far. */
-    const blind = "blind" in root.dataset && !kept(root.dataset.name);
+    const blind = block.classList.contains("growing") && !kept(root.dataset.name);
     const question = blind && questionAbove(root);
     let seen = blind ? 0 : last;
     let cursors = [];
@@ -185,6 +185,7 @@ document.addEventListener("DOMContentLoaded", () => {
         ?.dispatchEvent(new Event("change", { bubbles: true }));
       for (const other of document.querySelectorAll(".explorer.veiled")) unveil(other);
       drawPlots();
+      if (document.activeElement === document.body) play.focus({ preventScroll: true });
     }
 
     function stop() {
@@ -244,6 +245,7 @@ document.addEventListener("DOMContentLoaded", () => {
     function jump() {
       if (began) stop();
       showSample();
+      if (!scene.viewer && !loading) load(); // the picture shows the start
     }
     slider.addEventListener("input", jump);
     speed.addEventListener("change", () => {
@@ -264,9 +266,8 @@ document.addEventListener("DOMContentLoaded", () => {
 
     slider.max = last;
     for (const part of [play, root.querySelector(".panel")]) part.hidden = false;
-    if (blind) block.classList.add("growing");
+    if (!blind) block.classList.remove("veiled", "growing"); // it was shown before
     if (question) {
-      block.classList.add("veiled");
       question.classList.add("waits");
       question.addEventListener("change", () => block.classList.remove("veiled"));
       root.querySelector(".veil button").addEventListener("click", reveal);

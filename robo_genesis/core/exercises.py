@@ -123,24 +123,23 @@ def as_test(
 ) -> Callable[Concatenate[Written, Given], Check]:
     """Make a test of what yields findings about its first argument, a function of a student.
 
-    The outcome names the call of the first value that is not allowed. The test raises TypeError if
-    it is called with wrong arguments. Other exceptions are those of the student's function and fail
-    the test.
+    The test ends with the first value that is not allowed, and the outcome names its call. The test
+    raises TypeError if it is called with wrong arguments. Other exceptions are those of the
+    student's function and fail the test.
     """
 
     @wraps(findings)
     def judge(function: Written, /, *given: Given.args, **named: Given.kwargs) -> Check:
         signature(findings).bind(function, *given, **named)
-        watched, judged, problems = Watched(function), 0, list[str]()
+        watched, judged, problem = Watched(function), 0, ""
         try:
-            for finding in findings(watched, *given, **named):
-                judged += 1
+            for judged, finding in enumerate(findings(watched, *given, **named), 1):  # noqa: B007
                 if not finding.passed:
-                    of_first = "" if problems else f"{watched.call}\n  "
-                    problems.append(f"{of_first}{finding.problem}")
+                    problem = f"{watched.call}\n  {finding.problem}"
+                    break
         except Exception as error:  # whatever a student's function raises
-            problems.append(watched.raised(error))
-        return Check(findings.__name__, judged > 0 and not problems, "\n  ".join(problems))
+            problem = watched.raised(error)
+        return Check(findings.__name__, judged > 0 and not problem, problem)
 
     return judge
 

@@ -30,7 +30,8 @@ class Panel(panel.Evidence):
         self.options = options
         app = SimpleNamespace(outdir=book / "_build" / "html")
         named = {"docname": "lessons/page", "metadata": defaultdict(dict)}
-        env = SimpleNamespace(srcdir=book, app=app, **named)
+        config = SimpleNamespace(root_doc="index")
+        env = SimpleNamespace(srcdir=book, app=app, config=config, **named)
         self.state = SimpleNamespace(
             document=SimpleNamespace(settings=SimpleNamespace(env=env, record_dependencies=None))
         )

@@ -49,6 +49,7 @@ def opening(kind: str, words: Mapping[str, str]) -> str:
 VEIL = (
     '<p class="veil">Answer the question above, then press Play. '
     '<button type="button">Show me without an answer</button></p>'
+    "<noscript>Without JavaScript nothing plays: the table below has all samples.</noscript>"
 )
 """What is on top of a replay until its question has an answer; without the script it is hidden."""
 

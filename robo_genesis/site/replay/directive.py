@@ -111,12 +111,12 @@ def replay_block(
     shown, (first, *_) = runs, runs.channels
     if brief:  # the model is the same
         shown = replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
-    veiled = {"blind": ""} if blind else {}
-    opening = controls.opening("replay", files | controls.data(shown, around.camera) | veiled)
+    opening = controls.opening("replay", files | controls.data(shown, around.camera))
     samples = f"samples of {', '.join(runs.traces)} as a table"
     summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
-    block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
+    veiled = ["growing", *(["veiled"] if env.docname != env.config.root_doc else [])] * blind
+    block = nodes.container(classes=["replay-block", *veiled], evidence_runs=(key,))
     block += html(opening)
     over = controls.over_the_picture("Play") + controls.VEIL * blind
     block += stage(still, over, controls.caption(runs, around), f"{name}-model")
