@@ -130,8 +130,9 @@ agree: $(ENVIRONMENT) ## require equal arrays from two machines (FIRST=folder SE
 
 .PHONY: home-picture
 home-picture: ## renew the README's picture from the built site (needs Debian's chromium)
+	@test -f book/_build/html/index.html || { echo "There is no site. Build it: make book" >&2; exit 1; }
 	@chromium --headless --no-sandbox --hide-scrollbars --window-size=1280,900 --virtual-time-budget=5000 \
-	  --screenshot="$(CURDIR)/.github/home.png" "file://$(CURDIR)/book/_build/html/index.html" 2>/dev/null
+	  --screenshot="$(CURDIR)/.github/home.png" "file://$(CURDIR)/book/_build/html/index.html"
 
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
@@ -189,6 +190,6 @@ has-packages:
 	@echo "Setting up .venv from requirements.lock (once; some minutes)"
 	@"$(BASE_PYTHON)" -m venv --clear .venv
 	@.venv/bin/python -m pip install -qq --no-compile --no-deps --disable-pip-version-check --requirement requirements.lock
-	@.venv/bin/python -m pip check >/dev/null # the lock has every package, so pip needs no search
+	@.venv/bin/python -m pip check >.venv/check.txt || { cat .venv/check.txt >&2; exit 1; } # the lock has all
 	@.venv/bin/python -m compileall -qq -j 0 .venv/lib >/dev/null || true  # some packages have files that do not compile
 	@touch $@

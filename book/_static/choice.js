@@ -1,7 +1,7 @@
 /* Judges the number of a question, and announces the feedback of every question. */
 "use strict";
 
-document.addEventListener("change", ({ target }) => {
+document.addEventListener("change", ({ target, detail }) => {
   const question = target.closest("fieldset.choice");
   if (!question) return;
   const texts = [...question.querySelectorAll(".feedback")];
@@ -16,6 +16,6 @@ document.addEventListener("change", ({ target }) => {
     for (const text of texts) text.classList.toggle("shown", text === shown);
   }
   const waits = question.classList.contains("waits"); // for the replay below
-  const said = waits ? "Noted. Now press Play." : shown?.textContent;
-  question.querySelector("output").textContent = said ?? "";
+  const said = waits ? "Noted. Play the run, or move its time to the end." : shown?.textContent;
+  if (detail !== "kept") question.querySelector("output").textContent = said ?? "";
 });

@@ -51,19 +51,26 @@ document.addEventListener("DOMContentLoaded", () => {
   const article = document.querySelector("article");
   const title = article?.querySelector("h1")?.firstChild?.textContent;
 
-  /* Answers, which the scripts of questions and replays treat as if they were given now. */
-  for (const input of document.querySelectorAll("fieldset.choice :is([type=radio], [type=number])")) {
-    const answer = kept(input.id);
+  /* Answers by the text of their question, which stays when questions move: the number of the option,
+     or what was typed. The scripts of questions and replays treat them as given, without a word. */
+  const inputsOf = (question) => [...question.querySelectorAll("[type=radio], [type=number]")];
+  const asked = (question) => question.querySelector("legend").textContent.trim();
+  for (const question of document.querySelectorAll("fieldset.choice")) {
+    const answer = kept(asked(question));
     if (answer === undefined) continue;
+    const inputs = inputsOf(question);
+    const input = inputs[0].type === "number" ? inputs[0] : inputs[answer];
+    if (!input) continue;
     if (input.type === "radio") input.checked = true;
     else input.value = answer;
-    setTimeout(() => input.dispatchEvent(new Event("change", { bubbles: true })));
+    const given = new CustomEvent("change", { bubbles: true, detail: "kept" });
+    setTimeout(() => input.dispatchEvent(given));
   }
-  document.addEventListener("change", ({ target }) => {
+  document.addEventListener("change", ({ target, detail }) => {
     const question = target.closest("fieldset.choice");
-    if (!question) return;
-    for (const input of question.querySelectorAll("[type=radio]")) keep(input.id, undefined);
-    keep(target.id, target.value);
+    if (!question || detail === "kept") return;
+    const answer = target.type === "radio" ? inputsOf(question).indexOf(target) : target.value;
+    keep(asked(question), answer === "" ? undefined : answer);
   });
 
   /* The home page: where to go on, what is finished, and how to forget it. */
@@ -76,9 +83,10 @@ document.addEventListener("DOMContentLoaded", () => {
     away.addEventListener("click", () => {
       forget();
       place.replaceChildren("Forgotten.");
+      place.focus();
       for (const mark of document.querySelectorAll(".finished")) mark.remove();
     });
-    place.append("Continue where you left: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
+    place.append("Continue where you left off: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
     for (const link of document.querySelectorAll(".course-map .time a")) {
       const name = new URL(link.href).pathname.split("/").slice(-3).join("/");
       if (!all.pages?.[name]?.finished) continue;
@@ -88,13 +96,15 @@ document.addEventListener("DOMContentLoaded", () => {
   }
 
   /* The link to the form for feedback names the section at the top of the window. */
-  document.querySelector(".report a")?.addEventListener("click", ({ currentTarget: link }) => {
+  const report = document.querySelector(".report a");
+  const address = report && new URL(report.href);
+  const reported = address?.searchParams.get("page");
+  report?.addEventListener("click", () => {
     const above = [...article.querySelectorAll("h2, h3")].filter((one) => one.getBoundingClientRect().top < 200);
-    const address = new URL(link.href);
     const section = above.at(-1)?.firstChild.textContent ?? title;
-    address.searchParams.set("page", `${address.searchParams.get("page")}, "${section}"`);
-    link.href = address;
-  }, { once: true });
+    address.searchParams.set("page", `${reported}, "${section}"`);
+    report.href = address;
+  });
 
   /* A page of a lesson: it is the last one, and its end offers to mark it. */
   if (!article || !/\/lessons\//.test(location.pathname)) return;

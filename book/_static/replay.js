@@ -79,7 +79,7 @@ document.addEventListener("DOMContentLoaded", () => {
     explorer.classList.add("veiled");
     const note = document.createElement("p");
     note.className = "veil";
-    note.textContent = "This shows the runs of the first question on this page. Answer it first.";
+    note.textContent = "This shows the runs of the replay above. Answer the question above it first.";
     explorer.before(note);
   }
 
@@ -109,6 +109,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const blind = block.classList.contains("growing") && !kept(root.dataset.name);
     const question = blind && questionAbove(root);
     let seen = blind ? 0 : last;
+    const veiled = []; // explorers of the same runs
     let cursors = [];
     let began = null; // {clock, time}: when playing started [ms], and at which time of the run [s]
     let frame = 0; // the request for the next frame while playing
@@ -183,9 +184,8 @@ document.addEventListener("DOMContentLoaded", () => {
       question?.classList.remove("waits");
       question?.querySelector("input:checked, input[type=number]")
         ?.dispatchEvent(new Event("change", { bubbles: true }));
-      for (const other of document.querySelectorAll(".explorer.veiled")) unveil(other);
+      veiled.splice(0).forEach(unveil);
       drawPlots();
-      if (document.activeElement === document.body) play.focus({ preventScroll: true });
     }
 
     function stop() {
@@ -254,7 +254,8 @@ document.addEventListener("DOMContentLoaded", () => {
     rest?.addEventListener("click", () => {
       slider.max = last = all;
       seen = all;
-      rest.remove();
+      rest.parentElement.remove();
+      slider.focus({ preventScroll: true });
       drawPlots();
     });
     root.querySelector(".plots").addEventListener("pick", (event) => {
@@ -267,12 +268,22 @@ document.addEventListener("DOMContentLoaded", () => {
     slider.max = last;
     for (const part of [play, root.querySelector(".panel")]) part.hidden = false;
     if (!blind) block.classList.remove("veiled", "growing"); // it was shown before
+    if (!question || question.querySelector("input:checked")) block.classList.remove("veiled");
     if (question) {
       question.classList.add("waits");
-      question.addEventListener("change", () => block.classList.remove("veiled"));
-      root.querySelector(".veil button").addEventListener("click", reveal);
-      document.querySelectorAll(".explorer:has(.plots)").forEach(veil);
+      question.addEventListener("change", ({ target }) => {
+        if (target.value) block.classList.remove("veiled");
+      });
+      root.querySelector(".veil button").addEventListener("click", () => {
+        reveal();
+        play.focus({ preventScroll: true });
+      });
+      veiled.push(...[...document.querySelectorAll(".explorer:has(.plots):not(.veiled)")]
+        .filter((one) => block.compareDocumentPosition(one) & Node.DOCUMENT_POSITION_FOLLOWING));
+      veiled.forEach(veil);
     }
+    addEventListener("beforeprint", () => { for (const cursor of cursors) cursor(0, 0, last); });
+    addEventListener("afterprint", () => showSample());
     label();
     new ResizeObserver(drawPlots).observe(root.querySelector(".plots"));
     drawPlots();

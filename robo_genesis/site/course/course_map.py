@@ -229,7 +229,7 @@ def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:
         up, alt = "../" * docname.count("/"), f"{lesson.upper()}: the start of its replay."
         of_lesson = fnmatch.filter(names, f"replay-{lesson}-lecture-cpu*.webp")
         place.replace_self(
-            [html(f'<img src="{up}_images/{n}" alt="{alt}">') for n in of_lesson[:1]]
+            [html(f'<img src="{up}_images/{n}" alt="{alt}">') for n in sorted(of_lesson)[:1]]
         )
     for place in list(document.findall(page_minutes)):
         place.replace_self(nodes.Text(str(total_minutes(app.env, place["pages"]))))

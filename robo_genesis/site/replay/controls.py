@@ -47,9 +47,9 @@ def opening(kind: str, words: Mapping[str, str]) -> str:
 
 
 VEIL = (
-    '<p class="veil">Answer the question above, then press Play. '
+    '<p class="veil">Answer the question above to see the run. '
     '<button type="button">Show me without an answer</button></p>'
-    "<noscript>Without JavaScript nothing plays: the table below has all samples.</noscript>"
+    "<noscript>The replay needs JavaScript; the table below has all samples.</noscript>"
 )
 """What is on top of a replay until its question has an answer; without the script it is hidden."""
 

@@ -18,8 +18,8 @@ from robo_genesis.site.takeaways.plain_markdown import SOLUTION, Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
 
-AFTER_YOURS = "after-yours"  # The tag of a cell that a student runs after an own answer
-WAITS = "# Write your own text first. Then take away the # of the lines below, and run this cell.\n"
+AFTER_YOURS = "after-yours"  # The tag of a cell that students run after their own answer
+WAITS = "# Write your own text first. Then remove the # from the lines below, and run this cell.\n"
 
 SOURCE, OUTPUTS = "source_hidden", "outputs_hidden"
 HIDDEN = {"hide-input": (SOURCE,), "hide-output": (OUTPUTS,), "hide-cell": (SOURCE, OUTPUTS)}

@@ -185,7 +185,7 @@ def measured_order(
         lesson_page: as `l04/lab`.
         metric: its name.
         cases: names of both.
-        absent: whether the bundle must lack the second case; no order is known then.
+        absent: whether no page of the lesson may record the second case; no order is known then.
 
     Raises:
         LookupError: the metric or a case is not in the bundle, and the message lists the known
@@ -195,10 +195,10 @@ def measured_order(
     observed = cases[:1] if absent else cases
     *_, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in observed)
     records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
-    if absent and cases[1] in records:
-        raise LookupError(f"{lesson_page} recorded {cases[1]}; ask for it without `:absent:`.")
     lesson_name = lesson_page.split("/")[0]
     lesson, unit = find_lesson(lesson_name), records[cases[0]][metric].unit
+    if absent and any(cases[1] in page.runs for page in lesson.pages.values()):
+        raise LookupError(f"{lesson_name} records {cases[1]}; ask for it without `:absent:`.")
     first, second = (None if absent else records[case][metric].value for case in cases)
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
     margin = declared_margin(lesson_name, metric)

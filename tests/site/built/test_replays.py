@@ -122,7 +122,7 @@ def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(br
     feedback, table = page.locator(".feedback:visible"), page.locator(f"{REPLAY} + details")
     assert not any(page.locator(one).first.is_visible() for one in [*hidden, f"{REPLAY} + details"])
     page.get_by_label("later").first.press("Space")
-    assert page.get_by_text("Noted. Now press Play.").count() == 1
+    assert page.get_by_text("Noted. Play the run").count() == 1
     assert feedback.count() == 0
     slider = page.locator(f"{REPLAY} input[type=range]")
     lengths = "all => all.map(line => line.getAttribute('points').split(' ').length)"

@@ -46,7 +46,7 @@ def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
     )
     assert (found.order, found.unit) == (None, "rad")
     assert sentence == "The record of l04/lab has no such run."
-    for cases, said in ((["G1", "G2"], "recorded G2; ask"), (["G9", "no_run"], "G9")):
+    for cases, said in ((["G1", "G2_longer"], "records G2_longer; ask"), (["G9", "no_run"], "G9")):
         with pytest.raises(LookupError, match=said):
             questions.measured_order("l04/lab", "overshoot", cases, absent=True)
 
