@@ -53,10 +53,11 @@ class Replay:
     | field | meaning |
     |---|---|
     | `cases` | names of the runs |
-    | `follows` | the joint of a robot, or the link of free bodies, whose motion the curves show |
+    | `follows` | the joint of a robot, or the link of free bodies, that sentences and curves follow |
     | `thing` | what moves, for a reader: "box" |
     | `axes` | of the world, along which a link is followed |
-    | `goal` | by case and number of the state, the point (3,) that the hand is to reach [m] |
+    | `goal` | by case and number of the state, the point (3,) that the hand is to reach [m]; the |
+    | | curves then show its distance |
     | `band` | half width of the settling band around the target of a joint |
     | `quality` | a sentence on one case, with its metrics in braces: `Rise time {rise_time}.` |
     | `until` | end of the motion [s], which is shown first; None for the end of the runs |

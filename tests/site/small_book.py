@@ -50,7 +50,7 @@ Five was measured.
 ```{course-measured}
 ```
 """
-WORDS = "word " * 600  # Three minutes to read
+WORDS = "word " * 600  # Four minutes to read
 GLOSSARY = """\
 # Glossary
 

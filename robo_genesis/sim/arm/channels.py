@@ -1,4 +1,4 @@
-"""Runs of a joint as channels: position, velocity, control force, target and effort limit."""
+"""Runs of a joint as channels, or the distance of the hand from its goal, with levels."""
 
 from collections.abc import Callable, Mapping, Sequence
 
