@@ -53,7 +53,7 @@ class Replay:
     | field | meaning |
     |---|---|
     | `cases` | names of the runs |
-    | `follows` | the joint of a robot, or the link of free bodies, that sentences and curves follow |
+    | `follows` | the joint of a robot, or link of free bodies, that sentences and curves follow |
     | `thing` | what moves, for a reader: "box" |
     | `axes` | of the world, along which a link is followed |
     | `goal` | by case and number of the state, the point (3,) that the hand is to reach [m]; the |
