@@ -39,8 +39,8 @@ document.addEventListener("DOMContentLoaded", () => {
     return [...ends.filter((end) => Math.abs(end) > ROOM * (most - least)), 0];
   }
 
-  /* Draws one plot of all cases; returns the function that moves its cursor, and shows of the curves
-     what was seen. */
+  /* Draws one plot of all cases; returns the function that moves its cursor, and shows the part of
+     the curves that was seen. */
   function draw(svg, { curves, chosen, levels, title }) {
     const drawn = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
     const all = [...Object.values(curves).flatMap((c) => c.values), ...drawn.map((l) => l.value)];
@@ -176,7 +176,7 @@ document.addEventListener("DOMContentLoaded", () => {
       showSample();
     }
 
-    /* Shows everything, and announces what the answer was worth. */
+    /* Shows everything, and announces whether the answer was right. */
     function reveal() {
       seen = last;
       keep(root.dataset.name, true);

@@ -121,7 +121,7 @@ Written = Callable[..., Any]  # A function that a student wrote
 def as_test(
     findings: Callable[Concatenate[Written, Given], Iterable[Finding]],
 ) -> Callable[Concatenate[Written, Given], Check]:
-    """Make a test of what yields findings about its first argument, a function of a student.
+    """Make a test from a generator of findings about its first argument, a student's function.
 
     The test ends with the first value that is not allowed, and the outcome names its call. The test
     raises TypeError if it is called with wrong arguments. Other exceptions are those of the

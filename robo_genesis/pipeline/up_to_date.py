@@ -53,7 +53,7 @@ def inputs_digest(root: Path, book: Path, environment: Mapping[str, str] | None 
 def other_inputs(
     root: Path, book: Path, pages: Collection[Path], environment: Mapping[str, str] | None = None
 ) -> dict[str, object]:
-    """Return what decides a build's site apart from some pages and the commit.
+    """Return the inputs of a build, without some pages and the commit.
 
     Args:
         root: the checkout.

@@ -23,7 +23,7 @@ from robo_genesis.site.text.left_out import without_docstrings
 WORDS_A_MINUTE = 150  # A slow pace, for technical prose; code, tables and formulas are not counted
 LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
 MINUTES_A_QUESTION = 2
-MINUTES_A_CHECKPOINT = 1  # To answer in one's mind what a fold answers
+MINUTES_A_CHECKPOINT = 1  # To think of an answer before a fold shows it
 MINUTES_A_FUNCTION = 10  # An estimate of the time to write a function until its test passes
 MINUTES_A_RUN = 5
 """An estimate of the time of one run of a lab, in which the engine compiles its kernels."""

@@ -5,10 +5,9 @@ alone. The panel shows only a verified bundle of `book/evidence/<lesson>/<backen
 gives the state, the reason and the command that records a new one.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
@@ -29,10 +28,6 @@ from robo_genesis.site.evidence.measured import BACKEND, READABLE
 from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, text_table
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
 RECORDING = "{doc}`/evidence/recording` says what that machine needs."
@@ -134,41 +129,27 @@ def response(
 
     runs = read_runs(folder, replay)
 
-    def draw(drawing: "Figure") -> None:
+    with plotting.course_style():
+        drawing = plotting.figure(0.5 + 3 * len(runs.channels))
         axes = drawing.subplots(len(runs.channels), 1, sharex=True, squeeze=False)[:, 0]
         for ax, drawn in zip(axes, runs.channels, strict=True):
             levels = runs.levels_of(drawn)
             plotting.channel(ax, runs.t, drawn, runs.subject, course_marks(), levels)
             ax.label_outer()
-
+        content = shown.svg(drawing).encode()
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {listed(replay.cases)} drawn over each other"
     alt = f"{what} over time on {backend}{several if len(runs.traces) > 1 else ''}."
     caption = f"{what} on {backend}, drawn from the arrays of the recorded run."
-    return drawn_figure(env, prefix, 0.5 + 3 * len(runs.channels), draw, alt, caption)
-
-
-def drawn_figure(
-    env: BuildEnvironment, prefix: str, height: float, draw: Callable[["Figure"], None],
-    alt: str, caption: str,
-) -> nodes.figure:  # fmt: skip
-    """Return a drawing of a height [in] in the course's style as a figure."""
-    from robo_genesis.core import plotting  # it loads slowly
-
-    with plotting.course_style():
-        drawing = plotting.figure(height)
-        draw(drawing)
-        content = shown.svg(drawing).encode()
     return figure(env, f"{prefix}-response", ".svg", content, alt, caption)
 
 
 def frames(
-    env: BuildEnvironment, prefix: str, folder: Path, replay: Replay, backend: str,
-    names: Sequence[str] = ("initial", "final"),
-) -> Iterator[nodes.figure]:  # fmt: skip
+    env: BuildEnvironment, prefix: str, folder: Path, replay: Replay, backend: str
+) -> Iterator[nodes.figure]:
     """Yield the unchanged camera frames as figures, nothing where rendering was off."""
-    for name in names:
+    for name in ("initial", "final"):
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
             state = f"{name} state of {replay.filmed_run}"
