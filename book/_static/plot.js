@@ -4,6 +4,9 @@
 globalThis.timePlot = (() => {
   const SVG = "http://www.w3.org/2000/svg";
   const EDGE = { left: 52, right: 18, top: 24, bottom: 22 };
+  const APART = 12; // from a name to the nearest other curve, at least [px]
+  const TRIED = 60; // places for a name along a curve
+  let clips = 0; // how many plots were drawn
 
   function add(parent, name, attributes, text = "") {
     const element = document.createElementNS(SVG, name);
@@ -16,8 +19,52 @@ globalThis.timePlot = (() => {
   /* A number as text, with a typographic minus sign. */
   const write = (value, digits) => value.toFixed(digits).replace("-", "−");
 
+  /* How far a curve is from a height, where it is below or above a name: 0 if it crosses the height. */
+  function distance(points, [from, to], height) {
+    let least = Infinity;
+    points.forEach(([x, y], k) => {
+      const [before, beside] = points[k - 1] ?? [x, y];
+      if (x < from || before > to) return;
+      const at = (place) => (x === before ? y : beside + ((y - beside) * (place - before)) / (x - before));
+      const [one, other] = [Math.max(before, from), Math.min(x, to)].map((place) => at(place) - height);
+      least = Math.min(least, one * other <= 0 ? 0 : Math.min(Math.abs(one), Math.abs(other)));
+    });
+    return least;
+  }
+
+  /* Writes the name of a curve beside it, where the others are farthest and none of `names` is; adds
+     the text, its place and its sample to them. Where all curves lie close together, no name would say
+     which is which. */
+  function writeName(svg, { name, mark, points }, others, names, [left, right, top, bottom]) {
+    const half = 3.8 * name.length; // half of its width
+    let best = { weight: 0 };
+    for (let at = 0; at < points.length; at += Math.ceil(points.length / TRIED)) {
+      const [x, y] = points[at];
+      if (y < top || others.some((other) => Math.abs(other[at][1] - y) < 6)) continue;
+      const beside = [[0, -9], [0, 11], [half + 6, 0], [-half - 6, 0]];
+      for (const [dx, dy] of beside) {
+        const [middle, height] = [x + dx, y + dy];
+        const span = [middle - half, middle + half];
+        if (span[0] < left || span[1] > right || height < top + 5 || height > bottom - 5) continue;
+        const overlaps = ({ height: other, span: [from, to] }) => (
+          Math.abs(other - height) < 13 && span[0] < to && from < span[1]
+        );
+        if (names.some(overlaps)) continue;
+        const gap = Math.min(30, ...others.map((other) => distance(other, span, height)));
+        const own = Math.min(9, distance(points, dx ? [span[0] + 3, span[1] - 3] : span, height));
+        if (gap < APART || own < 7) continue;
+        const weight = gap + own;
+        if (weight > best.weight) best = { weight, middle, height, span, at };
+      }
+    }
+    if (!best.weight) return;
+    const place = { x: best.middle, y: best.height + 4, class: `name middle ${mark}` };
+    names.push({ ...best, text: add(svg, "text", place, name) });
+  }
+
   /* Draws a plot from the start; all lengths are CSS pixels.
-     curves: [{times, values, mark, chosen}], `mark` a class of palette.css; levels: [{value, mark}];
+     curves: [{name, times, values, mark, chosen}], `mark` a class of palette.css, `name` written where the
+     curve is farthest from all others, or not written; levels: [{value, mark}];
      ticks: [{value, label}]; low, high: ends of the value axis; end: of time [s], which begins at 0.
      Returns x and y, from time and value to pixels, share, from pixels to a share of the time, and grow,
      which leaves of the curves what lies before a sample and at it. */
@@ -47,15 +94,27 @@ globalThis.timePlot = (() => {
     for (const { value, mark } of levels) {
       add(svg, "line", { x1: x(0), x2: x(end), y1: y(value), y2: y(value), class: `level ${mark}` });
     }
-    const lines = curves.map(({ times, values, mark, chosen }) => {
-      const points = values.map((v, k) => `${x(times[k]).toFixed(1)},${y(v).toFixed(1)}`);
-      const line = { class: `curve ${mark}${chosen ? " chosen" : ""}`, points: points.join(" ") };
-      return { line: add(svg, "polyline", line), points };
+    clips += 1;
+    const clip = `clip-${clips}`; // what is above the axis is not drawn
+    add(add(svg, "clipPath", { id: clip }), "rect", { x: 0, y: EDGE.top - 2, width, height });
+    const placed = curves.map(({ times, values, ...curve }) => (
+      { ...curve, points: values.map((v, k) => [x(times[k]), y(v)]) }
+    ));
+    const lines = placed.map(({ mark, chosen, points }) => {
+      const pairs = points.map((pair) => pair.map((pixels) => pixels.toFixed(1)).join());
+      const line = { "clip-path": `url(#${clip})`, class: `curve ${mark}${chosen ? " chosen" : ""}`, points: pairs.join(" ") };
+      return { line: add(svg, "polyline", line), points: pairs };
     });
+    const names = [];
+    for (const curve of placed.filter(({ name }) => name)) {
+      const others = placed.filter((one) => one !== curve).map(({ points }) => points);
+      writeName(svg, curve, others, names, [EDGE.left, width - EDGE.right, EDGE.top, floor]);
+    }
     function grow(sample) {
       for (const { line, points } of lines) {
         line.setAttribute("points", points.slice(0, sample + 1).join(" "));
       }
+      for (const { text, at } of names) text.style.display = at > sample ? "none" : "";
     }
     return { x, y, floor, top: EDGE.top, share: (pixels) => (pixels - EDGE.left) / across, grow };
   }

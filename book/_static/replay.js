@@ -41,16 +41,19 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* Draws one plot of all cases; returns the function that moves its cursor, and shows the part of
      the curves that was seen. */
-  function draw(svg, { curves, chosen, levels, title }) {
+  function draw(svg, { curves, chosen, levels, title, top: highest }) {
     const drawn = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
-    const all = [...Object.values(curves).flatMap((c) => c.values), ...drawn.map((l) => l.value)];
+    const all = [...Object.values(curves).flatMap((c) => c.values), ...drawn.map((l) => l.value)]
+      .filter((value) => value <= (highest ?? Infinity));
     const [least, most] = [Math.min(...all), Math.max(...all)];
     const margin = 0.08 * (most - least || 1); // a constant value also needs a range
     const { times, values, mark } = curves[chosen];
     const { x, y, floor, top, share, grow } = globalThis.timePlot.draw(svg, {
       title, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
       end: times.at(-1),
-      curves: Object.entries(curves).map(([name, curve]) => ({ ...curve, chosen: name === chosen })),
+      curves: Object.entries(curves).map(([name, curve], k, { length }) => (
+        { ...curve, name: length > 1 ? name : "", chosen: name === chosen }
+      )),
       ticks: tickValues(least, most).map((value) => ({
         value, label: value ? value.toPrecision(3).replace("-", "−") : "0",
       })),
@@ -67,23 +70,29 @@ document.addEventListener("DOMContentLoaded", () => {
       line.setAttribute("x1", x(time));
       line.setAttribute("x2", x(time));
       dot.setAttribute("cx", x(times[sample]));
-      dot.setAttribute("cy", y(values[sample]));
+      dot.setAttribute("cy", Math.max(y(values[sample]), top)); // at the edge, if it is not drawn
     };
   }
 
   const questionAbove = (root) => [...document.querySelectorAll("fieldset.choice")]
     .findLast((one) => one.compareDocumentPosition(root) & Node.DOCUMENT_POSITION_FOLLOWING);
 
+  const veils = new Map(); // explorer → number of the replays above it that wait for an answer
+
   /* Hides a later explorer of the same runs, and says why. */
   function veil(explorer) {
+    veils.set(explorer, (veils.get(explorer) ?? 0) + 1);
+    if (veils.get(explorer) > 1) return;
     explorer.classList.add("veiled");
     const note = document.createElement("p");
     note.className = "veil";
-    note.textContent = "This shows the runs of the replay above. Answer the question above it first.";
+    note.textContent = "This shows the runs of the replays above. Answer their questions and play them first.";
     explorer.before(note);
   }
 
   function unveil(explorer) {
+    veils.set(explorer, veils.get(explorer) - 1);
+    if (veils.get(explorer)) return;
     explorer.classList.remove("veiled");
     explorer.previousElementSibling.remove();
   }
@@ -162,8 +171,9 @@ document.addEventListener("DOMContentLoaded", () => {
 
     function drawPlots() {
       nameCase();
+      if (!places[0].clientWidth) return showSample(); // they are hidden, and drawn when they show
       const { levels } = run();
-      cursors = channels.map(({ name, unit }, k) => {
+      cursors = channels.map(({ name, unit, top }, k) => {
         const curves = Object.fromEntries(Object.entries(runs).map(([one, { time, values, mark }]) => [
           one, { times: time.slice(0, last + 1), values: values[k].slice(0, last + 1), mark },
         ]));
@@ -171,7 +181,7 @@ document.addEventListener("DOMContentLoaded", () => {
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
         svgs[k].setAttribute("aria-label", about);
         const drawn = levels.filter(({ channel }) => channel === name);
-        return draw(svgs[k], { curves, chosen: chosen(), levels: drawn, title });
+        return draw(svgs[k], { curves, chosen: chosen(), levels: drawn, title, top });
       });
       showSample();
     }
@@ -272,18 +282,18 @@ document.addEventListener("DOMContentLoaded", () => {
     if (question) {
       question.classList.add("waits");
       question.addEventListener("change", ({ target }) => {
-        if (target.value) block.classList.remove("veiled");
+        if (!target.value) return;
+        block.classList.remove("veiled");
+        drawPlots();
       });
       root.querySelector(".veil button").addEventListener("click", () => {
         reveal();
         play.focus({ preventScroll: true });
       });
-      veiled.push(...[...document.querySelectorAll(".explorer:has(.plots):not(.veiled)")]
+      veiled.push(...[...document.querySelectorAll(".explorer:has(.plots)")]
         .filter((one) => block.compareDocumentPosition(one) & Node.DOCUMENT_POSITION_FOLLOWING));
       veiled.forEach(veil);
     }
-    addEventListener("beforeprint", () => { for (const cursor of cursors) cursor(0, 0, last); });
-    addEventListener("afterprint", () => showSample());
     label();
     new ResizeObserver(drawPlots).observe(root.querySelector(".plots"));
     drawPlots();

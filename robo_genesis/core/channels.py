@@ -18,7 +18,8 @@ class Channel:
     """One quantity of several runs, with a value at each state.
 
     `head` is its name in the head of a table and at an axis; `digits` is the number of digits after
-    the point in a readout. `values` by case have shape (n+1,) [unit].
+    the point in a readout. `values` by case have shape (n+1,) [unit]; curves show those up to
+    `top`, None for all.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Channel:
     unit: str
     digits: int
     values: Mapping[str, FloatArray]
+    top: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +62,12 @@ class Replay:
     | | curves then show its distance |
     | `band` | half width of the settling band around the target of a joint |
     | `quality` | a sentence on one case, with its metrics in braces: `Rise time {rise_time}.` |
+    | `rest` | height of a body at rest [m]; curves then show its clearance, close to zero |
     | `until` | end of the motion [s], which is shown first; None for the end of the runs |
     | `places` | for all cases in one view, the horizontal position (x, y) of each [m] |
     | `credit` | authors of the shape, None for a shape of the scene itself |
     | `view` | alternative text of the 3D view |
-    | `filmed`, `filmed_run` | subject of the camera frames, and its run |
+    | `filmed` | subject of the camera frames |
 
     Texts that are not given are made from the names.
     """
@@ -76,12 +79,12 @@ class Replay:
     goal: Callable[[str, int], FloatArray] | None = None
     band: float = 0.0
     quality: str = ""
+    rest: float | None = None
     until: float | None = None
     places: tuple[tuple[float, float], ...] = ()
     credit: str | None = None
     view: str = ""
     filmed: str = ""
-    filmed_run: str = "the baseline"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,8 @@
-"""Colour and line style of each mark: of cases, targets and limits, in plots and on pages.
+"""Colour and line of each mark: of cases, targets and limits, in plots and on pages.
 
 The hues follow the palette of Okabe and Ito, darkened or lightened until each is readable as text.
-Dashes distinguish the lines without colour; no two marks share a pattern.
+Lines of measured data are solid, with names beside them or in a legend; targets and limits have
+dashes.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,13 +25,13 @@ class Mark:
 
 MARKS = {
     "baseline": Mark("#4d4d4d", "#b8c0cc"),
-    "first": Mark("#0072b2", "#6cb8ff", (14, 2)),
-    "second": Mark("#b84d00", "#ff9f4a", (6, 2)),
-    "third": Mark("#00795c", "#3fcf9f", (6, 2, 1.5, 2)),
+    "first": Mark("#0072b2", "#6cb8ff"),
+    "second": Mark("#b84d00", "#ff9f4a"),
+    "third": Mark("#00795c", "#3fcf9f"),
     "target": Mark("#222222", "#e6e6e6", (1, 1.65)),
     "limit": Mark("#a8003d", "#ff8fa9", (1.5, 1.5)),
-    "other": Mark("#7a3e9d", "#c9a2f2", (3, 1.5)),
-    "further": Mark("#6f6200", "#d6c65a", (10, 2, 3, 2)),
+    "other": Mark("#7a3e9d", "#c9a2f2"),
+    "further": Mark("#6f6200", "#d6c65a"),
 }
 """`other` is compared with a case: a mistake, another getter, another engine. `further` is any
 additional run, such as a point of a grid."""

@@ -50,11 +50,6 @@ def look(name: str, **more: Any) -> dict[str, Any]:
     return {"color": mark.light, "linestyle": (0, mark.dashes) if mark.dashes else "-", **more}
 
 
-def solid(name: str, **more: Any) -> dict[str, Any]:
-    """Return the line style of measured data: the colour of a mark, without its dashes."""
-    return look(name, **{"linestyle": "-", **more})
-
-
 TARGET = look("target", linewidth=1.4)
 LIMIT = look("limit", linewidth=1.4)
 
@@ -134,6 +129,7 @@ def channel(
     for case, mark in marks_of(list(drawn.values), marks).items():
         ax.plot(t, drawn.values[case], label=case, **look(mark))
     ax.margins(x=0.01)
+    ax.set_ylim(top=drawn.top)
     return finish(ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]")
 
 
@@ -145,25 +141,19 @@ def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], quantity: str) -> A
     return finish(ax, "", quantity, "best")
 
 
-def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:
-    """Show camera frames, each with its name on a ground of its own, in any theme."""
+def stacked(pictures: Mapping[str, np.ndarray]) -> Figure:
+    """Show camera frames one below the other, each with its name on a ground of its own."""
     plate = {"facecolor": "black", "alpha": 0.7, "linewidth": 0}
+    height = 1.02 * sum(picture.shape[0] / picture.shape[1] for picture in pictures.values())
+    drawn = Figure(figsize=(WIDTH, height * WIDTH), facecolor="none")
+    drawn.set_layout_engine("none")
+    places = {"left": 0, "right": 1, "bottom": 0, "top": 1, "hspace": 0.04}
+    axes = drawn.subplots(len(pictures), 1, squeeze=False, gridspec_kw=places)[:, 0]
     for ax, (name, picture) in zip(axes, pictures.items(), strict=True):
         ax.imshow(picture)
         ax.set_axis_off()
         ax.text(0.03, 0.94, f"Camera frame, {name}", transform=ax.transAxes, va="top",
                 color="white", bbox=plate)  # fmt: skip
-    return axes
-
-
-def both_ends(pictures: Mapping[str, np.ndarray]) -> Figure:
-    """Show the camera frames `initial` and `final` of a run, one below the other."""
-    shown = {name: pictures[name] for name in ("initial", "final")}
-    height = 1.02 * sum(picture.shape[0] / picture.shape[1] for picture in shown.values())
-    drawn = Figure(figsize=(WIDTH, height * WIDTH), facecolor="none")
-    drawn.set_layout_engine("none")
-    places = {"left": 0, "right": 1, "bottom": 0, "top": 1, "hspace": 0.04}
-    frames(drawn.subplots(len(shown), 1, gridspec_kw=places), shown)
     return drawn
 
 
@@ -171,12 +161,12 @@ def ends(frames: Mapping[str, np.ndarray], height: float, draw: Callable[[Axes],
     """Show the camera frames of both ends of a run, or what is drawn without frames.
 
     Args:
-        frames: as for `both_ends`; none without a camera.
+        frames: with `initial` and `final`; none without a camera.
         height: of the drawing [inch].
         draw: draws a schematic.
     """
     if frames:
-        return both_ends(frames)
+        return stacked({name: frames[name] for name in ("initial", "final")})
     drawn, ax = axes(height)
     draw(ax)
     return drawn

@@ -30,10 +30,12 @@ def test_a_colour_of_a_drawing_tells_what_it_is():
     assert len({*colours}) == len(colours)
 
 
-@pytest.mark.parametrize("field", ["dark", "dashes"])
-def test_no_two_marks_share_colour_or_dashes_which_alternate_with_gaps(field):
-    assert len({getattr(mark, field) for mark in MARKS.values()}) == len(MARKS)
-    assert all(len(mark.dashes) % 2 == 0 for mark in MARKS.values())
+def test_marks_have_colours_of_their_own_and_measured_lines_are_solid():
+    assert len({mark.dark for mark in MARKS.values()}) == len(MARKS)
+    dashes = {name: mark.dashes for name, mark in MARKS.items() if mark.dashes}
+    assert sorted(dashes) == ["limit", "target"]
+    assert dashes["limit"] != dashes["target"]
+    assert all(len(of) % 2 == 0 for of in dashes.values())  # a gap follows each dash
 
 
 def test_plots_draw_the_palette_s_light_colours():

@@ -18,16 +18,11 @@ def ax():
     return Figure().subplots()
 
 
-def test_frames_are_shown_as_they_are(frames):
-    axes = Figure().subplots(1, 2)
-    plotting.frames(axes, frames)
-    for ax, (name, picture) in zip(axes, frames.items(), strict=True):
+def test_frames_are_shown_as_they_are_and_fill_a_figure_of_the_course_s_width(frames):
+    drawn = plotting.stacked(frames)
+    for ax, (name, picture) in zip(drawn.axes, frames.items(), strict=True):
         assert [text.get_text() for text in ax.texts] == [f"Camera frame, {name}"]
         assert (ax.get_images()[0].get_array() == picture).all()
-
-
-def test_both_ends_fill_a_figure_of_the_course_s_width(frames):
-    drawn = plotting.both_ends(frames)
     assert drawn.get_figwidth() == plotting.WIDTH
     above, below = (ax.get_position() for ax in drawn.axes)
     assert (above.x0, above.x1, above.y1, below.y0) == pytest.approx((0, 1, 1, 0))

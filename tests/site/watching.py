@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Page
+from playwright.sync_api import Page, Request
 
 from robo_genesis.pipeline import npm
 
@@ -41,7 +41,12 @@ def errors(page: Page) -> list[str]:
 def watch(page: Page) -> list[str]:
     """Return a list that grows with whatever goes wrong on a page."""
     found = errors(page)
-    page.on("requestfailed", lambda request: found.append(f"failed: {request.url}"))
+
+    def note(request: Request) -> None:
+        if request.failure != "net::ERR_ABORTED":  # as a request of the page that was left is
+            found.append(f"failed: {request.url}, {request.failure}")
+
+    page.on("requestfailed", note)
     page.on("response", lambda r: found.append(f"{r.status}: {r.url}") if r.status >= 400 else None)
     return found
 

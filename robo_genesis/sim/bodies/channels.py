@@ -11,6 +11,8 @@ from robo_genesis.core.trace import BodyTrace
 
 MEASURES = False
 
+CLOSE = 20.0  # Largest clearance that is drawn [mm]
+
 
 @dataclass(frozen=True, slots=True)
 class Axis:
@@ -56,7 +58,7 @@ def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], replay: Replay) 
         subject=f"the {thing}",
         traces=traces,
         links=links,
-        channels=[channel for axis in followed for channel in _channels(traces, k, axis)],
+        channels=[one for axis in followed for one in _channels(traces, k, axis, replay.rest)],
         moves={
             case: f"**{case}**: the {thing} "
             + "; it ".join(_along(trace, k, axis) for axis in followed)
@@ -66,14 +68,20 @@ def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], replay: Replay) 
     )
 
 
-def _channels(traces: Mapping[str, BodyTrace], k: int, axis: Axis) -> tuple[Channel, Channel]:
-    """Return position and velocity of the origin of link `k` along an axis."""
+def _channels(
+    traces: Mapping[str, BodyTrace], k: int, axis: Axis, rest: float | None
+) -> tuple[Channel, Channel]:
+    """Return position and velocity of the origin of link `k` along an axis.
+
+    With the height at `rest` [m], that along z is the clearance, and its curve is close to zero.
+    """
     position = {case: trace.link_pos[:, k, axis.number] for case, trace in traces.items()}
     velocity = {case: trace.link_vel[:, k, axis.number] for case, trace in traces.items()}
-    return (
-        Channel(axis.position, axis.heads[0], "m", 4, position),
-        Channel(axis.velocity, axis.heads[1], "m/s", 4, velocity),
-    )
+    where = Channel(axis.position, axis.heads[0], "m", 4, position)
+    if rest is not None and axis is AXES["z"]:
+        clear = {case: 1000 * (values - rest) for case, values in position.items()}
+        where = Channel("clearance", "clearance", "mm", 2, clear, top=CLOSE)
+    return where, Channel(axis.velocity, axis.heads[1], "m/s", 4, velocity)
 
 
 def _along(trace: BodyTrace, k: int, axis: Axis) -> str:

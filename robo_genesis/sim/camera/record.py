@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from robo_genesis.core.experiment import Experiment, Readings
-from robo_genesis.core.scene import CAMERA_RES, FloatArray
+from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.sim.camera.views import View
 
 DEPTH_UNIT = 1e-5  # Resolution of a recorded depth [m]; 24 bits reach 167 m
@@ -66,11 +66,6 @@ def frames(name: str, view: View) -> dict[str, np.ndarray]:
     return dict(zip(frame_names(name), (view.rgb, depth, segmentation), strict=True))
 
 
-def depth_of(frame: np.ndarray) -> FloatArray:
-    """Return the depth (H, W) [m] of a frame (H, W, 3)."""
-    return np.asarray(frame, dtype=float) @ (65536.0, 256.0, 1.0) * DEPTH_UNIT
-
-
 def view_of(run: Experiment, name: str) -> View:
     """Return a recorded view; without a camera, it has no pictures."""
     found: Mapping[str, float] = run.readings[f"view_{name}"]
@@ -81,4 +76,5 @@ def view_of(run: Experiment, name: str) -> View:
         return view
     rgb, depth, segmentation = (run.frames[frame] for frame in frame_names(name))
     numbered = segmentation[..., 0].astype(np.int32)
-    return replace(view, rgb=rgb, depth=depth_of(depth), segmentation=numbered)
+    metres = depth.astype(float) @ (65536.0, 256.0, 1.0) * DEPTH_UNIT
+    return replace(view, rgb=rgb, depth=metres, segmentation=numbered)

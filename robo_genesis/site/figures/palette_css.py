@@ -1,8 +1,7 @@
 """The palette in style sheets, and a mark of its line beside a case's name in a table.
 
 `_static/palette.css` is written by each build. It declares, for both themes, each mark's colour
-(`--case-g1`, `--target`) and its dashes for an SVG line two units wide (`--case-g1-dash`), and the
-colours of a figure's other parts (`--figure-text`).
+(`--case-g1`, `--target`) and the colours of a figure's other parts (`--figure-text`).
 """
 
 import re
@@ -14,15 +13,12 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
+from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, css_name
 from robo_genesis.lessons import course_marks
 from robo_genesis.site.evidence.origin import above
 from robo_genesis.site.figures import case_labels
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}  # Paper has the light theme
-STROKE = 2  # Width of the SVG lines that the dashes are meant for, in their own units
-LINE, LENGTH = 0.12, 1.9
-"""Width of the line beside a case's name, and about its length, in letter heights."""
 NAMES = sorted({*course_marks()} - {"baseline"})
 NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES)) or '(?!)'})\b")
 """A case's name in prose; without named cases it matches nothing."""
@@ -37,41 +33,16 @@ def css() -> str:
         (selector, {f"--{name}": getattr(mark, theme) for name, mark in colours.items()})
         for theme, selector in THEMES.items()
     ]
-    rules.insert(1, (":root", {f"--{name}-dash": _svg_dashes(m) for name, m in names.items()}))
-    for name in names:
-        ink = {"--ink": f"var(--{name})", "--dash": f"var(--{name}-dash)"}
-        rules.append((f".time-plot .{name}", ink))
-    rules += [(f".case-name.{name}", {"color": f"var(--{name})"}) for name in CASE_CLASSES.values()]
-    rules += [(f".case-mark.{name}::before", _stripe(m)) for m, name in CASE_CLASSES.items()]
+    rules += [(f".time-plot .{name}", {"--ink": f"var(--{name})"}) for name in names]
+    for name in CASE_CLASSES.values():
+        rules.append((f".case-name.{name}", {"color": f"var(--{name})"}))
+        rules.append((f".case-mark.{name}::before", {"background": f"var(--{name})"}))
     lines = ["/* Written from robo_genesis/core/palette.py. */"]
     for selector, properties in rules:
         declared = [f"  {name}: {value};" for name, value in properties.items()]
         rule = [f"{selector} {{", *declared, "}"]
         lines += ["@media screen {", *rule, "}"] if selector == THEMES["dark"] else rule
     return "\n".join([*lines, ""])
-
-
-def _svg_dashes(mark: Mark) -> str:
-    return " ".join(f"{STROKE * length:g}" for length in mark.dashes) or "none"
-
-
-def _stripe(name: str) -> dict[str, str]:
-    """Return a background that repeats a mark's dashes, and a width that holds them whole.
-
-    Half of the first dash goes to the end, so that a single gap is inside the line.
-    """
-    dashes, colour = MARKS[name].dashes, f"var(--{css_name(name)})"
-    if not dashes:
-        return {"background": colour, "width": f"{LENGTH}em"}
-    half = dashes[0] / 2
-    at, stops = 0.0, []
-    for number, length in enumerate((half, *dashes[1:], half)):
-        paint = "transparent" if number % 2 else colour
-        stops.append(f"{paint} {at * LINE:.2f}em {(at + length) * LINE:.2f}em")
-        at += length
-    width = at * LINE * max(1, round(LENGTH / (at * LINE)))
-    background = f"repeating-linear-gradient(90deg, {', '.join(stops)})"
-    return {"background": background, "width": f"{width:.2f}em"}
 
 
 class MarkCases(SphinxPostTransform):

@@ -108,7 +108,7 @@ def panel(name: str, runs: Runs, weight: int) -> str:
 def _rest(runs: Runs) -> str:
     """Return the button that adds the rest of the runs to their motion, if there is a rest."""
     until = runs.replay.until
-    if until is None:
+    if until is None or until >= runs.t[-1]:
         return ""
     state, words = round(until / runs.first.dt), f"Show the rest, to {runs.t[-1]:g} s"
     return f'<p><button type="button" class="rest" data-until="{state}">{words}</button></p>'
@@ -117,7 +117,8 @@ def _rest(runs: Runs) -> str:
 def data(runs: Runs, camera: "Camera") -> dict[str, str]:
     """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
     thing = runs.replay.thing
-    channels = [{"name": c.name, "unit": c.unit, "digits": c.digits} for c in runs.channels]
+    names = ("name", "unit", "digits", "top")
+    channels = [{name: getattr(channel, name) for name in names} for channel in runs.channels]
     return {
         "subject": runs.subject,
         "channels": as_json(channels),
@@ -176,7 +177,7 @@ def term(name: str) -> str:
 
 def _legend(runs: Runs) -> str:
     """Return the meaning of the lines of the plots."""
-    bold = "Bold: the chosen run; each run has the line beside its name."
+    bold = "Bold: the chosen run; each curve has the colour of the line beside its run."
     levels = (level.legend for level in runs.levels)
     parts = (bold * (len(runs.traces) > 1), *levels, "Drag in a plot to move through time.")
     return " ".join(filter(None, parts))

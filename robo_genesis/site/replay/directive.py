@@ -37,6 +37,7 @@ from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
+from robo_genesis.site.text.question_nodes import question
 
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera
@@ -53,9 +54,17 @@ class ReplayDirective(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the replay."""
-        lesson_page, *chosen = self.arguments
-        key, folder = f"{lesson_page}/{BACKEND}", bundle_of(lesson_page)
         brief, blind = (option in self.options for option in self.option_spec)
+        lesson_page, *chosen = self.arguments
+        first_page = self.env.docname == self.env.config.root_doc
+        above = [
+            isinstance(node, question)
+            for node in self.state.document.findall(nodes.Element)
+            if isinstance(node, question) or "replay-block" in node["classes"]
+        ]
+        if blind and not first_page and not (above and above[-1]):
+            raise LookupError("`:blind:` needs a question above it, as `{choice}` or `{number}`.")
+        key, folder = f"{lesson_page}/{BACKEND}", bundle_of(lesson_page)
         return [replay_block(self, key, folder, *chosen, brief=brief, blind=blind)]
 
 

@@ -21,11 +21,12 @@ from robo_genesis.sim.visual_shape import WORLD, Part
 from robo_genesis.site.replay.scenery import Scenery
 
 KEPT = 0.05
-"""Share of the triangles of a large part that is kept: with the small parts, about 10,000 of the
+"""Share of the triangles of a large part that is kept: with the small parts, about 12,000 of the
 Franka's 135,000 triangles."""
 
-SMALLEST = 400
-"""Number of triangles up to which a part stays unchanged: rings would break and lamps vanish."""
+UNCHANGED, FEWEST = 1280, 400
+"""Number of triangles up to which a part stays unchanged, such as the engine's sphere, and the
+fewest of another part: rings would break and lamps vanish."""
 
 CREASE = np.radians(40)  # Angle between triangles above which an edge is drawn sharp [rad]
 
@@ -164,8 +165,8 @@ def simplified(part: Part) -> trimesh.Trimesh:
     """Return a part with few triangles, its vertices split at sharp edges."""
     mesh = trimesh.Trimesh(part.vertices, part.faces, process=False)
     mesh.merge_vertices(merge_norm=True)
-    target = max(round(KEPT * len(mesh.faces)), SMALLEST)
-    if len(mesh.faces) > target:
+    if len(mesh.faces) > UNCHANGED:
+        target = max(round(KEPT * len(mesh.faces)), FEWEST)
         vertices, faces = fast_simplification.simplify(
             _float32(mesh.vertices), np.asarray(mesh.faces), target_count=target
         )

@@ -54,6 +54,10 @@ def style(page: Page, selector: str, name: str) -> str:
 
 def test_the_page_s_ground_is_one_that_the_palette_was_held_against(page, theme):
     assert hexadecimal(style(page, "body", "backgroundColor")) in GROUNDS[theme]
+    recorded = "<div class='evidence-panel'></div>"  # of a lab with a recorded run
+    page.locator("article").evaluate(
+        "(one, recorded) => one.insertAdjacentHTML('beforeend', recorded)", recorded
+    )
     panel = hexadecimal(style(page, "div.evidence-panel", "backgroundColor"))
     assert panel in GROUNDS[theme]
 
@@ -115,6 +119,7 @@ def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, ad
 
 
 def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
+    page.locator("[data-name=replay-l04-lecture-cpu] .veil button").click()
     names = {css_name(name): name for name in MARKS}
     lines = page.eval_on_selector_all(
         ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)",
@@ -127,5 +132,7 @@ def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
         mark = MARKS[names[css_class]]
         assert hexadecimal(ink) == getattr(mark, theme), css_class
         assert [float(dash) for dash in dashes] == [2 * length for length in mark.dashes], css_class
+    beside = page.locator("[data-name=replay-l04-lecture-cpu] .plot:first-child .name")
+    assert {"G2", "G3"} <= {*beside.all_text_contents()} <= {"G1", "G2", "G3"}
     count = Counter(names[css_class] for css_class, *_ in lines)
     assert count == {"first": 3, "second": 3, "third": 3, "target": 1, "limit": 2}

@@ -110,7 +110,8 @@ def test_the_arm_is_whole_where_it_meets_its_copy(browser_3d, address):
     page.close()
 
 
-CURVES = f"{REPLAY} polyline"
+STEPS = ".replay[data-name=replay-l04-lecture-cpu-steps]"
+CURVES = f"{STEPS} polyline"
 
 
 def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(browser_3d, address):
@@ -118,19 +119,20 @@ def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(br
     context = browser_3d.new_context()
     page = context.new_page()
     page.goto(f"{address}/{LECTURE}.html")
-    hidden = [f"{REPLAY} .play", f"{REPLAY} dl", CURVES, ".explorer:has(.plots)"]
-    feedback, table = page.locator(".feedback:visible"), page.locator(f"{REPLAY} + details")
-    assert not any(page.locator(one).first.is_visible() for one in [*hidden, f"{REPLAY} + details"])
-    page.get_by_label("later").first.press("Space")
+    hidden = [f"{STEPS} .play", f"{STEPS} dl", CURVES, ".explorer:has(.plots)"]
+    feedback, table = page.locator(".feedback:visible"), page.locator(f"{STEPS} + details")
+    assert not any(page.locator(one).first.is_visible() for one in [*hidden, f"{STEPS} + details"])
+    page.get_by_label("about the same").first.press("Space")
     assert page.get_by_text("Noted. Play the run").count() == 1
     assert feedback.count() == 0
-    slider = page.locator(f"{REPLAY} input[type=range]")
+    slider = page.locator(f"{STEPS} input[type=range]")
     lengths = "all => all.map(line => line.getAttribute('points').split(' ').length)"
     for key, seen in (("Home", 1), ("ArrowRight", 2), ("ArrowLeft", 2), ("End", 61)):
         slider.press(key)
         assert {*page.locator(CURVES).evaluate_all(lengths)} == {seen}
         assert table.is_visible() == (key == "End")
     assert page.locator("fieldset .wrong").nth(1).is_visible()
+    assert not page.locator(hidden[-1]).is_visible()  # before the second question
     page.get_by_role("button", name="Show the rest, to 1.2 s").first.click()
     assert {*page.locator(CURVES).evaluate_all(lengths)} == {121}
     page.reload()
@@ -143,7 +145,7 @@ def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(br
     page.get_by_role("button", name="Forget all").click()
     assert page.locator("#lesson-l04 .finished").count() == 0
     page.goto(f"{address}/{LECTURE}.html")
-    assert not page.locator(f"{REPLAY} dl").is_visible()
+    assert not page.locator(f"{STEPS} dl").is_visible()
     context.close()
 
 

@@ -9,7 +9,7 @@ from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.site.figures.case_labels import MARKS, label, labelled
 
 CASES = ("dt10_sub1", "baseline")
-WORDS = ["one step in 10 ms", "two steps in 10 ms"]
+WORDS = ["one step of 10 ms", "two steps of 5 ms"]
 
 
 def runs() -> Runs:
@@ -31,7 +31,7 @@ def test_runs_are_shown_by_their_words_everywhere():
     (channel,), (level,) = shown.channels, shown.levels
     for by_case in (shown.traces, channel.values, level.values, level.texts, shown.moves):
         assert list(by_case) == WORDS
-    assert shown.moves[WORDS[0]] == "**one step in 10 ms**: the cube falls."
+    assert shown.moves[WORDS[0]] == "**one step of 10 ms**: the cube falls."
 
 
 def test_a_run_keeps_its_mark_with_its_words_and_without_words_its_name():

@@ -19,6 +19,7 @@ TEXT = {
     "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
     "```{course-map}\n```": "the book has no page gone",
     "```{cell-times}\n```": "timed has no cell with code",
+    "```{replay} l02/lecture\n:blind:\n```": "`:blind:` needs a question above it",
 }
 """What stands alone on the page, and what is said of its line."""
 
