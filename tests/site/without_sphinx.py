@@ -26,8 +26,7 @@ SHEETS = ("course.css", "plot.css", "replay.css", "explorer.css")
 class Panel(panel.Evidence):
     """The panel of recorded runs for a book's page `lessons/page`."""
 
-    def __init__(self, book, **options):
-        self.options = options
+    def __init__(self, book):
         app = SimpleNamespace(outdir=book / "_build" / "html")
         named = {"docname": "lessons/page", "metadata": defaultdict(dict)}
         config = SimpleNamespace(root_doc="index")

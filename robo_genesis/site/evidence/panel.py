@@ -1,8 +1,8 @@
-"""The reference run in a lesson: its figures, frames, metrics and backend, or why it is missing.
+"""The reference run in a lab: its figures, frames, metrics and backend.
 
-A lab writes ```` ```{evidence} l04 ````, a lecture adds the option `:table:` and gets the metrics
-alone. The panel shows only a verified bundle of `book/evidence/<lesson>/<backend>/`. Otherwise it
-gives the state, the reason and the command that records a new one.
+A lab writes ```` ```{evidence} l04 ````. The panel shows only a verified bundle of
+`book/evidence/<lesson>/<backend>/`. Otherwise it gives the state, the reason and the command that
+records a new one. A run that was never recorded has no panel; the pages on evidence list it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,7 +10,6 @@ from html import escape
 from pathlib import Path
 
 from docutils import nodes
-from docutils.parsers.rst.directives import flag
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
@@ -24,7 +23,7 @@ from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import course_marks, find_replay
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.measured import BACKEND, READABLE
+from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, text_table
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
@@ -34,35 +33,30 @@ RECORDING = "{doc}`/evidence/recording` says what that machine needs."
 
 
 class Evidence(PageDirective):
-    """Show the recorded runs of a lesson, the reference backend first; `:table:` the metrics."""
+    """Show the recorded runs of a lesson, the reference backend first."""
 
     required_arguments = 1
-    option_spec = {"table": flag}  # noqa: RUF012 - as docutils declares it
 
     def shown(self) -> list[nodes.Node]:
-        """Return one panel per backend; the reference backend has one even without a run."""
+        """Return one panel per backend with a run."""
         runs = measured.recorded_runs(Path(self.env.srcdir), self.arguments[0])
-        return [self.panel(run) for run in runs]
+        return [self.panel(run) for run in runs if run.status.state != "missing"]
 
     def panel(self, run: PageRun) -> nodes.Node:
         """Return the panel of one backend."""
         lesson, folder, status = run.lesson, run.folder, run.status
         panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
-        if status.state == "missing":
-            panel += not_recorded(run)
-            return panel
         if run.predicate is None or status.state != "verified":
             panel += withheld(run)
             panel += self.parse_text_to_nodes(RECORDING)
             return panel
         panel["evidence_runs"] = (run.key,)
-        panel += introduction(status.sentence)
-        if "table" not in self.options:
-            panel += backend_facts(run.predicate)
-            run_shown = f"{lesson}-{status.backend}", folder, find_replay(lesson), status.backend
-            panel += response(self.env, *run_shown)
-            panel += frames(self.env, *run_shown)
-            panel += replay_block(self, run.key, folder)
+        panel += paragraph(nodes.strong("", "Reference run."), f" {status.sentence}")
+        panel += backend_facts(run.predicate)
+        run_shown = f"{lesson}-{status.backend}", folder, find_replay(lesson), status.backend
+        panel += response(self.env, *run_shown)
+        panel += frames(self.env, *run_shown)
+        panel += replay_block(self, run.key, folder)
         here = measured.page_run(Path(self.env.srcdir), lesson)
         found = comparison(here.folder, folder)
         panel += nodes.container("", *found, evidence_runs=(here.key, run.key))
@@ -78,14 +72,6 @@ def figure(
     return nodes.figure("", picture, nodes.caption("", caption), ids=[anchor])
 
 
-def not_recorded(run: PageRun) -> nodes.Node:
-    """Return one sentence for a backend without a run, with the command that records one."""
-    backend = READABLE.get(run.status.backend, run.status.backend)
-    what = f"No run on {backend} is recorded for Genesis {project.engine_pin()} yet; this command "
-    command = nodes.literal("", run.command.removeprefix("$ "))
-    return paragraph(what, "records one on such a machine: ", command, ".")
-
-
 def withheld(run: PageRun) -> list[nodes.Node]:
     """Return the state of a run that is not shown, the reason, and the command that records one."""
     status = run.status
@@ -95,11 +81,6 @@ def withheld(run: PageRun) -> list[nodes.Node]:
         paragraph(nodes.strong("", what), why),
         nodes.literal_block(run.command, run.command, language="console"),
     ]
-
-
-def introduction(sentence: str) -> nodes.Node:
-    """Return the sentence on a run's state as a paragraph."""
-    return paragraph(nodes.strong("", "Reference run."), f" {sentence}")
 
 
 def backend_facts(predicate: Predicate) -> nodes.Node:
@@ -152,10 +133,9 @@ def frames(
     for name in ("initial", "final"):
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
-            state = f"{name} state of {replay.filmed_run}"
             subject = replay.filmed or f"the {replay.thing}"
-            alt = f"Camera frame of {subject}, {state} on {backend}."
-            caption = f"Camera frame on {backend}, {state}."
+            alt = f"Camera frame of {subject}, {name} state on {backend}."
+            caption = f"Camera frame on {backend}, {name} state."
             yield figure(env, f"{prefix}-{name}", ".png", path.read_bytes(), alt, caption)
 
 

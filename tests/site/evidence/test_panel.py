@@ -1,4 +1,4 @@
-"""The panel of a reference run shows its bundle, or the command that creates a missing one."""
+"""The panel of a reference run shows its bundle, or why it does not."""
 
 import dataclasses
 import shutil
@@ -26,7 +26,7 @@ from robo_genesis.site.evidence import ledger_data, measured, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.ledger_data import PageRun
 
-FILMED = Replay(("G1",), "box", "box", filmed_run="the first run")
+FILMED = Replay(("G1",), "box", "box")
 SCRIPT = "<script>alert(1)</script>"
 ATTACKS = (
     SCRIPT,
@@ -50,11 +50,10 @@ def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(folder, tmp_path
     predicate(environment={"GS_LOG": attack})(folder)
     status = Status("stale", attack, "", None, "stale", attack)
     run = PageRun("l04/lab", tmp_path / attack[:3], status, recorded=True)
-    sentence = sphinx_panel.introduction(attack)
     table = sphinx_panel.backend_facts(bundle.read_manifest(folder).predicate)
     withheld = nodes.container("", *sphinx_panel.withheld(run))
-    assert [block.astext().count(attack) for block in (sentence, table, withheld)] == [1, 7, 4]
-    made = {n.tagname for of in (sentence, table, withheld) for n in of.findall(nodes.Element)}
+    assert [block.astext().count(attack) for block in (table, withheld)] == [7, 4]
+    made = {n.tagname for of in (table, withheld) for n in of.findall(nodes.Element)}
     assert made == PLAIN
 
 
@@ -90,7 +89,7 @@ def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, tmp_
         image = figure.next_node(nodes.image)
         shown = tmp_path / "book" / image["uri"].removeprefix("/")
         assert shown.read_bytes() == (folder / "frames" / f"{name}.png").read_bytes()
-        assert image["alt"] == f"Camera frame of the box, {name} state of the first run on cpu."
+        assert image["alt"] == f"Camera frame of the box, {name} state on cpu."
     shutil.rmtree(folder / "frames")
     assert list(sphinx_panel.frames(env, "run", folder, FILMED, "cpu")) == []
 
@@ -180,31 +179,27 @@ def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):
     assert f'data-model="../replay/{name}.js"' in block[0].astext()
 
 
-def test_in_a_lecture_a_panel_has_its_metrics_alone(tmp_path, record, monkeypatch):
-    metrics = [nodes.paragraph("", "The metrics.")]
-    monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: metrics)
-    panel = Panel(tmp_path / "book", table=None).panel(record())
-    assert "Reference run." in panel.astext()
-    assert "The metrics." in panel.astext()
-    assert not list(panel.findall(nodes.figure))
-    assert not [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
-
-
-@pytest.mark.parametrize("state", ["missing", "inconclusive", "stale", "failed", "refused"])
-@pytest.mark.parametrize("options", [{}, {"table": None}])
-def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, state, options):
+@pytest.mark.parametrize("state", ["inconclusive", "stale", "failed", "refused"])
+def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, state):
     run = record()
     manifest = run.status.manifest if state == "inconclusive" else None
     status = Status(state, "amdgpu", "Found a, expected b.", manifest, summary="Why.")
-    panel = Panel(tmp_path / "book", **options).panel(PageRun("l04/lab", run.folder, status, True))
+    panel = Panel(tmp_path / "book").panel(PageRun("l04/lab", run.folder, status, True))
     text = f"No figures from amdgpu for Genesis {project.engine_pin()} (amdgpu-{state}). Why."
-    if state == "missing":
-        text = f"No run on AMD GPU is recorded for Genesis {project.engine_pin()} yet; this command"
     assert panel.astext().startswith(text)
     quoting = panel, sphinx_ledger.run_block("", run), measured.status_list([status])
     assert all({*node["classes"]} & {*QUOTING} for node in quoting)
     shown = (nodes.image, nodes.table, nodes.raw, nodes.bullet_list)
     assert not [n for n in panel.findall(nodes.Element) if isinstance(n, shown)]
+
+
+def test_a_run_that_was_never_recorded_has_no_panel(tmp_path, record, monkeypatch):
+    status = Status("missing", "amdgpu", "None.", None, summary="None.")
+    absent = PageRun("l04/lab", tmp_path, status, recorded=True)
+    monkeypatch.setattr(measured, "recorded_runs", lambda *asked: (absent,))
+    panel = Panel(tmp_path / "book")
+    panel.arguments = ["l04"]
+    assert panel.shown() == []
 
 
 def classes(node):
