@@ -26,4 +26,6 @@ def height(run: Experiment) -> Figure:
 
 def ends(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the heights."""
-    return plotting.both_ends(run.frames) if run.rendered else height(run)
+    if not run.rendered:
+        return height(run)
+    return plotting.stacked({name: run.frames[name] for name in ("initial", "final")})

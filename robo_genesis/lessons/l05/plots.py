@@ -42,7 +42,7 @@ def distance(run: Experiment) -> Figure:
     for name in spec.CASES:
         trace = run.traces[name]
         apart = np.linalg.norm(trace.link_pos[:, HAND] - spec.TARGET, axis=-1)
-        style = plotting.look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
+        style = plotting.look(spec.CASE_MARKS[name])
         ax.semilogy(trace.t, 1000 * apart, label=spec.LABELS[name], **style)
     plotting.finish(ax, "Distance of the hand from its target", "hand to target [mm]")
     return figure
@@ -95,7 +95,7 @@ def solutions(run: Experiment) -> Figure:
     for ax, (label, key) in zip(axes, PANELS.items(), strict=True):
         ax.set_ylabel(label)
         for n, (mark, (curve, inside)) in enumerate(zip(FAMILIES, families, strict=False), 1):
-            style = plotting.look(mark, linestyle="-", linewidth=1)
+            style = plotting.look(mark, linewidth=1)
             ax.plot(curve[:, 0], known(curve)[key], **style)
             ax.plot(q[inside, 0], known(q[inside])[key], "o", markersize=3.5, color=style["color"])
             if ax is axes[0]:

@@ -81,7 +81,7 @@ RELATIONS = (
     (("baseline", "kp_doubled"), "final_distance", "lower", 1e-3),
     (("baseline", "gravity_compensated"), "final_distance", "lower", 1e-3),
 )
-"""Written down before the runs: how the second case of a pair compares with the first [m]."""
+"""How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 GRID_X, GRID_Y, GRID_Z = (
     tuple(np.round(np.linspace(*ends), 3).tolist())

@@ -73,7 +73,6 @@ LESSON = Lesson(
             quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
             "{moved_later}.",
             filmed="the robots of all environments",
-            filmed_run="the batch",
         )
     },
 )

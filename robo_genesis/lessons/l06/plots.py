@@ -43,7 +43,7 @@ def distances(run: Experiment, names: Iterable[str], title: str) -> tuple[Figure
     """Draw the distance of the hand from its target in some runs, on a logarithmic scale."""
     figure, ax = plotting.axes(3.6)
     for name in names:
-        style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
+        style = look(spec.CASE_MARKS[name])
         apart = to_target(run, name, run.cases[name])
         ax.semilogy(run.traces[name].t, apart, label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
@@ -69,7 +69,7 @@ def alone(run: Experiment) -> Figure:
     for k, name in enumerate(spec.WORLDS):
         row, other = run.traces[name], run.traces[f"alone_{k}"]
         apart = np.abs(row.q.astype(float) - other.q)[:, :ARM].max(axis=1)
-        style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
+        style = look(spec.CASE_MARKS[name])
         ax.semilogy(row.t, np.maximum(apart, FLOOR), label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="largest difference [rad]")
     plotting.label_ends(ax, "A row and the same run alone")
@@ -88,7 +88,7 @@ def judged(curves: Curves) -> Figure:
 
 
 THEORY = look("target", linestyle=(0, (4, 2)), linewidth=1.6)
-MEASURED = look("first", linestyle="-", marker="o", markersize=4)
+MEASURED = look("first", marker="o", markersize=4)
 
 
 def times(run: Experiment, name: str) -> FloatArray:

@@ -111,7 +111,7 @@ RELATIONS = (
     (("plain_robot", "loaded_robot"), "final_distance", "higher", 5e-4),
     (("plain_robot", "stiff_loaded_robot"), "final_distance", "lower", 1e-3),
 )
-"""Written down before the runs: how the second case of a pair compares with the first [m]."""
+"""How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 # Both are computed in float32.
 SAME_RUN = {"q": 5e-6, "qd": 5e-5, "control_force": 2e-2}

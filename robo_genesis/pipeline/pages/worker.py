@@ -14,6 +14,7 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError
 from nbformat import NotebookNode
 
 from robo_genesis.core.project import OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
+from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page, code_digest
 from robo_genesis.pipeline.pages.folder import PageRefused, write_page
 from robo_genesis.pipeline.pages.kernels import (
@@ -100,13 +101,17 @@ def work(run: PageRun, connection: Connection) -> None:
 
 
 class LoggingClient(nbclient.NotebookClient):
-    """Writes what cells print to this process's standard output, which is the page's log."""
+    """Writes what cells print to this process's standard output, which is the page's log.
+
+    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal.
+    """
 
     def process_message(
         self, msg: dict[str, Any], cell: NotebookNode, cell_index: int
     ) -> NotebookNode | None:
         """Keep one message of the kernel in the notebook, and write its text."""
         if msg["msg_type"] == "stream":
+            msg["content"]["text"] = ANSI.sub("", msg["content"]["text"])
             os.write(1, msg["content"]["text"].encode("utf8", errors="replace"))
         return super().process_message(msg, cell, cell_index)
 

@@ -44,7 +44,7 @@ MEASURES = {
 """What is counted on a page, in words."""
 
 LIMITS = {
-    "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 60},
+    "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 50},
     "lab": {"minutes": 80},
     "mistakes": {"words": 2000},
     "deeper": {"words": 2000},
@@ -55,6 +55,8 @@ SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
 INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
+THOUGHT = re.compile(f"{ANSWER.pattern}|diagnosis", re.IGNORECASE)
+"""The title of a fold that a reader opens after an own answer."""
 FOLD = re.compile(r"^ *[`:]{3,}\{dropdown\} *(.*)", re.MULTILINE)
 
 
@@ -97,7 +99,7 @@ def _minutes(notebook: NotebookNode, file: Path) -> Minutes:
     work += functions * MINUTES_A_FUNCTION + bool(functions) * MINUTES_A_RUN
     for text in texts:
         work += len(QUESTION.findall(text)) * MINUTES_A_QUESTION
-        work += sum(map(bool, map(ANSWER.match, FOLD.findall(text)))) * MINUTES_A_CHECKPOINT
+        work += len([*filter(THOUGHT.match, FOLD.findall(text))]) * MINUTES_A_CHECKPOINT
     sheet = file.stem == LAB and file.with_name(WORK_SHEET).is_file()
     read = max(1, round(sum(map(count_words, texts)) / WORDS_A_MINUTE))
     return Minutes(read, round(work + sheet * MINUTES_A_SHEET), sheet)

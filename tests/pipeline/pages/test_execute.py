@@ -25,6 +25,8 @@ for number in range(20):
     print(f"\\x1b[31mengine line {number}\\x1b[0m", file=sys.stderr)
 class CheckFailed(Exception): pass"""
 
+GREEN = "print('\\x1b[32mtwo\\x1b[0m')"
+
 # The kernel passes on what is written to its file descriptors; a moment lets it do so.
 LAST_WORDS = """\
 import os, time
@@ -35,7 +37,7 @@ LINKED = WRITE_BUNDLE + '\n(folder / "log.txt").symlink_to("/etc/hostname")'
 # As the system does when memory runs out.
 KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\nimport time; time.sleep(60)"
 BROKEN = {
-    "good": notebook(cell("1 + 1")),
+    "good": notebook(cell(GREEN)),
     "check": notebook(
         cell(CHECK), cell("# proof\nraise CheckFailed('[one_factor] kp changed,\\nkv too')")
     ),
@@ -45,7 +47,7 @@ BROKEN = {
     "kernel": notebook(cell("6 + 1")).replace("python3", "some-users-kernel"),
     "link": notebook(cell(LINKED), front=LAB_FRONT),
     "killed": notebook(cell(KILLS)),
-    "twin": notebook(cell("1 + 1")),  # the code of `good`
+    "twin": notebook(cell(GREEN)),  # the code of `good`
 }
 
 
@@ -68,8 +70,9 @@ def test_all_pages_are_tried_and_only_good_ones_are_stored(broken):
     assert list(results) == list(BROKEN)
     assert {name for name in results if results[name].status == "executed"} == {"good", "twin"}
     assert {result.status for result in results.values()} == {"executed", "failed"}
-    stored = [path.parts[-3] for path in (broken[0] / "store").rglob("*.ipynb")]
+    stored = {path.parts[-3]: path for path in (broken[0] / "store").rglob("*.ipynb")}
     assert sorted(stored) == ["good", "twin"]
+    assert nbformat.read(stored["good"], 4).cells[0].outputs[0].text == "two\n"  # without colour
 
 
 def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
