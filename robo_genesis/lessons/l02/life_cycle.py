@@ -53,8 +53,8 @@ def try_both_sides(scene: Any, box: Any, camera: Any, morph: Any) -> Attempts:
         "scene.add_camera": lambda: scene.add_camera(GUI=False),
         "scene.step": scene.step,
         "scene.reset": scene.reset,
-        "box.get_pos": box.get_pos,
-        "box.set_pos": lambda: box.set_pos((0.0, 0.0, 0.5)),
+        "entity.get_pos": box.get_pos,
+        "entity.set_pos": lambda: box.set_pos((0.0, 0.0, 0.5)),
         **({} if camera is None else {RENDER: camera.render}),
         "scene.build": scene.build,  # the last, because it changes the side
     }

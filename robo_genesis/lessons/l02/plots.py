@@ -23,12 +23,7 @@ def posture(run: Experiment) -> Figure:
 def trays(run: Experiment) -> Figure:
     """Show the camera frame of both trays, without a camera the heights of both balls."""
     if run.rendered:
-        frame = run.frames[spec.TRAYS]
-        drawn = plotting.figure(plotting.WIDTH * frame.shape[0] / frame.shape[1])
-        drawn.set_layout_engine("none")
-        plotting.frames([drawn.add_axes((0, 0, 1, 1))], {spec.TRAYS: frame})
-        drawn.set_facecolor("none")
-        return drawn
+        return plotting.stacked({spec.TRAYS: run.frames[spec.TRAYS]})
     figure, ax = plotting.axes(2.6)
     found = run.readings[trials.TRAYS]
     ax.bar(list(found), list(found.values()), color=look("baseline")["color"], width=0.4)

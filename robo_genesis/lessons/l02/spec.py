@@ -59,8 +59,8 @@ BELONGS = {
     "scene.build": BEFORE,
     "scene.step": AFTER,
     "scene.reset": AFTER,
-    "box.get_pos": AFTER,
-    "box.set_pos": AFTER,
+    "entity.get_pos": AFTER,
+    "entity.set_pos": AFTER,
     "camera.render": AFTER,
 }
 """The side on which the engine accepts each call; on the other side it must refuse it."""

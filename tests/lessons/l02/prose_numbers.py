@@ -15,6 +15,7 @@ CONFIGURED = {
     "volume of the box [m³]": 0.001,
     "mass of the box [kg]": BASELINE.mass,
     "distance of the drop by the school formula [m]": 0.196,
+    "gravity on the Moon [m/s²]": 1.62,
     "solver step with four substeps, and the gap [ms, mm]": 2.5,
     "radius of the sphere of the task [m]": 0.05,
 }
