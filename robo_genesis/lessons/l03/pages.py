@@ -59,6 +59,7 @@ def further(
 
 
 LECTURE = further("lecture", *study.CHECKS, checks.posture, camera=True)
+LECTURE = replace(LECTURE, frames=(*LECTURE.frames, *study_spec.DEEPEST))
 CONTACT = further("contact", *study_deeper.OF_CONTACT)
 IN_MUJOCO = {
     name: Run(case, note="run in MuJoCo, not in Genesis")
@@ -83,7 +84,9 @@ LESSON = Lesson(
         "energy": ENERGY,
     },
     replays={
-        "drops": Replay(tuple(study_spec.DROPPED), spec.LINK, "cube", until=0.5),
+        "drops": Replay(
+            tuple(study_spec.DROPPED), spec.LINK, "cube", until=0.5, rest=spec.BASELINE.rest_height
+        ),
         "slides": Replay(tuple(study_spec.HOPPED), spec.LINK, "cube", axes=("x", "z")),
     },
 )

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import LINE, body_schematic, legend_above, look, solid
+from robo_genesis.core.plotting import LINE, body_schematic, legend_above, look
 from robo_genesis.lessons.l03 import checks, metrics, spec, theory
 from robo_genesis.sim.bodies.contacts import TOP
 
@@ -61,9 +61,8 @@ def landings(run: Experiment) -> Figure:
     figure, ax = plotting.axes(4.6)
     for name, (mark, samples) in LANDINGS.items():
         trace, case = run.traces[name], run.cases[name]
-        label = f"{spec.LABELS[name]}, h = {1000 * case.h:g} ms"
         clear = 1000 * metrics.clearance(trace, case)
-        ax.plot(trace.t, clear, label=label, **solid(mark, **samples))
+        ax.plot(trace.t, clear, label=spec.LABELS[name], **look(mark, **samples))
     ax.axhline(0, **LINE)
     ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
     ax.set_title("Below zero, the cube is in the table", loc="left")
@@ -81,8 +80,8 @@ def contact_counts(run: Experiment) -> Figure:
     for ax, (name, (mark, _)) in zip(axes, LANDINGS.items(), strict=True):
         t, counts = run.traces[name].t, run.traces[name].contacts[:, 0]
         deepest = int(metrics.clearance(run.traces[name], run.cases[name]).argmin())
-        ax.step(t, counts, where="post", **solid(mark))
-        ax.plot(t[deepest], counts[deepest], marker="v", **solid(mark, markersize=8))
+        ax.step(t, counts, where="post", **look(mark))
+        ax.plot(t[deepest], counts[deepest], marker="v", **look(mark, markersize=8))
         ax.set(xlim=WINDOW, yticks=[0, 4], ylim=(-0.5, 4.8))
         ax.set_title(f"{spec.LABELS[name]} (triangle: deepest sample)", loc="left")
     axes[-1].set_xlabel("time [s]")
@@ -111,7 +110,7 @@ def slides(
     figure = plotting.figure(7)
     axes = figure.subplots(3, 1, sharex=True)
     for name, mark in marks.items():
-        trace, style = run.traces[name], solid(mark, **styles.get(name, {}))
+        trace, style = run.traces[name], look(mark, **styles.get(name, {}))
         axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=labels[name], **style)
         axes[1].plot(trace.t, 1000 * metrics.clearance(trace, run.cases[name]), **style)
         axes[2].plot(trace.t, trace.link_ang[:, 0, 1], **style)
@@ -150,7 +149,7 @@ def ball_energies(run: Experiment) -> Figure:
         start, clear = metrics.total_energy(trace, case)[0], metrics.clearance(trace, case) > 0
         for ax, energy in zip(axes, (metrics.total_energy, metrics.conserved_energy), strict=True):
             share = np.where(clear, 100 * energy(trace, case) / start, np.nan)
-            ax.plot(trace.t, share, label=spec.LABELS[name], **solid(mark, linewidth=1.5))
+            ax.plot(trace.t, share, label=spec.LABELS[name], **look(mark, linewidth=1.5))
     for ax, title in zip(axes, ("Total energy", "Total energy − m g h v / 2"), strict=True):
         ax.set_title(title, loc="left")
         ax.set(ylabel="share of the start [%]", ylim=(50, 108))

@@ -59,18 +59,16 @@ CASES = LANDINGS | SLIDES | BOUNCES
 """The runs of the lab."""
 
 LABELS = {
-    "baseline": "two steps in 10 ms",
-    "dt10_sub1": "one step in 10 ms",
-    "dt20_sub2": "two steps in 20 ms",
-    "dt20_sub1": "one step in 20 ms",
+    "baseline": "two steps of 5 ms",
+    "dt10_sub1": "one step of 10 ms",
+    "dt20_sub2": "two steps of 10 ms",
+    "dt20_sub1": "one step of 20 ms",
     **{
-        f"{name}{cone}": f"cube {case.friction:g} on table {case.surface_friction:g}"
+        f"{name}{cone}": f"cube {case.friction:g} on table {case.surface_friction:g}{words}"
         for name, case in SLIDES.items()
-        for cone in ("", "_elliptic")
+        for cone, words in (("", ""), ("_elliptic", ", elliptic cone"))
     },
     **{name: f"h = {1000 * case.h:g} ms" for name, case in BOUNCES.items()},
-    "hop_5000us_low": "h = 5 ms",
-    "hop_2500us_low": "h = 2.5 ms",
 }
 """Words of a reader for runs: the steps of a landing, the frictions of a slide, the solver step."""
 

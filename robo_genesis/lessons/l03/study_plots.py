@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import LINE, legend_above, look, solid
+from robo_genesis.core.plotting import LINE, legend_above, look
 from robo_genesis.lessons.l03 import plots, study, study_deeper, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, clearance
 
@@ -43,7 +43,7 @@ def landings_by_step(run: Experiment) -> Figure:
     for name, mark in STEP_MARKS.items():
         case, trace = run.cases[name], run.traces[name]
         every = max(1, round(0.001 / trace.dt))
-        style = solid(mark, marker="." if case.h > 0.002 else "")
+        style = look(mark, marker="." if case.h > 0.002 else "")
         clear = 1000 * clearance(trace, case)[::every]
         ax.plot(trace.t[::every], clear, label=f"h = {1000 * case.h:g} ms", **style)
     ax.axhline(0, **LINE)
@@ -51,6 +51,14 @@ def landings_by_step(run: Experiment) -> Figure:
     ax.set_title("Below zero: overlap", loc="left")
     ax.legend(loc="lower right")
     return figure
+
+
+def deepest(run: Experiment) -> Figure:
+    """Show two cubes at their deepest samples, without a camera the landings at four steps."""
+    if not run.rendered:
+        return landings_by_step(run)
+    words = study_spec.DEEPEST.items()
+    return plotting.stacked({text: run.frames[name][120:420] for name, text in words})
 
 
 def depths_by_step(run: Experiment) -> Figure:

@@ -12,6 +12,12 @@ MEASURES = False
 DROPPED = {name: replace(LANDINGS[name], duration=0.5) for name in ("baseline", "dt10_sub1")}
 """The landings of the lecture's first replay; the cubes have settled at its end."""
 
+DEEPEST = {"deepest_10ms": "h = 10 ms", "deepest_5ms": "h = 5 ms"}
+"""The camera frames of both at their deepest sample, with words for the solver step."""
+
+CLOSE = {"pos": (0.0, 0.75, 0.742), "lookat": (0.0, 0.0, 0.745), "up": (0.0, 0.0, 1.0)}
+"""The camera's pose for them: at the height of the surface, on the side of the light."""
+
 HOPPED = {name: SLIDES[name] for name in ("low_on_050", "high_on_050")}
 """The slides of the lecture's second replay, with the engine's default friction model."""
 
@@ -159,6 +165,9 @@ DEPTH_SHARE = 0.1
 
 STIFF_SHARE = 0.2
 """The same for a time constant of 2 ms: at depths of a millimetre the contact is softer."""
+
+FIRST_DEPTH = 2e-5
+"""Largest difference of a depth from that of the first sample in the table [m]."""
 
 SCATTER_COARSE, SCATTER_FINE = 0.5, 0.05
 """Scatter of depth / (v T / e) over the heights: at least this at h = T / 2, at most this at the

@@ -101,6 +101,7 @@ def depths(run: Experiment) -> Iterator[Row]:
             "v": f"{theory.impact_speed(case):.2f} m/s",
             "v T / e": millimetres(theory.depth(case)),
             "measured": millimetres(run.metrics[name].penetration),
+            "rebound": millimetres(run.metrics[name].rebound),
             "nine heights, measured / (v T / e)": span(study.depth_shares(run, scene)),
         }
 

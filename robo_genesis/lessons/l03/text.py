@@ -14,15 +14,15 @@ SHORT = {"m": ("mm", 0.1), "J": ("mJ", 1.0)}
 SENTENCES = {
     "The landings": {
         "lands": "Each cube touches the table. Its depth is {baseline.penetration} with two steps "
-        "in 10 ms, {dt10_sub1.penetration} with one step in 10 ms, {dt20_sub2.penetration} with "
-        "two steps in 20 ms, and {dt20_sub1.penetration} with one step in 20 ms.",
+        "of 5 ms, {dt10_sub1.penetration} with one step of 10 ms, {dt20_sub2.penetration} with "
+        "two steps of 10 ms, and {dt20_sub1.penetration} with one step of 20 ms.",
         "settles": "In this order, the cubes settle at {baseline.resting_time}, "
         "{dt10_sub1.resting_time}, {dt20_sub2.resting_time} and {dt20_sub1.resting_time}.",
         "reported_late": "With one substep, a reported depth is that of the state before: it is "
         "one step old.",
     },
     "The effect of the step": {
-        "equal_step_equal_states": "The runs with one step in 10 ms and two steps in 20 ms have "
+        "equal_step_equal_states": "The runs with one step of 10 ms and two steps of 10 ms have "
         "equal states at shared times. Their solver steps are equal; the outer step only sets how "
         "often the state is read.",
         "one_factor": "The compared runs with the same outer step differ in substeps alone. In the "

@@ -74,6 +74,16 @@ def depth(case: ContactCase) -> float:
     return impact_speed(case) * contact_seconds(case) / float(np.e)
 
 
+def first_depth(case: ContactCase) -> float:
+    """Return the depth at the end of the first solver step that ends below the surface [m].
+
+    After n steps without contact a body has fallen by g h² n (n + 1) / 2.
+    """
+    drop, unit = case.start[2] - case.rest_height, case.gravity * case.h**2 / 2
+    n = int(np.ceil((np.sqrt(1 + 4 * drop / unit) - 1) / 2))
+    return float(unit * n * (n + 1) - drop)
+
+
 def release_speed(case: ContactCase) -> float:
     """Return v e⁻², the upward speed at which the contact stops pushing [m/s].
 

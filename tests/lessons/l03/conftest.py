@@ -63,7 +63,7 @@ def experiments(contact_traces, frames) -> dict[str, Experiment]:
             {run: beginning(contact_traces[run], case.steps) for run, case in page.cases.items()},
             [spec.LINK],
             READINGS[name],
-            frames if page.camera else {},
+            {name: frames.get(name, frames["final"]) for name in page.frames * page.camera},
             page.camera,
         )
         for name, page in LESSON.pages.items()

@@ -7,6 +7,8 @@ from robo_genesis.lessons.l03.metrics import STOP_SPEED
 from robo_genesis.sim.bodies import contacts
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
+FALL = study_spec.HEIGHTS_STUDIED[-1] - spec.BASELINE.rest_height
+FASTEST = float(np.sqrt(2 * spec.BASELINE.gravity * FALL))
 LOW, HIGH = spec.PUSHED.friction, spec.PUSHED.surface_friction
 CONFIGURED = {
     "edge of the cube [m]": spec.BASELINE.size,
@@ -17,6 +19,10 @@ CONFIGURED = {
     "lowest height studied [m]": study_spec.HEIGHTS_STUDIED[0],
     "highest height studied [m]": study_spec.HEIGHTS_STUDIED[-1],
     "finest step studied [ms]": 0.125,
+    "fastest landing of the heights studied [m/s]": round(FASTEST, 1),
+    "speed above which T = 10 ms rebounds with fine steps [m/s]": round(
+        4 * 9.81 * 0.01 * np.e**2, 1
+    ),
     "window of a landing [s]": spec.BASELINE.duration,
     "friction of the first cubes, and the hold of a stop [s]": spec.PUSHED.friction,
     "friction of the other cubes": spec.BESIDE.friction,

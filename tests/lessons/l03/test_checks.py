@@ -102,6 +102,8 @@ FAILING = {
         "no rebound at all": (never_rebounding, {"records_each_step", "rebound_goes"}),
         "a depth that depends on the start at fine steps": (
             trace("h_125us_10000", link_pos=deeper), {"scatter_shrinks", "depth_by_hand"}),
+        "a first step in the table that is not the deepest": (
+            trace("h_10000us_10000", link_pos=deeper), {"first_step_decides"}),
         "a clean slide that hops": (
             moved("low_on_030_elliptic", 0.001, first=10, end=12), {"clean_slides_stay_down"}),
         "a clean slide on three corners": (
@@ -152,7 +154,7 @@ def test_a_wrong_run_fails_its_checks(experiments, page, name):
 
 def test_the_lab_says_what_its_runs_show_or_which_check_failed(experiments):
     said = text.conclusions(experiments["lab"])
-    assert "Its depth is 7.80 mm with two steps in 10 ms" in said
+    assert "Its depth is 7.80 mm with two steps of 5 ms" in said
     assert "The check" not in said
     never = with_kept(None)(experiments["lab"])
     assert "The check `energy_converges` failed: bounce_sub100.first_kept_percent is not obs" in (
