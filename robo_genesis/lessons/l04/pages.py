@@ -64,6 +64,18 @@ BATCH = MISTAKES.with_more(
     checks=study_checks.GRID_CHECKS,
 )
 
+GAINS = Replay(
+    tuple(study_spec.COMPARED),
+    follows=spec.STEPPED_JOINT,
+    thing="robot",
+    band=SETTLING_BAND,
+    until=0.6,
+    credit=CREDIT,
+    quality="Rise time {rise_time}, overshoot {overshoot}, final error {final_error}; at the force "
+    "limit: {saturation_samples}.",
+    filmed="the Franka",
+)
+
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, StepMetrics),
@@ -76,16 +88,8 @@ LESSON = Lesson(
         "mistakes": MISTAKES,
     },
     replays={
-        "steps": Replay(
-            tuple(study_spec.COMPARED),
-            follows=spec.STEPPED_JOINT,
-            thing="robot",
-            band=SETTLING_BAND,
-            until=0.6,
-            credit=CREDIT,
-            quality="Rise time {rise_time}, overshoot {overshoot}, final error {final_error}; at "
-            "the force limit: {saturation_samples}.",
-            filmed="the Franka",
-        )
+        "gains": GAINS,
+        "steps": replace(GAINS, cases=("G1", "G2")),
+        "baseline": replace(GAINS, cases=("baseline",)),
     },
 )

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import marks_of
-from robo_genesis.core.plotting import BAND, LIMIT, LINE, solid
+from robo_genesis.core.plotting import BAND, LIMIT, LINE, look
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
@@ -50,10 +50,10 @@ def assigned(run: Experiment) -> Figure:
     figure, ax = plotting.axes(3.4)
     written, commanded = run.traces[ASSIGNED], run.traces["baseline"]
     _target(ax, float(commanded.target[0, ENTRY]))
-    crosses = solid("other", linestyle="", marker="x", markersize=4)
+    crosses = look("other", linestyle="", marker="x", markersize=4)
     for trace, every, text, style, label in (
         (written, 4, "set_dofs_position", crosses, (0.6, (10, -20))),
-        (commanded, 1, "control_dofs_position", solid("baseline"), (0.27, (2, -18))),
+        (commanded, 1, "control_dofs_position", look("baseline"), (0.27, (2, -18))),
     ):
         (line,) = ax.plot(trace.t[::every], trace.q[::every, ENTRY], **style)
         _direct(ax, line, text, label)
@@ -92,7 +92,7 @@ def _response(
             values = getattr(traces[name], field)[:, ENTRY]
             t = traces[name].t[-len(values) :]
             t, values = t[t <= until], values[t <= until]
-            (line,) = ax.plot(t, values, marker=".", markersize=5, **solid(mark))
+            (line,) = ax.plot(t, values, marker=".", markersize=5, **look(mark))
             if labels:
                 _direct(ax, line, name, labels[panel][name])
         _finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel, until)
@@ -108,7 +108,7 @@ def baseline_forces(run: Experiment) -> Figure:
         ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
         ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
     ):
-        (line,) = ax.plot(trace.t_step, array[:, ENTRY], marker=".", markersize=5, **solid(mark))
+        (line,) = ax.plot(trace.t_step, array[:, ENTRY], marker=".", markersize=5, **look(mark))
         _direct(ax, line, name, label)
     _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", until)
     return figure
@@ -119,7 +119,7 @@ def defined(run: Experiment) -> Figure:
     (figure, ax), trace, m = plotting.axes(4), run.traces[EXAMPLE], run.metrics[EXAMPLE]
     q = trace.q[:, ENTRY]
     _target(ax, float(trace.target[0, ENTRY]), SETTLING_BAND)
-    ax.plot(trace.t, q, marker=".", markersize=6, **solid("further"))
+    ax.plot(trace.t, q, marker=".", markersize=6, **look("further"))
     times = (
         (m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
         (m.settling_time, "settling time, in the band\nfrom here on:", 0.42, (0.35, 1)),

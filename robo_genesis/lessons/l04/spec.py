@@ -67,7 +67,7 @@ PREDICTIONS = {
     ),
     ("G2", "G3"): (("peak_speed", "lower"), ("overshoot", "lower"), ("rise_time", "later")),
 }  # fmt: skip
-"""Written down before the runs: how the second case of a pair compares with the first."""
+"""How the second case of a pair compares with the first; not fitted to a run."""
 
 MARGINS = {
     "rise_time": 1.5 * DT, "settling_time": 1.5 * DT, "peak_speed": 0.05, "overshoot": 1e-3,

@@ -182,6 +182,16 @@ def at_limit_until(trace: Trace) -> float:
     return float(trace.t[int(np.append(held, False).argmin())])
 
 
+def braking_error(trace: Trace) -> float:
+    """Return how far the stepped joint is from its target when its effort first brakes [rad].
+
+    It is 0 for an effort that never brakes.
+    """
+    brakes = trace.control_force[:, spec.ENTRY] < 0
+    left = (trace.target - trace.q[1:])[:, spec.ENTRY]
+    return float(left[brakes.argmax()] * brakes.any())
+
+
 def first_speed(run: Experiment, case: str, term: float) -> float:
     """Return the stepped joint's speed [rad/s] after the first step, its neighbours held still.
 
@@ -230,12 +240,10 @@ def by_engine(run: Experiment, case: str) -> dict[str, Trace]:
     return {engine: run.traces[run_name(engine, case, substeps)] for engine in ENGINES}
 
 
-def compared(run: Experiment, engine: str) -> dict[str, StepMetrics]:
-    """Return the metrics of G1 to G3 at the lesson's solver step, in one engine."""
-    return {
-        name: run.metrics[run_name(engine, name, case.substeps)]
-        for name, case in study_spec.COMPARED.items()
-    }
+def compared(run: Experiment, engine: str, n: int = spec.G1.substeps) -> dict[str, StepMetrics]:
+    """Return the metrics of G1 to G3 in one engine, with the lesson's substeps or `n`."""
+    names = {name: run_name(engine, name, n) for name in study_spec.COMPARED}
+    return {case: run.metrics[name] for case, name in names.items()}
 
 
 def run_name(engine: str, case: str, substeps: int) -> str:
@@ -246,9 +254,11 @@ def run_name(engine: str, case: str, substeps: int) -> str:
     return study_spec.SecondRun(case, engine, substeps).name
 
 
-def relation_outcome(run: Experiment, engine: str, relation: Relation) -> tuple[str, str]:
+def relation_outcome(
+    run: Experiment, engine: str, relation: Relation, substeps: int = spec.G1.substeps
+) -> tuple[str, str]:
     """Return whether an engine's runs show one claimed ordering, and the two values."""
     cases, metric, *_ = relation
-    unit, found = StepMetrics.about("unit")[metric], compared(run, engine)
+    unit, found = StepMetrics.about("unit")[metric], compared(run, engine, substeps)
     values = {f"{case}.{metric}": Value(getattr(found[case], metric), unit) for case in cases}
     return outcome(values, relation)

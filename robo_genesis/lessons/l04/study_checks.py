@@ -124,6 +124,14 @@ def second_engine_order(run: Experiment) -> Iterator[Finding]:
         yield from orders(run, engine)
 
 
+def order_at_finer_step(run: Experiment) -> Iterator[Finding]:
+    """Every ordering that the lesson claims also holds in Genesis with half the solver step, and
+    with a tenth.
+    """
+    for substeps in study_spec.REFINED:
+        yield from orders(run, "Genesis", substeps)
+
+
 def stable_engines(run: Experiment) -> Iterator[Finding]:
     """At the lesson's solver step, G1 to G3 are stable in Genesis and with implicitfast, and at
     least one of them is unstable with Euler.
@@ -203,5 +211,5 @@ FORMULA = (
 )  # fmt: skip
 INTEGRATOR = (
     study_factors, same_model, stable_engines, first_step, convergence, one_limit,
-    second_engine_order,
+    second_engine_order, order_at_finer_step,
 )  # fmt: skip

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import MARKS, PARTS
-from robo_genesis.core.plotting import LINE, look, solid
+from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.explorer import NAMES
@@ -28,9 +28,9 @@ SHADES = LinearSegmentedColormap.from_list(
 """From nothing to a colour that covers the ground in part: text is readable on it in any theme."""
 
 ENGINE_STYLES = {
-    "Genesis": solid(CASE_MARKS["G2"], marker="o"),
-    "MuJoCo implicitfast": solid("other", marker="s"),
-    "MuJoCo Euler": solid("further", marker="^"),
+    "Genesis": look(CASE_MARKS["G2"], marker="o"),
+    "MuJoCo implicitfast": look("other", marker="s"),
+    "MuJoCo Euler": look("further", marker="^"),
 }
 """All curves are G2's. Marker shapes distinguish the engines as well as colours."""
 
@@ -78,7 +78,7 @@ def _beside_ideal(
     for ax, (name, of_case) in zip(axes, curves.items(), strict=True):
         ax.axhline(target, **LINE)
         for label, curve in of_case.items():
-            last = solid(CASE_MARKS[name] if label == [*of_case][-1] else "other")
+            last = look(CASE_MARKS[name] if label == [*of_case][-1] else "other")
             ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else last))
         ax.set_title(name, loc="left")
         ax.set(xlim=(0, 0.4), xlabel="time [s]", ylabel=ylabel)

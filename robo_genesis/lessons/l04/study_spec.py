@@ -35,10 +35,16 @@ STEP_CASES = {
 """Step size is the one factor: a small step, and no step, with the gains of a compared case."""
 
 SUBSTEPS_STUDIED = (1, 2, 4, 10, 20, 50)
+REFINED = (4, 20)
+"""Numbers of substeps with which all compared cases run: half the solver step, and a tenth."""
+
 SUBSTEP_CASES = {
-    f"G2_substeps_{n}": replace(G2, substeps=n) for n in SUBSTEPS_STUDIED if n != SUBSTEPS
+    f"{name}_substeps_{n}": replace(case, substeps=n)
+    for n in SUBSTEPS_STUDIED
+    for name, case in COMPARED.items()
+    if n != SUBSTEPS and (name == "G2" or n in REFINED)
 }
-"""The solver's step is the one factor. Each case needs its own scene."""
+"""The solver's step is the one factor. Each number of substeps needs its own scene."""
 
 EXAMPLE = "example"
 EXAMPLE_CASES = {EXAMPLE: replace(G1, kv=with_entry(G1.kv, 50.0))}

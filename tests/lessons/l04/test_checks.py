@@ -77,6 +77,7 @@ SPOILERS = {
     "clipped_start": [
         trace("G1", start_control_force=put(K, 80.0)), copied("G2", "G1"), copied("G3", "G2"),
         trace("G2", control_force=np.abs), trace("G1", qd=put((6, K), 0.0)),
+        trace("G3", control_force=np.abs),
     ],
     "gravity_support": [
         reading(study.GROUP, "gravity_G2", 30.0),
@@ -106,6 +107,9 @@ SPOILERS = {
     "one_limit": [overshoot("G2_substeps_50", 0.0415)],
     "second_engine_order": [
         copied("MuJoCo_implicitfast_G2_substeps_2", "MuJoCo_implicitfast_G1_substeps_2")
+    ],
+    "order_at_finer_step": [
+        copied("G2_substeps_4", "G1_substeps_4"), copied("G3_substeps_20", "G2_substeps_20"),
     ],
     "grid_matches_cases": [
         trace(GRID_G2, q=put((60, K), 0.0)), metric(GRID_G2, saturation_samples=99),
