@@ -89,7 +89,8 @@ def explained(comparison: BundleComparison) -> list[str]:
     if comparison.state == DIFFERS and not found:
         found = [
             "Engine, backend, settings and code are equal. Another processor can change the last "
-            "digits; a larger difference comes from a changed cell of the notebook."
+            "digits; a larger difference comes from a changed cell of the notebook. The check "
+            "`functions` fails if the test of a function did not pass."
         ]
     without_notes = report.summary(replace(comparison, notes=()))  # they are about recordings
     return [*without_notes.splitlines(), CONCLUSIONS[comparison.state], *found]
