@@ -116,15 +116,14 @@ def _rest(runs: Runs) -> str:
 
 def data(runs: Runs, camera: "Camera") -> dict[str, str]:
     """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
-    thing = runs.replay.thing
     names = ("name", "unit", "digits", "top")
     channels = [{name: getattr(channel, name) for name in names} for channel in runs.channels]
     return {
         "subject": runs.subject,
         "channels": as_json(channels),
         "time-digits": str(time_digits(runs.first.dt)),
-        "thing": thing,
-        "alt": runs.replay.view or f"The {thing} in 3D at the sample that is shown.",
+        "thing": runs.replay.thing,
+        "alt": runs.replay.view or f"The {runs.replay.thing} in 3D at the sample that is shown.",
         "orbit": camera.orbit,
         "target": camera.target,
     }

@@ -57,12 +57,9 @@ class ReplayDirective(PageDirective):
         brief, blind = (option in self.options for option in self.option_spec)
         lesson_page, *chosen = self.arguments
         first_page = self.env.docname == self.env.config.root_doc
-        above = [
-            isinstance(node, question)
-            for node in self.state.document.findall(nodes.Element)
-            if isinstance(node, question) or "replay-block" in node["classes"]
-        ]
-        if blind and not first_page and not (above and above[-1]):
+        above = self.state.document.findall(nodes.Element)
+        stops = [n for n in above if isinstance(n, question) or "replay-block" in n["classes"]]
+        if blind and not first_page and not (stops and isinstance(stops[-1], question)):
             raise LookupError("`:blind:` needs a question above it, as `{choice}` or `{number}`.")
         key, folder = f"{lesson_page}/{BACKEND}", bundle_of(lesson_page)
         return [replay_block(self, key, folder, *chosen, brief=brief, blind=blind)]
@@ -134,8 +131,7 @@ def replay_block(
     if shown.moves:
         block += bullets(*map(marked, shown.moves.values()))
     block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
-    origin = origin_html(name, folder, env, replay.credit)
-    block += html(f"</details>{origin}")
+    block += html(f"</details>{origin_html(name, folder, env, replay.credit)}")
     return block
 
 
@@ -219,8 +215,7 @@ def origin_html(name: str, folder: Path, env: BuildEnvironment, credit: str | No
         credit: of the shape, None for shapes of the scene itself.
     """
     run, up = bundle.read_manifest(folder).predicate, replay_folder(env)
-    links = f'<a href="{up}/{NOTICE}">notice</a>, '
-    links += f'<a href="{up}/{VIEWER_LICENCE}">licence</a>'
+    links = f'<a href="{up}/{NOTICE}">notice</a>, <a href="{up}/{VIEWER_LICENCE}">licence</a>'
     shape = f"{credit} ({links})." if credit else f"shapes of the scene itself. Viewer: {links}."
     return (
         f'<p class="credit">Poses and samples: {run.backend.actual}, Genesis '
