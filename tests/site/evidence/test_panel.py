@@ -70,6 +70,7 @@ def test_what_a_run_says_reaches_no_parser(tmp_path, record, monkeypatch):
     )
     folder = record().folder
     edit(folder, "arrays.json", lambda a: a["coords"].update(link=[SCRIPT, "b", "c"]))
+    part("render", mode="camera", renderer=SCRIPT)(folder)
     write_shape(folder, tmp_path)
     trace = read_any_trace(folder, bundle.read_arrays(folder), "G1")
     turned = dataclasses.replace(trace, link_pos=trace.link_pos[:, [2, 1, 0]])
@@ -77,6 +78,7 @@ def test_what_a_run_says_reaches_no_parser(tmp_path, record, monkeypatch):
     monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: [])
     panel = Panel(tmp_path / "book").panel(accepted("l04/lab", folder, recorded=True))
     raw = [node.astext() for node in panel.findall(nodes.raw)]
+    assert f"camera frames by {SCRIPT}" in panel.astext()
     assert not [text for text in (*said, *raw) if SCRIPT in text]
 
 
