@@ -88,11 +88,20 @@ class Watched:
         self.name = getattr(function, "__name__", "the function")
 
     def __call__(self, *given: Any, **named: Any) -> Any:
-        """Call the function."""
+        """Call the function.
+
+        Raises:
+            ValueError: it changed an array that it was given.
+        """
+        before = [np.copy(value) for value in given if isinstance(value, np.ndarray)]
         words = [*map(brief, given), *(f"{name}={brief(value)}" for name, value in named.items())]
         self.call = f"{self.name}({', '.join(words)})"
         result = self.function(*given, **named)
         self.call += f" returned {brief(result)}"
+        after = [value for value in given if isinstance(value, np.ndarray)]
+        pairs = zip(before, after, strict=True)
+        if not all(np.array_equal(*pair, equal_nan=True) for pair in pairs):
+            raise ValueError(f"{self.name} changed an array that it was given. Use a copy.")
         return result
 
     def raised(self, error: Exception) -> str:

@@ -20,9 +20,6 @@ MEASURES = False
 TINY = 1e-9
 """Largest difference that rounding explains in float64."""
 
-SINGULAR = np.array([0.0, 0.0, 0.0, -0.07, 0.0, 1.6, 0.0])
-"""A nearly stretched arm: the smallest singular value of its Jacobian is about 0.01."""
-
 ROUNDED = 1e-6
 """Largest difference of a pixel coordinate [pixel] or of a point [m] that rounding explains."""
 
@@ -35,6 +32,7 @@ TURNED = cameras.looking((1.1, -0.7, 0.9), (0.46, -0.22, 0.3))
 CAMERAS = {
     "straight": (cameras.intrinsics(60.0, SIZE), np.eye(4)),
     "turned": (cameras.intrinsics(42.0, SIZE), TURNED),
+    "not_square": (cameras.intrinsics(42.0, SIZE) * [[1], [1.25], [1]], TURNED),
 }
 """Camera matrix and pose of each invented camera."""
 
@@ -81,7 +79,7 @@ def step(damped: Callable[..., Any]) -> Iterator[Finding]:
     """
     start = np.array(spec.BASELINE.q_start[:ARM])
     target = Pose(spec.TARGET, spec.DOWN)
-    for name, q in (("start", start), ("nearly_singular", SINGULAR)):
+    for name, q in (("start", start), ("nearly_singular", spec.NEARLY_STRETCHED)):
         of = kinematics.jacobian(q)
         error = kinematics.pose_error(target, kinematics.hand_pose(q))
         for damping in (0.01, 0.3):
@@ -95,12 +93,19 @@ def step(damped: Callable[..., Any]) -> Iterator[Finding]:
 
 @as_test
 def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
-    """Check `accept(q, error, position_tolerance, rotation_tolerance)` with invented answers."""
+    """Check `accept(q, error, clearance, position_tolerance, rotation_tolerance, least)`.
+
+    The answers are invented.
+    """
+    limits = (*spec.IK.tolerances, spec.IK.clearance)
     for name, ((joint, value), error, right) in ANSWERS.items():
         q = np.where(np.arange(9) == joint, value, 0.1)
-        found = accept(q, np.array(error, dtype=float), *spec.IK.tolerances)
+        found = accept(q, np.array(error, dtype=float), 0.1, *limits)
         yield equal(name, bool(found), right)
-    yield equal("looser_tolerances", bool(accept(np.zeros(9), np.full(6, 0.1), 0.2, 0.2)), True)
+    yield equal("looser", bool(accept(np.zeros(9), np.full(6, 0.1), 0.01, 0.2, 0.2, 0.01)), True)
+    for clearance, right in ((0.03, True), (0.029, False), (-0.04, False), (np.nan, False)):
+        found = accept(np.zeros(9), np.zeros(6), clearance, *limits)
+        yield equal(f"clearance_{clearance:g}", bool(found), right)
 
 
 @as_test
@@ -115,6 +120,9 @@ def project(function: Callable[..., Any]) -> Iterator[Finding]:
         points = seen @ pose[:3, :3].T + pose[:3, 3]
         expected = cameras.project(points, K, transform)
         yield from same_array(name, function(points, K, transform), expected, ROUNDED)
+        behind = (seen * (1, 1, -1)) @ pose[:3, :3].T + pose[:3, 3]
+        missing = np.isnan(np.asarray(function(behind, K, transform), dtype=float))
+        yield equal(f"{name}.not_a_number_behind_the_camera", int(missing.all(axis=1).sum()), 5)
 
 
 @as_test
@@ -130,5 +138,5 @@ def back_project(function: Callable[..., Any]) -> Iterator[Finding]:
     for name, camera in CAMERAS.items():
         for kind, depth in depths.items():
             expected = cameras.back_project(depth, *camera)
-            found = function(depth.copy(), *camera)
+            found = function(depth, *camera)
             yield from same_array(f"{name}.{kind}", found, expected, ROUNDED)

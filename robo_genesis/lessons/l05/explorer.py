@@ -7,7 +7,7 @@ import numpy as np
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.text import QUANTITIES, records
+from robo_genesis.lessons.l05.text import QUANTITIES, TIP, records
 from robo_genesis.sim.camera.geometry import other_axes
 from robo_genesis.sim.camera.record import DEPTH_UNIT, SEGMENTS, view_of
 
@@ -17,12 +17,10 @@ COLUMNS = 9
 """Most cells in a row of a map."""
 
 PLACES = {
-    "vertical": ("Plane y = 0. x [m] to the right, z [m] upwards.", ("z", "x"), spec.GRID_Z),
-    "horizontal": (
-        f"Plane z = {spec.HEIGHT:g} m. x [m] to the right, y [m] upwards.", ("y", "x"), spec.GRID_Y,
-    ),
-}  # fmt: skip
-"""Caption, axes and values from the bottom of the maps of targets."""
+    "vertical": ("Plane y = 0", ("z", "x"), spec.GRID_Z),
+    "horizontal": (f"Plane z = {spec.HEIGHT:g} m", ("y", "x"), spec.GRID_Y),
+}
+"""Label, axes and values from the bottom of the maps of targets."""
 
 PICTURES = {
     spec.VIEWED: {
@@ -63,14 +61,13 @@ def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
             ]
         shown = {cell["answer"] for row in one["rows"] for cell in row["cells"]}
         tables[one["caption"]] = [row for row in found.values() if int(row["answer"]) in shown]
-        one["label"] = one["caption"].split(".")[0]
     rows = next(iter(tables.values()))
     return {
         "choices": ("Map", "Cells show"),
         "maps": maps,
         "measures": [{"label": name} for name in QUANTITIES],
         "columns": [*rows[0]][1:],
-        "notes": {"×": "×: refused."},
+        "notes": {"×": "×: refused.", "↓": "↓: accepted by its residual, fingertips in the floor."},
         "dt": DT,
         "postures": {one["run"]: spec.QUESTIONS[one["run"]].positions for one in maps},
         "tables": tables,
@@ -80,11 +77,11 @@ def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
 def _cell(record: dict[str, str], place: str) -> dict[str, Any]:
     """Return an answer as a cell of a map, whose numbers have at most four characters."""
     state = "accepted" if record["accepted"] == "yes" else "refused"
-    numbers = [float(record[name]) for name in QUANTITIES]
+    numbers = [float(record[name].replace("−", "-")) for name in QUANTITIES]
     return {
         "answer": int(record["answer"]),
         "name": f"{place}, {state}",
-        "tag": "×" * (state == "refused"),
+        "tag": "×" if state == "refused" else "↓" * (record[TIP].startswith("−")),
         "state": state,
         "opens": state == "accepted",
         "sentence": f"Answer {record['answer']}, {state}.",
@@ -96,19 +93,23 @@ def _cell(record: dict[str, str], place: str) -> dict[str, Any]:
 
 def short(value: float) -> str:
     """Return a number in at most four characters: a cell on a phone has no room for more."""
-    if value >= 10:
-        return f"{value:.0f}"
+    if abs(value) >= 10:
+        return f"{value:.0f}".replace("-", "−")
     text = f"{value:.{3 if value < 1 else 2}f}".rstrip("0").rstrip(".")
     return text.removeprefix("0") or "0"
 
 
 def plane_map(name: str) -> dict[str, Any]:
-    """Return run, caption, axes, labels of columns, and rows of answers of a map of targets."""
-    (caption, axes, upwards), columns = PLACES[name], spec.GRID_X
+    """Return run, label, caption, axes, labels of columns, and rows of a map of targets."""
+    (label, axes, upwards), columns = PLACES[name], spec.GRID_X
+    caption = f"{label}. x [m] to the right, {axes[0]} [m] upwards."
     numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
     rows = [{"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)]
     labels = [f"{x:g}" for x in columns]
-    return {"run": name, "caption": caption, "axes": axes, "rows": rows[::-1], "columns": labels}
+    return {
+        "run": name, "label": label, "caption": caption, "axes": axes, "rows": rows[::-1],
+        "columns": labels,
+    }  # fmt: skip
 
 
 def solution_map(run: Experiment) -> dict[str, Any]:
@@ -120,6 +121,7 @@ def solution_map(run: Experiment) -> dict[str, Any]:
     ]
     return {
         "run": "many_starts",
+        "label": "One target has many answers",
         "caption": "One target has many answers. Each row belongs to one curve; joint1 grows from "
         "left to right.",
         "axes": ("curve", "place"),

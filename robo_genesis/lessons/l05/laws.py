@@ -9,7 +9,7 @@ from robo_genesis.core.checks import Finding
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.run import SolveCase
+from robo_genesis.lessons.l05.run import SolveCase, command_path
 from robo_genesis.sim.arm.kinematics import measured_hand
 from robo_genesis.sim.arm.laws import assigned_postures, driven_run, model_joints
 from robo_genesis.sim.laws import ZERO, apart, kept
@@ -26,7 +26,8 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
             assigned = assigned_postures(trace, case.start, run.links, run.traces.values())
             yield from kept(name, chain(assigned, own_targets(trace, case)))
         else:
-            driven = driven_run(trace, case.commanding(trace.target[0]), run.links)
+            command = command_path(case, trace.target[-1])
+            driven = driven_run(trace, case.commanding(command), run.links)
             yield from kept(name, driven)
 
 

@@ -11,7 +11,13 @@ import numpy as np
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05.run import ReachCase
-from robo_genesis.sim.arm.kinematics import Pose, distance_and_angle, hand_pose, measured_hand
+from robo_genesis.sim.arm.kinematics import (
+    Pose,
+    distance_and_angle,
+    fingertip,
+    hand_pose,
+    measured_hand,
+)
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 
@@ -25,23 +31,34 @@ class ReachMetrics(CaseMetrics):
     command_angle: float = metric("rad", "command to target, angle", *COMMANDED)
     tracking_distance: float = metric("m", "end to command", *MEASURED, *COMMANDED)
     tracking_angle: float = metric("rad", "end to command, angle", *MEASURED, *COMMANDED)
+    tip_tracking_distance: float = metric("m", "end to command, fingertip", *MEASURED, *COMMANDED)
     final_distance: float = metric("m", "end to target", *MEASURED)
     final_angle: float = metric("rad", "end to target, angle", *MEASURED)
+    overshoot: float = metric("m", "past the target on the way", *MEASURED)
     final_speed: float = metric("rad/s", "speed of the fastest joint at the end", "qd_rad_s_or_m_s")
 
 
 def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
-    """Measure a run of a case, which commands constant joint positions, with all links.
+    """Measure a run of a case with all links; its command is constant, at last after the ramp.
+
+    The overshoot is the largest distance beyond the target along the line from the start to it.
 
     Raises:
         IndexError: the trace lacks the hand.
         ValueError: the command changes.
     """
-    if (trace.target != trace.target[0]).any():
-        raise ValueError("The command changes during the run. Measure a run with a constant one.")
+    if (trace.target[case.ramp :] != trace.target[-1]).any():
+        raise ValueError(
+            f"The command changes after step {case.ramp}. Measure a run that ends with a constant "
+            "command."
+        )
     target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
     end, found = measured_hand(trace, -1), {"final_speed": float(np.abs(trace.qd[-1]).max())}
-    found["start_distance"], _ = distance_and_angle(target, measured_hand(trace, 0))
+    path = measured_hand(trace, slice(None)).position - case.position
+    found["start_distance"] = float(np.linalg.norm(path[0]))
+    found["overshoot"] = max(0.0, float((path @ -path[0]).max()) / found["start_distance"])
+    tips = fingertip(command) - fingertip(end)
+    found["tip_tracking_distance"] = float(np.linalg.norm(tips))
     pairs = {"command": (target, command), "tracking": (command, end), "final": (target, end)}
     for name, pair in pairs.items():
         found[f"{name}_distance"], found[f"{name}_angle"] = distance_and_angle(*pair)

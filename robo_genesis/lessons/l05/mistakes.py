@@ -11,7 +11,8 @@ import numpy as np
 
 from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l05.run import ReachCase, ask, control_case
+from robo_genesis.lessons.l05.metrics import reach_metrics
+from robo_genesis.lessons.l05.run import ReachCase, ask, command_path, control_case
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR, IkAnswer, link_poses_at
 from robo_genesis.sim.arm.joint_control import reset, run_case, validate
@@ -70,6 +71,30 @@ def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase)
     )
     curves = {"hand to target": (trace.t, apart)}
     return Mistake("unaccepted_answer", shown, text, curves, "distance [m]")
+
+
+def in_the_floor(
+    scene: Any, robot: Any, joints: JointMap, cases: Mapping[str, ReachCase]
+) -> Mistake:
+    """Command answers within both tolerances, whatever the height of their fingertips.
+
+    The symptom is that the first two hands end far from their targets, and the last one does not.
+    """
+    text, left = "", []
+    for name, case in cases.items():
+        answer = ask(robot, joints, case)
+        path = command_path(case, answer.q.astype(float))
+        trace = run_case(scene, robot, joints, case.commanding(path))  # the mistake: no clearance
+        m, tip = reach_metrics(trace, case), kinematics.fingertip(kinematics.hand_pose(answer.q))[2]
+        force = np.linalg.norm(to_numpy(robot.get_contacts()["force_a"]).sum(axis=0))
+        text += (
+            f"{name}: the residual is {1000 * m.command_distance:.3f} mm, and the answer has the "
+            f"fingertips at a height of {1000 * tip:.0f} mm. The hand ends "
+            f"{1000 * m.final_distance:.0f} mm from its target, where contacts push with "
+            f"{force:.0f} N. "
+        )
+        left.append(m.final_distance)
+    return Mistake("in_the_floor", bool(min(left[:2]) > 0.04 and left[2] < 0.01), text.strip())
 
 
 def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Mistake:

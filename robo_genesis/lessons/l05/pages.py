@@ -8,9 +8,16 @@ import numpy as np
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
+from robo_genesis.core.experiment import (
+    MeasuringPage,
+    Readings,
+    Run,
+    case_inputs,
+    counts,
+    runs_of,
+)
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05 import checks, restarts, spec, study
+from robo_genesis.lessons.l05 import checks, spec, study
 from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record as view_record
@@ -50,13 +57,20 @@ LAB = with_functions(LECTURE, "chain", "damped", "accept", "project", "back_proj
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
 ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
 SOLUTIONS = MOTION.with_more(
-    lambda: {"questions": case_inputs(spec.QUESTIONS)}, ANSWERS, restarts.READINGS, checks.SOLUTIONS
+    lambda: {"questions": case_inputs(spec.QUESTIONS)}, ANSWERS, checks=checks.SOLUTIONS
 )
 """The page about many solutions, the map of targets and the target beyond reach."""
 
+BASELINE = replace(MOTION, runs=runs_of({"baseline": spec.BASELINE}))
+JACOBIAN = replace(
+    BASELINE,
+    readings=MODEL | {study.JACOBIANS: Readings(dict.fromkeys(study.POSTURES, "m"))},
+    checks=checks.JACOBIAN,
+)
+"""The page that computes Jacobians by hand."""
+
 CAMERAS = replace(
-    MOTION,
-    runs=runs_of({"baseline": spec.BASELINE}),
+    BASELINE,
     readings=MODEL | SEEN | view_record.groups(*spec.VIEWS),
     checks=checks.CAMERAS,
     parameters=spec.view_parameters,
@@ -72,12 +86,13 @@ LESSON = Lesson(
         "lab": LAB,
         "lecture": LECTURE,
         "mistakes": replace(MOTION, camera=True, frames=()),
+        "jacobian": JACOBIAN,
         "solutions": SOLUTIONS,
         "cameras": CAMERAS,
     },
     replays={
         "reach": Replay(
-            tuple(spec.CASES),
+            tuple(spec.CASES)[:3],
             follows="joint4",
             thing="robot",
             goal=lambda case, state: spec.TARGET,

@@ -11,7 +11,7 @@ from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.text import CRITERIA, chosen
 from robo_genesis.sim.arm.franka import LINK_PARENTS
-from robo_genesis.sim.arm.kinematics import ARM, HAND, link_poses
+from robo_genesis.sim.arm.kinematics import ARM, HAND
 from robo_genesis.sim.camera import geometry as cameras
 from robo_genesis.sim.camera.record import view_of
 
@@ -61,24 +61,6 @@ def picture(run: Experiment) -> Figure:
     ax.set(xlabel="u [pixel]", ylabel="v [pixel]")
     ax.grid(visible=False)
     plotting.legend_above(ax, "The marker in the picture")
-    return figure
-
-
-def beyond_reach(run: Experiment) -> Figure:
-    """Draw the links from the side in two postures for the target beyond reach."""
-    figure, ax = plotting.axes(4.4)
-    engine, nearest = run.traces["unreachable"].link_pos[1], link_poses(study.nearest()[0]).position
-    for label, mark, style, at, offset, side in (
-        ("engine's answer", "first", "o-", engine[: HAND + 1], (0, 20), "center"),
-        ("nearest that we found", "second", "o-", nearest, (10, -4), "left"),
-        ("target", "target", "+", spec.BEYOND_REACH[None], (-10, -4), "right"),
-    ):
-        ink = {"color": plotting.look(mark)["color"]}
-        x, z = at[:, 0], at[:, 2]
-        ax.plot(x, z, style, **ink)
-        ax.annotate(label, (x[-1], z[-1]), offset, textcoords="offset points", ha=side, **ink)
-    ax.set(xlabel="x [m]", ylabel="z [m]", aspect="equal")
-    ax.set_title("Two postures for a target beyond reach", loc="left")
     return figure
 
 

@@ -20,13 +20,15 @@ class ReachCase(Controlled):
     """A target of the hand, and the controlled arm that is to reach it.
 
     `position` (3,) [m] and `quat` (4,) are in the world. With `compensated`, each arm joint's
-    command is gravity / KP beyond the answer.
+    command is gravity / KP beyond the answer. The command moves on a straight line of joint
+    positions during the first `ramp` steps; 0 commands its end at once.
     """
 
     position: FloatArray
     quat: FloatArray
     settings: IkSettings
     compensated: bool = False
+    ramp: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,12 +65,21 @@ def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
     """Return the control case that commands an answer.
 
     Raises:
-        NotAccepted: the answer is not finite, or a residual is beyond its tolerance.
+        NotAccepted: the answer is not finite, a residual is beyond its tolerance, or the fingertips
+            would be too low.
     """
     q_target = accepted_command(answer, case.settings, case.q_start)
     if case.compensated:
         q_target[:ARM] += (mujoco_kinematics.gravity_effort(q_target) / case.kp)[:ARM]
-    return case.commanding(q_target)
+    return case.commanding(command_path(case, q_target))
+
+
+def command_path(case: ReachCase, q_target: FloatArray) -> FloatArray:
+    """Return the command that ends at joint positions (d,): them, or one row for each step."""
+    if not case.ramp:
+        return q_target
+    way = np.linspace(case.q_start, q_target, case.ramp + 1)[1:]
+    return np.vstack([way, np.tile(q_target, (case.steps - case.ramp, 1))])
 
 
 def reach(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Trace:

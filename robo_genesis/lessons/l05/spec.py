@@ -40,11 +40,14 @@ CASES = {
     "baseline": BASELINE,
     "kp_doubled": replace(BASELINE, kp=2 * franka.KP_BASELINE),
     "gravity_compensated": replace(BASELINE, compensated=True),
+    "kp_doubled_ramp": replace(BASELINE, kp=2 * franka.KP_BASELINE, ramp=100),
 }
-CASE_MARKS = {"baseline": "baseline", "kp_doubled": "first", "gravity_compensated": "second"}
+CASE_MARKS = dict(zip(CASES, ("baseline", "first", "second", "third"), strict=True))
 """The mark of each case in the palette."""
 
-LABELS = {name: name.replace("kp", "KP").replace("_", " ") for name in CASES}
+LABELS = {
+    name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ") for name in CASES
+}
 """Words of a reader for runs."""
 
 VIEWED = "world"
@@ -80,6 +83,8 @@ SEGMENTS = ("plane", "hand", "marker")
 RELATIONS = (
     (("baseline", "kp_doubled"), "final_distance", "lower", 1e-3),
     (("baseline", "gravity_compensated"), "final_distance", "lower", 1e-3),
+    (("baseline", "kp_doubled"), "overshoot", "higher", 1e-3),
+    (("kp_doubled", "kp_doubled_ramp"), "overshoot", "lower", 1e-3),
 )
 """How the second case of a pair compares with the first [m]; not fitted to a run."""
 
@@ -108,14 +113,39 @@ RANDOM_STARTS = np.hstack([
 ])  # fmt: skip
 """Starts (100, 9) of the solver, uniform within the limits [rad or m]."""
 
-RESTARTED = replace(BASELINE, q_start=RANDOM_STARTS[0])
-"""The lesson's target from a start from which the solver finds no answer without random starts."""
+NEARLY_STRETCHED = read_only((0.0, 0.0, 0.0, -0.07, 0.0, 1.6, 0.0))
+"""Joint positions (7,) of an arm whose Jacobian has a small singular value [rad]."""
+
+IN_THE_FLOOR = replace(BASELINE, position=read_only((0.5, 0.0, 0.05)))
+"""A target that the solver reaches with the fingertips below the floor."""
+
+ABOVE_IT = replace(BASELINE, position=read_only((0.5, 0.0, 0.1223)))
+LOW = {
+    "In the floor": IN_THE_FLOOR,
+    "One centimetre above it": ABOVE_IT,
+    "The same with a ramp": replace(ABOVE_IT, ramp=100),
+}
+"""Targets with less clearance than the rule asks for."""
+
+PRECISE = {
+    f"at_{name}": replace(BASELINE, settings=replace(ONE_START, position_tolerance=most))
+    for name, most in (("500_um", 5e-4), ("50_um", 5e-5), ("5_um", 5e-6), ("500_nm", 5e-7))
+}
+"""The lesson's question with smaller tolerances of the position."""
 
 MANY_STARTS = SolveCase(np.tile(TARGET, (RESTARTS, 1)), DOWN, RANDOM_STARTS, ONE_START)
 
-UNREACHABLE = SolveCase(BEYOND_REACH[None], DOWN, franka.Q_START[None], IK)
+DRAWS = 20
+UNREACHABLE = SolveCase(
+    np.tile(BEYOND_REACH, (DRAWS, 1)), DOWN, np.vstack([franka.Q_START, RANDOM_STARTS[1:DRAWS]]), IK
+)
+"""The target beyond reach from the lesson's start, then from 19 random ones."""
 
-QUESTIONS = REACH_MAP | {"many_starts": MANY_STARTS, "unreachable": UNREACHABLE}
+QUESTIONS = REACH_MAP | {
+    "vertical_restarted": replace(REACH_MAP["vertical"], settings=IK),
+    "many_starts": MANY_STARTS,
+    "unreachable": UNREACHABLE,
+}
 """Questions to the solver beyond those of the lab."""
 
 SAG_SHARE = 0.02

@@ -1,5 +1,6 @@
-"""What L05 computes from its runs and answers: sag, self-motion, families of solutions, nearest."""
+"""What L05 computes from its runs and answers: sag, Jacobians, families of solutions, nearest."""
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -9,39 +10,92 @@ from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.run import SolveCase, ask
+from robo_genesis.lessons.l05.run import ReachCase, SolveCase, ask
 from robo_genesis.sim.arm import engine_kinematics as engine
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.joint_control import reset
-from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.kinematics import ARM, Pose, measured_hand
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
-GROUP, REPEAT_GROUP = "ik", "ik_repeated"
-"""Groups of a bundle's metrics: what the engine's solver reported, and counts of two answers."""
+GROUP, REPEAT_GROUP, PRECISE, ITERATIONS = "ik", "ik_repeated", "ik_residuals", "iterations"
+"""Groups of a bundle's metrics: what the engine's solver reported, also for smaller tolerances."""
 
 READINGS = {
-    GROUP: Readings({"residual_m": "m", "residual_rad": "rad", "jacobian_difference": "m"}),
+    GROUP: Readings({
+        "residual_m": "m", "residual_rad": "rad",
+        "low_residual_m": "m", "low_residual_rad": "rad", "low_tip_m": "m",
+    }),
+    PRECISE: Readings(dict.fromkeys(spec.PRECISE, "m")),
+    ITERATIONS: counts(spec.PRECISE),
     REPEAT_GROUP: counts(["entries_that_differ"]),
-}
-"""Residuals of an answer, difference of two engines' Jacobians, and of two equal questions."""
+}  # fmt: skip
+"""Residuals of the answers for the target and for one in the floor, with the height of the
+fingertips there; the residual for each tolerance, and the iterations to it; and the entries in
+which two answers to one question differ."""
 
 
 def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
-    """Give a page what the solver reports of the baseline's question, asked twice from the start.
-
-    This resets the scene. The engine's Jacobian is compared with MuJoCo's at the start.
-    """
-    reset(scene, robot, joints, spec.UNREACHABLE.start)
-    first, second = (ask(robot, joints, spec.BASELINE) for _ in range(2))
-    apart, angle = kinematics.distances(first.error)
-    q = to_numpy(robot.get_dofs_position(joints.dofs_idx_local.tolist())).astype(np.float64)
-    rows = engine.jacobian(robot, joints)
-    differences = np.abs(rows - mujoco_kinematics.jacobian(q))
-    values = map(float, (apart, angle, differences.max()))
-    page.readings[GROUP] = dict(zip(READINGS[GROUP].units, values, strict=True))
+    """Give a page what the solver reports of the lesson's questions; this resets the scene."""
+    reset(scene, robot, joints, spec.BASELINE.commanding(spec.BASELINE.q_start))
+    first, second, low = (
+        ask(robot, joints, case) for case in (spec.BASELINE, spec.BASELINE, spec.IN_THE_FLOOR)
+    )
+    tip = spec.IN_THE_FLOOR.position[2] - low.error[2] - kinematics.TIP
+    values = (*kinematics.distances(first.error), *kinematics.distances(low.error), tip)
+    page.readings[GROUP] = dict(zip(READINGS[GROUP].units, map(float, values), strict=True))
+    needed = {name: iterations(robot, joints, case) for name, case in spec.PRECISE.items()}
+    page.readings[PRECISE] = {name: left for name, (_, left) in needed.items()}
+    page.readings[ITERATIONS] = {name: n for name, (n, _) in needed.items()}
     differ = (first.q != second.q).sum() + (first.error != second.error).sum()
     page.readings[REPEAT_GROUP] = {"entries_that_differ": int(differ)}
+
+
+def iterations(robot: Any, joints: JointMap, case: ReachCase) -> tuple[int, float]:
+    """Return the fewest iterations after which an answer is accepted, and its residual [m].
+
+    Without such an answer the number is that of the settings, and the residual is too large.
+    """
+    for n in range(1, case.settings.iterations + 1):
+        fewer = replace(case, settings=replace(case.settings, iterations=n))
+        answer = ask(robot, joints, fewer)
+        if kinematics.accepted(answer.q, answer.error, *case.settings.tolerances):
+            break
+    return n, float(kinematics.distances(answer.error)[0])
+
+
+JACOBIANS, POSTURES = "jacobians", ("start", "answer", "nearly_stretched")
+STEP = 1e-4  # Angle of the central differences [rad]
+
+
+def jacobian_postures(run: Trace) -> dict[str, FloatArray]:
+    """Return the joint positions (9,) in which Jacobians are compared [rad or m]."""
+    stretched = np.append(spec.NEARLY_STRETCHED, spec.BASELINE.q_start[ARM:])
+    return dict(zip(POSTURES, (run.q[0], run.target[-1], stretched), strict=True))
+
+
+def read_jacobians(page: Any, robot: Any, joints: JointMap) -> None:
+    """Give a page the largest differences of the engine's Jacobian and ours; it assigns states."""
+    found = {}
+    for name, q in jacobian_postures(page.traces["baseline"]).items():
+        robot.set_dofs_position(q, joints.dofs_idx_local.tolist(), zero_velocity=True)
+        rows = engine.jacobian(robot, joints)[:, :ARM]
+        found[name] = float(np.abs(rows - kinematics.jacobian(q)).max())
+    page.readings[JACOBIANS] = found
+
+
+def other_jacobians(q: FloatArray) -> tuple[float, float]:
+    """Return how far MuJoCo's Jacobian and central differences are from ours, their largest entry.
+
+    Args:
+        q: (9,) joint positions [rad or m].
+    """
+    ours = kinematics.jacobian(q)
+    ahead, behind = (kinematics.hand_pose(q[:ARM] + s * STEP * np.eye(ARM)) for s in (1, -1))
+    quotients = kinematics.pose_error(ahead, behind).T / (2 * STEP)
+    others = mujoco_kinematics.jacobian(q)[:, :ARM], quotients
+    mujoco, differences = (float(np.abs(of - ours).max()) for of in others)
+    return mujoco, differences
 
 
 def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
@@ -74,7 +128,8 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     """Return what is known of each answer, from the measured poses of the hand.
 
     Returns:
-        Arrays (m,): `position` [m] and `rotation` [rad] residual, `accepted`, `manipulability`,
+        Arrays (m,): `position` [m] and `rotation` [rad] residual, `accepted` by them, `tip`, the
+        height of the fingertips [m], `manipulability`,
         `margin` of the joint that is nearest to a limit [rad], and `from_start`, the largest angle
         between answer and start of the run [rad].
     """
@@ -83,7 +138,8 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     q = trace.q[1:].astype(np.float64)
     apart, angle = kinematics.distances(error)
     accepted = kinematics.accepted(q, error, *case.settings.tolerances)
-    found = {"position": apart, "rotation": angle, "accepted": accepted}
+    tip = kinematics.fingertip(measured)[:, 2]
+    found = {"position": apart, "rotation": angle, "accepted": accepted, "tip": tip}
     return found | qualities(q[:, :ARM], trace.q[0, :ARM])
 
 
@@ -169,19 +225,6 @@ SAME_CURVE = 0.1
 """A solution within this distance of a curve belongs to it [rad]."""
 
 
-def clusters(solutions: FloatArray, threshold: float) -> int:
-    """Return how many groups of postures (n, 7) are farther apart than a threshold [rad].
-
-    Two postures are in one group if a chain of others connects them whose largest joint difference
-    from one to the next is within the threshold.
-    """
-    near = np.abs(solutions[:, None] - solutions).max(axis=-1) <= threshold
-    groups = np.arange(len(solutions))
-    for _ in solutions:
-        groups = np.where(near, groups, len(groups)).min(axis=1)
-    return len(np.unique(groups))
-
-
 def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:
     """Return the curve (m, 7) of each family of answers for the target [rad], the largest first.
 
@@ -205,15 +248,22 @@ def weighted(apart: FloatArray, angle: FloatArray) -> FloatArray:
 def nearest() -> tuple[FloatArray, FloatArray]:
     """Return posture (7,) [rad] and pose error (6,) nearest to the target beyond reach.
 
-    The nearest has the smallest `weighted` distance of all that damped least squares reaches from
-    the random starts.
+    The nearest has the smallest `weighted` distance that SciPy's bounded least squares reaches from
+    eight of the random starts.
     """
-    weights = np.repeat([1.0, spec.ANGLE_WEIGHT], 3)
+    from scipy.optimize import least_squares
+
     target = Pose(spec.BEYOND_REACH, spec.DOWN)
-    q = kinematics.solve(
-        target, spec.RANDOM_STARTS[:, :ARM], *spec.ARM_LIMITS,
-        iterations=400, damping=0.1, largest=0.2, weights=weights,
-    )  # fmt: skip
-    error = kinematics.pose_error(target, kinematics.hand_pose(q))
-    best = int(weighted(*kinematics.distances(error)).argmin())
-    return q[best], error[best]
+
+    def error(q: FloatArray) -> FloatArray:
+        return kinematics.pose_error(target, kinematics.hand_pose(q))
+
+    def left(q: FloatArray) -> FloatArray:
+        return error(q) * np.repeat([1.0, spec.ANGLE_WEIGHT], 3)
+
+    searches = (
+        least_squares(left, start, bounds=spec.ARM_LIMITS, ftol=1e-6)
+        for start in spec.RANDOM_STARTS[:8, :ARM]
+    )
+    best = min(searches, key=lambda search: search.cost).x
+    return best, error(best)

@@ -29,9 +29,6 @@ SHOWN = 3
 AT_LIMIT = 0.99
 """Share of the force limit from which a sample is counted as at the limit."""
 
-THRESHOLDS = (0.05, 0.1, 0.3, 0.5, 1.0)
-"""Largest joint differences within which two answers count as one [rad]."""
-
 CRITERIA = {
     "nearest to the present posture": ("from_start", min),
     "farthest from the limits": ("margin", max),
@@ -39,12 +36,15 @@ CRITERIA = {
 }
 """What chooses one of several answers: a key of `study.answers`, and which value is best."""
 
+TIP = "fingertips above the floor [mm]"
+
 QUANTITIES = {
     "manipulability": ("manipulability", 1, 3),
     "distance from limits [rad]": ("margin", 1, 3),
     "largest angle from the present posture [rad]": ("from_start", 1, 3),
     "distance left [mm]": ("position", 1000, 4),
     "angle left [mrad]": ("rotation", 1000, 4),
+    TIP: ("tip", 1000, 3),
 }
 """Columns of `records`: key of `study.answers`, factor and significant digits."""
 
@@ -63,21 +63,64 @@ def error_table(run: Experiment) -> str:
 
 
 def sag_table(run: Experiment) -> str:
-    """Return the measured sag, from command to end, beside the one that gravity explains.
+    """Return the measured sag and rotation, from command to end, beside those by gravity.
 
-    The page that shows it explains the heads. The last column counts samples at which a joint of
-    the arm is at its force limit.
+    The page that shows it explains the heads.
     """
-    heads = {"sag [mm]": 2, "computed [mm]": 2, "not explained [%]": 1}
-    heads |= {"to target [mm]": 2, "at limit": 0}
+    heads = {"sag [mm]": 2, "computed [mm]": 2, "rotation [mrad]": 2, "computed [mrad]": 2}
+    heads |= {"not explained [%]": 1, "to target [mm]": 2}
     rows = {}
     for name, case in spec.CASES.items():
-        trace, left = run.traces[name], run.metrics[name].final_distance
+        trace, m = run.traces[name], run.metrics[name]
         found, expected, rest = study.sag_lengths(trace, case.kp)
+        turned = np.linalg.norm(study.sag(trace.target[-1].astype(float), case.kp)[3:])
+        values = 1000 * np.array([found, expected, m.tracking_angle, turned])
+        rows[spec.LABELS[name]] = *values, 100 * rest, 1000 * m.final_distance
+    return tables.number_table("run", heads, rows)
+
+
+def price_table(run: Experiment) -> str:
+    """Return how far each run passes the target, and in how many samples it is at a force limit."""
+    heads = {"past the target [mm]": 1, "at limit": 0, "to target at the end [mm]": 2}
+    rows = {}
+    for name in spec.CASES:
+        trace, m = run.traces[name], run.metrics[name]
         at_limit = np.abs(trace.control_force) >= AT_LIMIT * trace.effort_limit
         samples = at_limit[:, : kinematics.ARM].any(axis=1).sum()
-        rows[spec.LABELS[name]] = 1000 * found, 1000 * expected, 100 * rest, 1000 * left, samples
+        rows[spec.LABELS[name]] = 1000 * m.overshoot, samples, 1000 * m.final_distance
     return tables.number_table("run", heads, rows)
+
+
+def tolerance_table(run: Experiment) -> str:
+    """Return the iterations and the residual of the solver for each tolerance."""
+    needed, left = run.readings[study.ITERATIONS], run.readings[study.PRECISE]
+    rows = {
+        f"{1e6 * case.settings.position_tolerance:g} µm": (needed[name], 1e6 * left[name])
+        for name, case in spec.PRECISE.items()
+    }
+    return tables.number_table("tolerance", {"iterations": 0, "residual [µm]": 2}, rows)
+
+
+def jacobian_table(run: Experiment) -> str:
+    """Return the largest difference of other Jacobians from ours in each posture, in millionths."""
+    postures = study.jacobian_postures(run.traces["baseline"]).items()
+    rows = {
+        name.replace("_", " "): 1e6
+        * np.array([run.readings[study.JACOBIANS][name], *study.other_jacobians(q)])
+        for name, q in postures
+    }
+    heads = dict.fromkeys(("engine [10⁻⁶]", "MuJoCo [10⁻⁶]", "difference quotients [10⁻⁶]"), 3)
+    return tables.number_table("posture", heads, rows)
+
+
+def singular_table(run: Experiment) -> str:
+    """Return the singular values of the Jacobian and their product in each posture."""
+    rows = {}
+    for name, q in study.jacobian_postures(run.traces["baseline"]).items():
+        values = np.linalg.svd(kinematics.jacobian(q), compute_uv=False)
+        rows[name.replace("_", " ")] = *values, values.prod()
+    heads = {f"s{k}": 3 for k in range(1, 7)} | {"product": 4}
+    return tables.number_table("posture", heads, rows)
 
 
 def joint_table(run: Experiment) -> str:
@@ -179,10 +222,9 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
             "joint1 [rad]": decimal(q[k, 0], 3),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
-        shown = {
-            label: (max(by * found[key][k], 0), n) for label, (key, by, n) in QUANTITIES.items()
-        }
-        rows.append(row | {label: f"{round(x, 6):.{n}g}" for label, (x, n) in shown.items()})
+        shown = {label: (by * found[key][k], n) for label, (key, by, n) in QUANTITIES.items()}
+        written = {label: f"{round(x, 6) + 0.0:.{n}g}" for label, (x, n) in shown.items()}
+        rows.append(row | {label: text.replace("-", "−") for label, text in written.items()})
     return rows
 
 
@@ -191,13 +233,6 @@ def chosen(run: Experiment) -> dict[str, int]:
     found = study.many_answers(run)
     numbers = np.flatnonzero(found["accepted"]).tolist()
     return {n: best(numbers, key=found[key].__getitem__) for n, (key, best) in CRITERIA.items()}
-
-
-def count_table(run: Experiment) -> str:
-    """Return how many answers are distinct for several thresholds."""
-    q = run.traces["many_starts"].q[1:, : kinematics.ARM][study.many_answers(run)["accepted"]]
-    rows = [{"threshold [rad]": t, "distinct answers": study.clusters(q, t)} for t in THRESHOLDS]
-    return tables.markdown(rows)
 
 
 @tables.as_table
@@ -222,12 +257,17 @@ def choice_table(run: Experiment) -> str:
 
 
 def unreachable_table(run: Experiment) -> str:
-    """Compare the engine's answer for the target beyond reach with the nearest posture found."""
+    """Compare the engine's answers for the target beyond reach with the nearest posture found."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
-    pairs = {
-        "engine's answer": (found["position"][0], found["rotation"][0]),
-        "nearest that we found": kinematics.distances(study.nearest()[1]),
+    order = study.weighted(found["position"], found["rotation"]).argsort()
+    words = {
+        "from the lesson's start": 0,
+        f"nearest of {spec.DRAWS}": order[0],
+        f"median of {spec.DRAWS}": order[spec.DRAWS // 2],
+        f"farthest of {spec.DRAWS}": order[-1],
     }
+    pairs = {f"engine, {n}": (found["position"][k], found["rotation"][k]) for n, k in words.items()}
+    pairs["nearest that we found"] = kinematics.distances(study.nearest()[1])
     heads = dict.fromkeys(("distance [m]", "angle [rad]", "weighted distance [m]"), 3)
     rows = {name: (*pair, study.weighted(*pair)) for name, pair in pairs.items()}
     return tables.number_table("posture", heads, rows)
@@ -236,10 +276,11 @@ def unreachable_table(run: Experiment) -> str:
 @tables.as_table
 def reach_table(run: Experiment) -> Iterator[dict[str, Any]]:
     """Return how many targets of each plane are accepted, and what their answers span."""
-    for name in spec.PLANES:
+    for name in (*spec.PLANES, "vertical_restarted"):
         found = study.answers(run.traces[name], spec.QUESTIONS[name])
         yes = found["accepted"].astype(bool)
-        row = {"plane": name, "targets": len(yes), "accepted": int(yes.sum())}
+        row = {"plane": name.replace("_", ", "), "targets": len(yes), "accepted": int(yes.sum())}
+        row |= {"of them in the floor": int((yes & (found["tip"] < 0)).sum())}
         row |= {head: span(found[QUANTITIES[head][0]][yes], 3) for head in [*QUANTITIES][:2]}
         left = span(1000 * found["position"][~yes], 1)
         yield row | {"distance left where refused [mm]": left}

@@ -9,7 +9,7 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
-from robo_genesis.sim.arm.kinematics import ARM, accepted, distances
+from robo_genesis.sim.arm.kinematics import ARM, accepted, distances, fingertip, hand_pose
 
 END_EFFECTOR = "hand"
 MOVED = JOINT_NAMES[:ARM]  # The joints of the Franka that the solver may move
@@ -29,7 +29,8 @@ class IkSettings:
 
     It stops when both residuals are within `position_tolerance` [m] and `rotation_tolerance` [rad].
     After `iterations` it draws another start within the joint limits, up to `samples` starts with
-    the given one. With `samples=1` it draws nothing, so equal calls give equal answers.
+    the given one. With `samples=1` it draws nothing, so equal calls give equal answers. `clearance`
+    is not for the solver: the least height of the fingertips of an accepted command [m].
     """
 
     position_tolerance: float = 5e-4
@@ -38,6 +39,7 @@ class IkSettings:
     iterations: int = 20
     damping: float = 0.01
     largest_step: float = 0.5
+    clearance: float = 0.03
 
     @property
     def tolerances(self) -> tuple[float, float]:
@@ -110,22 +112,27 @@ def accepted_command(answer: IkAnswer, settings: IkSettings, q_start: FloatArray
 
     Args:
         answer: of one question, or with a row for each.
-        settings: of the solver; both residuals must be within its tolerances.
+        settings: of the solver, with the tolerances of both residuals and the least clearance.
         q_start: (…, d) joint positions with those of the fingers [rad or m].
 
     Raises:
-        NotAccepted: an answer is not finite, or a residual is beyond its tolerance; the message
-            names the rows, and gives the largest residuals.
+        NotAccepted: an answer is not finite, a residual is beyond its tolerance, or the fingertips
+            would be too low; the message names the rows, and gives the largest residuals and the
+            lowest height.
     """
-    refused = ~np.asarray(accepted(answer.q, answer.error, *settings.tolerances))
+    height = fingertip(hand_pose(answer.q))[..., 2]
+    near = accepted(answer.q, answer.error, *settings.tolerances)
+    refused = ~(near & (height >= settings.clearance))
     if refused.any():
         rows = np.flatnonzero(refused).tolist()
         apart, angle = (np.max(of) for of in distances(answer.error[refused]))
         raise NotAccepted(
             f"{f'Rows {rows} are' if refused.ndim else 'The answer is'} refused. The residual is "
             f"{apart:.3g} m and {angle:.3g} rad, accepted are {settings.position_tolerance:g} m "
-            f"and {settings.rotation_tolerance:g} rad with finite joint positions. Nothing is "
-            "commanded: choose another target, or another start of the solver."
+            f"and {settings.rotation_tolerance:g} rad with finite joint positions. The height of "
+            f"the fingertips is {np.min(height[refused]):.3g} m, accepted is "
+            f"{settings.clearance:g} m. Nothing is commanded: choose another target, or another "
+            "start of the solver."
         )
     q = answer.q.astype(np.float64)
     q[..., ARM:] = q_start[..., ARM:]

@@ -45,7 +45,10 @@ class Controlled:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlCase(Controlled):
-    """All settings of one run: those of the robot, and the `q_target` (d,) [rad or m]."""
+    """All settings of one run: those of the robot, and the `q_target` [rad or m].
+
+    The target is one for all steps, (d,), or one for each, (n, d).
+    """
 
     q_target: FloatArray
 
@@ -80,21 +83,23 @@ def validate(case: ControlCase, joints: JointMap) -> None:
     n = len(joints.names)
     for name in ("q_start", "q_target", "kp", "kv", "effort_limit"):
         values = getattr(case, name)
-        if np.shape(values) != (n,):
+        rows = [(case.steps, n)] if name == "q_target" else []
+        if np.shape(values) not in [(n,), *rows]:
             raise CaseError(
                 f"{name} has shape {np.shape(values)}, expected ({n},): one value for each of "
                 f"{', '.join(joints.names)}. Slice values and indices together."
             )
-        for k in np.flatnonzero(~np.isfinite(values)):
-            raise CaseError(f"{name}[{joints.names[k]}] is {values[k]}, expected a finite number.")
+        for row, k in np.argwhere(~np.isfinite(np.atleast_2d(values))):
+            value = np.atleast_2d(values)[row, k]
+            raise CaseError(f"{name}[{joints.names[k]}] is {value}, expected a finite number.")
     for name in ("q_start", "q_target"):
-        q = getattr(case, name)
+        q = np.atleast_2d(getattr(case, name))
         outside = (q < joints.lower - LIMIT_TOLERANCE) | (q > joints.upper + LIMIT_TOLERANCE)
-        for k in np.flatnonzero(outside):
+        for row, k in np.argwhere(outside):
             raise CaseError(
-                f"{name}[{joints.names[k]}] is {q[k]:g} {joints.position_units[k]}, outside its "
-                f"range [{joints.lower[k]:g}, {joints.upper[k]:g}]. Choose a value inside; none is "
-                "clipped."
+                f"{name}[{joints.names[k]}] is {q[row, k]:g} {joints.position_units[k]}, outside "
+                f"its range [{joints.lower[k]:g}, {joints.upper[k]:g}]. Choose a value inside; "
+                "none is clipped."
             )
     for name in ("kp", "kv", "effort_limit"):
         for k in np.flatnonzero(np.asarray(getattr(case, name)) < 0):
@@ -150,7 +155,7 @@ def set_up(robot: Any, dofs: list[int], case: ControlCase) -> None:
 
 
 def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
-    """Reset, then command the constant target and step; record every state.
+    """Reset, then command the target of each step and step; record every state.
 
     Position, link poses: before the first step and after each. Velocity and both forces: after
     each step, with the time at which the step ends. `get_dofs_control_force` computes
@@ -161,13 +166,13 @@ def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Tra
     """
     reset(scene, robot, joints, case)
     dofs = joints.dofs_idx_local.tolist()
-    q_target = case.q_target.copy()
-    robot.control_dofs_position(q_target, dofs)
+    targets = np.broadcast_to(case.q_target, (case.steps, len(dofs))).copy()
+    robot.control_dofs_position(targets[0], dofs)
     readings = [read(robot, dofs)]
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
     begin = engine_time(scene)
-    for _ in range(case.steps):
-        robot.control_dofs_position(q_target, dofs)  # at t[k]: repeat the target
+    for q_target in targets:
+        robot.control_dofs_position(q_target, dofs)  # at t[k]: the target of this step
         scene.step()  # bounded effort drives the dynamics for dt
         readings.append(read(robot, dofs))  # at t[k+1]: the new state
     passed = engine_time(scene) - begin
@@ -176,7 +181,7 @@ def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Tra
             f"The engine's clock advanced {passed:g} s in {case.steps} steps of {case.dt:g} s: the "
             "times k · dt would be wrong. Build the scene with the dt of the case."
         )
-    return assemble(case, readings, [q_target] * case.steps, effort_limit)
+    return assemble(case, readings, targets, effort_limit)
 
 
 def engine_time(scene: Any) -> float:

@@ -32,6 +32,8 @@ CHAIN = (
 
 ARM = len(CHAIN) - 1  # Number of joints of the arm
 
+TIP = 0.1123  # From the hand's origin to the ends of the fingers, along its z axis [m]
+
 HAND = LINK_PARENTS[-1]
 """Index of the hand among the links of the arrays: the parent of both fingers."""
 
@@ -180,6 +182,11 @@ def accepted(
     return np.asarray(finite & (apart <= position_tolerance) & (angle <= rotation_tolerance))
 
 
+def fingertip(pose: Pose) -> FloatArray:
+    """Return the point (…, 3) between the fingertips for a pose of the hand [m]."""
+    return pose.position + rotate(pose.quat, np.array([0.0, 0.0, TIP]))
+
+
 def damped_step(of: FloatArray, error: FloatArray, damping: float) -> FloatArray:
     """Return the step Jᵀ (J Jᵀ + λ² I)⁻¹ e of damped least squares (…, n) [rad].
 
@@ -204,13 +211,9 @@ def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatAr
     return np.asarray(np.minimum(q - lower, upper - q).min(axis=-1))
 
 
-EQUAL = np.ones(6)  # Weights with which a metre counts as much as a radian
-
-
 def solve(
     target: Pose, q: FloatArray, lower: FloatArray, upper: FloatArray, *,
     iterations: int, damping: float, largest: float = 0.5,
-    weights: FloatArray = EQUAL,
 ) -> FloatArray:  # fmt: skip
     """Return the joint positions (…, 7) that damped least squares reaches from starts (…, 7) [rad].
 
@@ -224,10 +227,8 @@ def solve(
         iterations: their number.
         damping: λ of `damped_step`.
         largest: bound of one step [rad].
-        weights: (6,) factors of the entries of the pose error; 0 ignores an entry.
     """
     for _ in range(iterations):
-        error = weights * pose_error(target, hand_pose(q))
-        step = damped_step(weights[:, None] * jacobian(q), error, damping)
+        step = damped_step(jacobian(q), pose_error(target, hand_pose(q)), damping)
         q = np.clip(q + np.clip(step, -largest, largest), lower, upper)
     return q

@@ -1,6 +1,7 @@
 """The decimal numbers that prose of L05 may hold: configured inputs and calculations by hand."""
 
 from robo_genesis.lessons.l05 import spec
+from robo_genesis.sim.arm import kinematics
 
 CONFIGURED = {
     "length of a run [s]": spec.BASELINE.steps * spec.BASELINE.dt,
@@ -14,8 +15,18 @@ CONFIGURED = {
     "height of the target [m]": spec.TARGET[2],
     "near limit that cuts the hand [m]": spec.CUT[0],
     "far limit that cuts the floor [m]": spec.CUT[1],
-    "damping of our search": 0.1,
-    "largest step of our search [rad]": 0.2,
+    "fingertips from the hand's origin [m]": kinematics.TIP,
+    "height of a target one centimetre above the floor [m]": spec.ABOVE_IT.position[2],
+    "depth of the sag, rounded for a calculation by hand [m]": 1.7,
+    "planar arm, first link [m]": 0.4,
+    "planar arm, second link [m]": 0.3,
+    "planar arm, cosine of 30 degrees": 0.866,
+    "planar arm, x of joint 2 by hand [m]": 0.346,
+    "planar arm, y of joint 2 by hand [m]": 0.2,
+    "planar arm, y of the hand by hand [m]": 0.5,
+    "planar arm, way of the step [m]": 0.01,
+    "planar arm, step by hand [rad]": 0.033,
+    "planar arm, determinant at 90 degrees by hand": 0.12,
     "damping of the engine": spec.IK.damping,
     "height of the shoulder in the model file [m]": 0.333,
     "reach that the manufacturer gives [m]": 0.855,

@@ -6,8 +6,8 @@ import pytest
 from robo_genesis.lessons.l05 import explorer, plots, spec, study, text
 
 
-def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(solved):
-    data = explorer.explored(solved, "reach")
+def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(reaches):
+    data = explorer.explored(reaches, "reach")
     for found, axis in zip(data["maps"], (2, 1), strict=True):
         cells = {cell["answer"]: cell for row in found["rows"] for cell in row["cells"]}
         rows, targets = data["tables"][found["caption"]], data["postures"][found["run"]]
@@ -16,33 +16,28 @@ def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(solved):
         top = targets[found["rows"][0]["cells"][0]["answer"] - 1]
         assert top[axis] == targets[:, axis].max()
         assert top[0] == targets[:, 0].min() == float(found["columns"][0])
-        accepted = study.answers(solved.traces[found["run"]], spec.QUESTIONS[found["run"]])[
+        accepted = study.answers(reaches.traces[found["run"]], spec.QUESTIONS[found["run"]])[
             "accepted"
         ]
         assert [row["accepted"] == "yes" for row in rows] == accepted.tolist()
         assert [cells[k]["state"] == "accepted" for k in sorted(cells)] == accepted.tolist()
 
 
-def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(solved):
-    (found,) = explorer.explored(solved, "solutions")["maps"]
+def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(reaches):
+    (found,) = explorer.explored(reaches, "solutions")["maps"]
     assert {cell["state"] for row in found["rows"] for cell in row["cells"]} == {"accepted"}
-    q = solved.traces["many_starts"].q
+    q = reaches.traces["many_starts"].q
     for row in found["rows"]:
         assert (np.diff(q[[cell["answer"] for cell in row["cells"]], 0]) >= 0).all()
-    accepted = study.many_answers(solved)["accepted"]
+    accepted = study.many_answers(reaches)["accepted"]
     assert sum(len(row["cells"]) for row in found["rows"]) == accepted.sum() > 20
 
 
-def test_each_criterion_chooses_the_best_accepted_answer(solved):
-    found, chosen = study.many_answers(solved), text.chosen(solved)
+def test_each_criterion_chooses_the_best_accepted_answer(reaches):
+    found, chosen = study.many_answers(reaches), text.chosen(reaches)
     assert len(set(chosen.values())) > 1
     for name, (key, best) in text.CRITERIA.items():
         assert found[key][chosen[name]] == best(found[key][found["accepted"]])
-    squares = [ax.lines[-1].get_xydata() for ax in plots.solutions(solved).axes[1:]]
-    joint1 = [solved.traces["many_starts"].q[1 + k, 0] for k in chosen.values()]
+    squares = [ax.lines[-1].get_xydata() for ax in plots.solutions(reaches).axes[1:]]
+    joint1 = [reaches.traces["many_starts"].q[1 + k, 0] for k in chosen.values()]
     assert [float(xy[0, 0]) for xy in squares] == pytest.approx(joint1)
-
-
-def test_fewer_answers_are_distinct_above_a_larger_threshold():
-    q = np.array([[0.0], [0.05], [0.1], [1.0]])
-    assert [study.clusters(q, t) for t in (0.01, 0.06, 0.95)] == [4, 2, 1]
