@@ -3,6 +3,7 @@
 import os
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ MEASURES = False
 
 def broken_step(name: str, report: Mapping[str, Any], step: str) -> Mistake:
     """Return a failure on purpose by the step at which the doctor stopped."""
-    found = next(s for s in report["steps"] if s["step"] == step)["found"]
+    found = next((s["found"] for s in report["steps"] if s["state"] == "broken"), "nothing broken")
     return Mistake(
         name,
         shown=report["broken"] == step,
@@ -34,20 +35,33 @@ def wrong_version() -> Mistake:
 
 
 def no_egl() -> Mistake:
-    """Run the doctor where the file of EGL contains a line of text."""
+    """Run the doctor and a plain script where EGL finds the file of no driver."""
+    call = "gs.init(backend=gs.cpu, logging_level='error')\n    gs.Scene(show_viewer=False).build()"
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "libEGL.so.1").write_text("not a library")
-        return broken_step("no_egl", machine.examine({"LD_LIBRARY_PATH": folder}), "libraries")
+        changed = {"__EGL_VENDOR_LIBRARY_DIRS": folder}
+        found = broken_step("no_egl", machine.examine(changed), "libraries")
+        line = outcome(call, changed)
+    evidence = f"{found.evidence}\n\nA script with `gs.init` and `scene.build()` ends with `{line}`"
+    return replace(found, shown=found.shown and "EGL" in line, evidence=evidence)
 
 
 def absent_backend() -> Mistake:
     """Ask the engine for a processor that this machine does not have."""
-    call = 'import genesis as gs\ntry:\n    gs.init(backend=gs.metal, logging_level="error")\n'
-    call += 'except Exception as error:\n    print(type(error).__name__, error, sep=": ")\n'
-    call += "else:\n    print(gs.backend.name)"
-    line = run_python(["-c", call], {}).strip().splitlines()[-1]
+    line = outcome("gs.init(backend=gs.metal, logging_level='error')", {})
     return Mistake(
         "absent_backend",
         shown="Exception" in line or "Error" in line,
         evidence=f"`gs.init(backend=gs.metal)` on this machine, in a process of its own: `{line}`",
     )
+
+
+def outcome(call: str, changed: Mapping[str, str]) -> str:
+    """Return the exception that a call raises in a process of its own, or the backend.
+
+    Args:
+        call: statements after `import genesis as gs`, indented by four spaces.
+        changed: environment variables beside those of this process.
+    """
+    script = f"import genesis as gs\ntry:\n    {call}\n    print(gs.backend.name)\n"
+    script += "except Exception as error:\n    print(type(error).__name__, error, sep=': ')"
+    return run_python(["-c", script], changed).strip().splitlines()[-1]
