@@ -15,9 +15,7 @@ Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood
 import sys
 
 if not (3, 11) <= sys.version_info < (3, 14):
-    sys.exit(
-        f"DOCTOR: this is Python {sys.version.split()[0]}; the course needs 3.11, 3.12 or 3.13"
-    )
+    sys.exit(f"DOCTOR: Python {sys.version.split()[0]} runs, the course needs 3.11, 3.12 or 3.13")
 if __name__ == "__main__" and not sys.flags.safe_path:
     sys.path.pop(0)  # a student's own json.py is not imported here
 
@@ -57,23 +55,17 @@ def table(steps: Sequence[Mapping[str, str]]) -> str:
 
     If none is left, the verdict is the last line. Only a long word makes a row longer than `WIDTH`.
     """
-    text = ""
+    text, verdict = "", f"all {len(steps)} steps pass"
     for number, step in enumerate(steps, start=1):
         text += f"{number:2}  {step['step']:{INDENT - 15}}  "
-        if step["state"] == "not run" and "  broken " not in text:
+        if step["state"] == "not run" and verdict.startswith("all"):
             return text
         lines = textwrap.wrap(step["found"], WIDTH - INDENT, break_long_words=False)
         found = f"\n{' ' * INDENT}".join(map(printable, lines))
         text += f"{step['state']:7}  {found}".rstrip() + "\n"
-    return f"{text}\n{verdict(steps)}\n"
-
-
-def verdict(steps: Sequence[Mapping[str, str]]) -> str:
-    """Return the last line: how many steps pass, or which one is broken."""
-    broken = [f"{n}, {s['step']}" for n, s in enumerate(steps, 1) if s["state"] == "broken"]
-    if broken:
-        return f"DOCTOR: step {broken[0]}, is broken; fix it and run this again"
-    return f"DOCTOR: all {len(steps)} steps pass"
+        if step["state"] == "broken":
+            verdict = f"step {number}, {step['step']}, is broken; fix it and run this again"
+    return f"{text}\nDOCTOR: {verdict}\n"
 
 
 def report_of(steps: Sequence[Mapping[str, str]], engine: Any = None) -> dict[str, Any]:
@@ -121,7 +113,8 @@ def reports() -> Iterator[dict[str, Any]]:
 
     If it ends before the last step does, the step that it ran is broken in one more report.
     """
-    steps, said = [{"step": "version", "state": "not run", "found": ""}], deque[str](maxlen=3)
+    report = report_of([{"step": "version", "state": "not run", "found": ""}])
+    said = deque[str](maxlen=3)
     with subprocess.Popen(
         [sys.executable, "-c", STEPS_PROCESS], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         encoding="utf8", errors="replace",
@@ -131,13 +124,12 @@ def reports() -> Iterator[dict[str, Any]]:
             text, mark, sent = line.partition(MARK)
             if mark:
                 yield (report := json.loads(sent))
-                steps = report["steps"]
             elif text.strip():
                 said.append(text.strip())
-    left = [step for step in steps if step["state"] == "not run"]
-    if left and all(step["state"] != "broken" for step in steps):
+    left = [step for step in report["steps"] if step["state"] == "not run"]
+    if left and not report["broken"]:
         left[0] |= {"state": "broken", "found": ending(process.returncode, said)}
-        yield report_of(steps)
+        yield report | {"broken": left[0]["step"]}
 
 
 def ending(status: int, said: Sequence[str]) -> str:
@@ -168,12 +160,7 @@ def machine(engine: Any) -> dict[str, str]:
 
 def shareable(text: str) -> str:
     """Return a text without folders, which can name users; paths in the course stay relative."""
-    home = Path(os.path.expanduser("~"))
-    known = {project.ROOT: "<course>", Path(sys.prefix): "<environment>", home: "~"}
-    for folder in sorted(known, key=lambda path: -len(str(path))):
-        if folder != Path(folder.anchor):
-            text = text.replace(str(folder), known[folder])
-    text = re.sub(r"([/\\]+(?:home|Users)[/\\]+)[^/\\\s'\"]+", r"\1…", text)
+    text = project.without_folders(text.replace(sys.prefix, "<environment>"))
     return re.sub(r"(?<![\w.~>/-])/(?!usr/(?:share|lib)/)(?:[^/\s'\"]+/)+", "…/", text)
 
 
@@ -207,9 +194,8 @@ def read_report(file: str) -> dict[str, Any]:
     def complete(steps: list[StepResult]) -> list[StepResult]:
         names, states = [step.__name__ for step in STEPS], [one.state for one in steps]
         done = states.index("broken") + 1 if "broken" in states else len(names)
-        if [one.step for one in steps] != names[: max(done, len(steps))] or "not run" in states[
-            :done
-        ]:
+        in_order = [one.step for one in steps] == names[: max(done, len(steps))]
+        if not in_order or "not run" in states[:done]:
             raise ValueError(f"not every step was done: {', '.join(names)}")
         return steps
 
@@ -247,14 +233,10 @@ def differences(
         rows.append((name, printable(value), "equal" if found == value else printable(found)))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = [f"{name:{widths[0]}}  {value:{widths[1]}}  {found}" for name, value, found in rows]
-    if here.get("engine") != recorded["engine"]:
-        lines.append("Install the engine's version of the site: another one gives other numbers.")
-    elif here.get("backend", recorded["backend"]) != recorded["backend"]:
-        lines.append("Another backend rounds differently. Orderings of runs should agree.")
-    else:
-        same = "engine is" if "backend" in here else "engine's version is"
-        lines.append(f"The {same} the same. Other differences usually change only the last digits.")
-    return lines
+    advice = (
+        "If the engine differs, install the site's version. Another backend rounds differently;"
+    )
+    return [*lines, f"{advice} other differences usually change only the last digits."]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -279,8 +261,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"{error}. {project.import_advice()}")
     except (ValueError, zipfile.BadZipFile) as error:
         parser.error(printable(str(error)))
-    how = {"encoding": "utf8"} if options.json else {"errors": "backslashreplace"}
-    sys.stdout.reconfigure(**how)  # type: ignore[union-attr]
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    if not saved:
+        print("The first start of the engine takes minutes.", file=sys.stderr)
     written = ""
     for report in [saved] if saved else reports():
         if not options.json:
@@ -288,7 +271,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(text[len(written) :], end="", flush=True)
             written = text
     if options.json:
-        print(shareable(json.dumps(report, indent=2, ensure_ascii=False)))
+        print(shareable(json.dumps(report, indent=2)))
     if recorded is not None:
         head = "report" if saved else "this machine"
         print("", *differences(report["machine"], recorded, head), sep="\n")

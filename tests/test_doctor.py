@@ -194,12 +194,12 @@ def test_the_report_has_stable_fields_and_names_no_user(steps_run, capsys, monke
 @pytest.mark.parametrize(
     ("text", "shared"),
     [
-        (f"{project.ROOT}/book/x.md", "<course>/book/x.md"),
+        (f"{project.ROOT}/book/x.md", "book/x.md"),
+        (f"{sys.prefix}/bin/python", "<environment>/bin/python"),
         ("'/data/alice/x.xml' is gone", "'…/x.xml' is gone"),
-        ("cannot open /home/alice", "cannot open …/…"),
-        ("file:///home/bob/x", "file:///home/…/x"),
-        ("-I/home/bob/inc", "-I/home/…/inc"),
-        (r"C:\Users\bob\x.py", r"C:\Users\…\x.py"),
+        ("cannot open /home/alice", "cannot open ~"),
+        ("file:///home/bob/x", "file://~/x"),
+        ("-I/home/bob/inc", "-I~/inc"),
         ("see https://host/a/b and N·m/rad", "see https://host/a/b and N·m/rad"),
         ("xml/franka_emika_panda/panda.xml", "xml/franka_emika_panda/panda.xml"),
         ("/usr/share/glvnd/egl_vendor.d", "/usr/share/glvnd/egl_vendor.d"),
@@ -236,7 +236,7 @@ def started(folder, changed=None, python=sys.executable):
     )  # fmt: skip
 
 
-GENESIS, WAIT = "genesis.py", "import time\nprint('begun', flush=True)\ntime.sleep(60)"
+GENESIS, MINUTES = "genesis.py", "The first start of the engine takes minutes.\n"
 DIES = "import os, signal\nos.kill(os.getpid(), signal.{})".format
 
 
@@ -269,7 +269,7 @@ def test_a_machine_with_one_fault_is_named_with_its_step(tmp_path, changed, file
     said, error = doctor.communicate()
     assert f"DOCTOR: step {NAMES.index(step) + 1}, {step}, is broken" in said
     assert [word for word in words.split() if word not in said] == []
-    assert (doctor.returncode, error) == (1, "")
+    assert (doctor.returncode, error) == (1, MINUTES)
 
 
 def test_ctrl_c_ends_the_step_that_was_begun(tmp_path):
@@ -282,7 +282,7 @@ def test_ctrl_c_ends_the_step_that_was_begun(tmp_path):
     said, error = doctor.communicate()
     assert "DOCTOR: step 3, backend, is broken" in said
     assert "SIGINT" in said
-    assert (doctor.returncode, error) == (1, "")
+    assert (doctor.returncode, error) == (1, MINUTES)
 
 
 def test_a_python_without_packages_is_named_with_the_right_one(tmp_path):
@@ -290,7 +290,7 @@ def test_a_python_without_packages_is_named_with_the_right_one(tmp_path):
     said, error = started(tmp_path, python=tmp_path / "bare/bin/python").communicate()
     assert "ModuleNotFoundError" in said
     assert ".venv/bin/python, or run" in " ".join(said.split())
-    assert error == ""
+    assert error == MINUTES
 
 
 def test_a_machine_or_its_saved_report_is_compared_with_that_of_a_run(
@@ -315,18 +315,16 @@ def test_a_machine_or_its_saved_report_is_compared_with_that_of_a_run(
 
 
 @pytest.mark.parametrize(
-    ("here", "rows", "advice"),
+    ("here", "rows"),
     [
-        ({"engine": "2" * 50, "backend": "a\x1b"}, ["2" * 50, "a\\x1b"], "Install the engine"),
-        ({"engine": "1", "backend": "cuda"}, ["equal", "cuda"], "Another backend"),
-        ({"engine": "1", "backend": "cpu"}, ["equal"] * 2, "The engine is the same. Other differ"),
-        ({"engine": "1"}, ["equal", "unknown: the engine did not start"], "version is the same"),
+        ({"engine": "2" * 50, "backend": "a\x1b"}, ["2" * 50, "a\\x1b"]),
+        ({"engine": "1", "backend": "cpu"}, ["equal"] * 2),
+        ({"engine": "1"}, ["equal", "unknown: the engine did not start"]),
     ],
 )
-def test_the_advice_is_about_the_difference_that_matters_most(here, rows, advice):
-    head, *lines, last = doctor.differences(here, {"engine": "1", "backend": "cpu"})
+def test_each_fact_of_a_machine_is_compared(here, rows):
+    head, *lines, _ = doctor.differences(here, {"engine": "1", "backend": "cpu"})
     assert [line[head.index("this machine") :] for line in lines] == rows
-    assert advice in last
 
 
 SOUND = {"format": 4, "steps": rows(*["ok"] * len(NAMES)), "machine": {"engine": "1"}}

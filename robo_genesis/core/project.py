@@ -149,27 +149,19 @@ def install_command(what: str = "") -> str:
 def import_advice() -> str:
     """Return what to do where an import fails: rename one's own file, or install packages."""
     if hidden := " and ".join(hidden_modules()):
-        return (
-            f"Python imports {hidden} of this folder in place of the installed module of that "
-            "name: rename your file, or work in another folder."
-        )
-    course = ".venv" if in_checkout() else "course"
-    return (
-        f"This is Python {platform.python_version()}, {sys.executable}. Start the one of the "
-        f"course, {course}/bin/python, or run {install_command()}"
-    )
+        return f"Python imports {hidden} of this folder, not the installed module: rename your file"
+    course = f"{'.venv' if in_checkout() else 'course'}/bin/python"
+    here = f"This is Python {platform.python_version()}, {sys.executable}"
+    return f"{here}. Start the one of the course, {course}, or run {install_command()}"
 
 
 def hidden_modules() -> list[str]:
     """Return the files of the working folder that Python imports in place of installed modules."""
     here = Path.cwd()
     others = [folder for folder in sys.path if Path(folder).resolve() != here]
-    own = [
-        path for path in here.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
-    ]
-    return sorted(
-        path.name for path in own if path.stem != WHEEL and PathFinder.find_spec(path.stem, others)
-    )
+    own = [*here.glob("*.py"), *(path.parent for path in here.glob("*/__init__.py"))]
+    hidden = (p.name for p in own if p.stem != WHEEL and PathFinder.find_spec(p.stem, others))
+    return sorted(hidden)
 
 
 def unmet_requirements() -> list[str]:
@@ -186,33 +178,19 @@ def unmet_requirements() -> list[str]:
 
 
 def require_pinned_engine(root: Path = ROOT) -> str:
-    """Return the pinned engine version after checking that this environment has it.
-
-    Args:
-        root: the checkout.
-
-    Raises:
-        ProjectError: another engine version is installed, or none.
-    """
+    """Return the engine version that a checkout pins; raise ProjectError if it is not installed."""
     pin, installed = engine_pin(root), installed_version(ENGINE)
     if installed != pin:
         command = install_command("" if in_checkout() else f"{ENGINE}=={pin}")
         raise ProjectError(
             f"Installed is {ENGINE} {installed or '(none)'}, the course needs {pin}. Run {command}"
-            f"{', or change pin and lock together' * in_checkout()}."
+            f"{', or change pin and lock together' * in_checkout()}"
         )
     return pin
 
 
 def lock_digest(root: Path = ROOT) -> str:
-    """Return the sha256 of requirements.lock as hex digits.
-
-    Args:
-        root: the checkout.
-
-    Raises:
-        ProjectError: there is no lock.
-    """
+    """Return the sha256 of a checkout's lock as hex digits; raise ProjectError without a lock."""
     lock = root / "requirements.lock"
     if not lock.is_file():
         raise ProjectError(f"No {lock}. `make lock` writes it.")

@@ -31,7 +31,7 @@ PRECISION = "32"
 ARGUMENTS = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}
 """Of each `gs.init` of the course, beside backend and log."""
 
-PLATFORM_DEVICE = 0x313F  # Of EGL: a display without a window system
+PLATFORM_DEVICE = 0x313F  # Of EGL: without a window system
 
 
 class ContractError(ValueError):
@@ -56,8 +56,7 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
 
     Unset means cpu, 1 and `outputs` in the working directory.
 
-    Raises:
-        ContractError: naming the variable, its value and the choices.
+    It raises ContractError with the variable, its value and the choices.
     """
     environ = os.environ if environ is None else environ
     values = {name: environ.get(name, choices[0]) for name, choices in CHOICES.items()}
@@ -129,8 +128,7 @@ def start(contract: Contract) -> Engine:
 def requested_backend(contract: Contract) -> Any:
     """Return the argument `backend` of the `gs.init` that follows, and start to keep its log.
 
-    Raises:
-        EngineError: Genesis is missing or already initialised, or a graphics library is missing.
+    It raises EngineError if Genesis is missing or initialised, or a graphics library is missing.
     """
     gs = import_engine()
     if getattr(gs, "_initialized", False):
@@ -196,11 +194,7 @@ def _kept_logs() -> list[EngineLog]:
 
 
 def import_engine() -> Any:
-    """Import Genesis after the libraries that it needs even without a camera.
-
-    Raises:
-        EngineError: saying what is missing and the command that installs it.
-    """
+    """Import Genesis, or raise EngineError: what is missing, and the command that installs it."""
     if sys.platform == "linux":
         require_libraries()
     spare_repeated_work()
@@ -212,19 +206,13 @@ def import_engine() -> Any:
 
 
 def asset(name: str) -> Path:
-    """Return the path of a file that Genesis bundles; the engine is found, not imported.
-
-    Raises:
-        EngineError: genesis-world is not installed, or does not have the file.
-    """
+    """Return the path of a file of the engine, which is not imported, or raise EngineError."""
     found = find_spec("genesis")
     path = Path(found.origin if found and found.origin else "genesis").parent / "assets" / name
     if not path.is_file():
-        again = project.install_command(f"--force-reinstall --no-deps {project.ENGINE}")
-        raise EngineError(
-            f"{project.ENGINE} has no file genesis/assets/{name}. Install it again: "
-            f"{again}=={project.engine_pin()}"
-        )
+        engine = f"{project.ENGINE}=={project.engine_pin()}"
+        again = project.install_command(f"--force-reinstall --no-deps {engine}")
+        raise EngineError(f"{engine} has no file genesis/assets/{name}. Run {again}")
     return path
 
 
@@ -242,21 +230,13 @@ def require_libraries() -> ctypes.CDLL:
 
 
 def require_display(egl: ctypes.CDLL) -> None:
-    """Start EGL on a device without a window system, as `scene.build()` does.
-
-    Raises:
-        EngineError: no driver offers a device, or EGL starts on none.
-    """
-    pointer = ctypes.c_void_p
-    egl.eglGetProcAddress.restype = pointer
-
-    def extension(name: bytes, result: Any) -> Any:
-        call = ctypes.CFUNCTYPE(result, ctypes.c_uint, pointer, pointer)
-        return call(egl.eglGetProcAddress(name))
-
+    """Start EGL without a window system, as `scene.build()` does; raise EngineError if it fails."""
+    pointer = egl.eglGetProcAddress.restype = ctypes.c_void_p
+    call = ctypes.CFUNCTYPE(pointer, ctypes.c_uint, pointer, pointer)
+    names = (b"eglQueryDevicesEXT", b"eglGetPlatformDisplayEXT")
+    query, display = (call(egl.eglGetProcAddress(name)) for name in names)
     devices, count = (pointer * 64)(), ctypes.c_int()
-    extension(b"eglQueryDevicesEXT", ctypes.c_uint)(len(devices), devices, ctypes.addressof(count))
-    display = extension(b"eglGetPlatformDisplayEXT", pointer)
+    query(len(devices), devices, ctypes.addressof(count))
     found = [display(PLATFORM_DEVICE, device, None) for device in devices[: count.value]]
     if not any(egl.eglInitialize(pointer(one), None, None) for one in found):
         raise EngineError(

@@ -13,6 +13,16 @@ from robo_genesis.sim.fresh_process import run_python
 
 MEASURES = False
 
+PLAIN = """\
+import genesis as gs
+try:
+    gs.init(backend=gs.{}, logging_level="error")
+    gs.Scene(show_viewer=False).build()
+    print(gs.backend.name)
+except Exception as error:
+    print(type(error).__name__, error, sep=": ")
+"""
+
 
 def broken_step(name: str, report: Mapping[str, Any], step: str) -> Mistake:
     """Return a failure on purpose by the step at which the doctor stopped."""
@@ -36,18 +46,17 @@ def wrong_version() -> Mistake:
 
 def no_egl() -> Mistake:
     """Run the doctor and a plain script where EGL finds the file of no driver."""
-    call = "gs.init(backend=gs.cpu, logging_level='error')\n    gs.Scene(show_viewer=False).build()"
     with tempfile.TemporaryDirectory() as folder:
         changed = {"__EGL_VENDOR_LIBRARY_DIRS": folder}
         found = broken_step("no_egl", machine.examine(changed), "libraries")
-        line = outcome(call, changed)
+        line = plain_script("cpu", changed)
     evidence = f"{found.evidence}\n\nA script with `gs.init` and `scene.build()` ends with `{line}`"
     return replace(found, shown=found.shown and "EGL" in line, evidence=evidence)
 
 
 def absent_backend() -> Mistake:
     """Ask the engine for a processor that this machine does not have."""
-    line = outcome("gs.init(backend=gs.metal, logging_level='error')", {})
+    line = plain_script("metal", {})
     return Mistake(
         "absent_backend",
         shown="Exception" in line or "Error" in line,
@@ -55,13 +64,6 @@ def absent_backend() -> Mistake:
     )
 
 
-def outcome(call: str, changed: Mapping[str, str]) -> str:
-    """Return the exception that a call raises in a process of its own, or the backend.
-
-    Args:
-        call: statements after `import genesis as gs`, indented by four spaces.
-        changed: environment variables beside those of this process.
-    """
-    script = f"import genesis as gs\ntry:\n    {call}\n    print(gs.backend.name)\n"
-    script += "except Exception as error:\n    print(type(error).__name__, error, sep=': ')"
-    return run_python(["-c", script], changed).strip().splitlines()[-1]
+def plain_script(backend: str, changed: Mapping[str, str]) -> str:
+    """Return how `PLAIN` ends in a process of its own, with changed environment variables."""
+    return run_python(["-c", PLAIN.format(backend)], changed).strip().splitlines()[-1]
