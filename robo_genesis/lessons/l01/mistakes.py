@@ -16,11 +16,11 @@ MEASURES = False
 PLAIN = """\
 import genesis as gs
 try:
-    gs.init(backend=gs.{}, logging_level="error")
+    gs.init(backend=gs.%s, logging_level="error")
     gs.Scene(show_viewer=False).build()
     print(gs.backend.name)
 except Exception as error:
-    print(type(error).__name__, error, sep=": ")
+    print(f"{type(error).__name__}:", *str(error).split())
 """
 
 
@@ -66,4 +66,4 @@ def absent_backend() -> Mistake:
 
 def plain_script(backend: str, changed: Mapping[str, str]) -> str:
     """Return how `PLAIN` ends in a process of its own, with changed environment variables."""
-    return run_python(["-c", PLAIN.format(backend)], changed).strip().splitlines()[-1]
+    return run_python(["-c", PLAIN % backend], changed).strip().splitlines()[-1]
