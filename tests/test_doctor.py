@@ -244,6 +244,7 @@ DIES = "import os, signal\nos.kill(os.getpid(), signal.{})".format
     ("changed", "files", "step", "words"),
     [
         ({"__EGL_VENDOR_LIBRARY_DIRS": "."}, {}, "libraries", "of 0 devices libegl-mesa0 __EGL_"),
+        ({"PYOPENGL_PLATFORM": "osmesa"}, {}, "libraries", "PYOPENGL_PLATFORM='osmesa' unset"),
         ({"HOME": None}, {}, "backend", "HOME export"),
         ({"QD_OFFLINE_CACHE_FILE_PATH": "f/x"}, {"f": ""}, "backend", "QD_OFFLINE_CACHE_FILE_PATH"),
         ({"GS_CACHE_FILE_PATH": "f"}, {"f": ""}, "backend", "GS_CACHE_FILE_PATH"),

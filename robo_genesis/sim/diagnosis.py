@@ -74,6 +74,8 @@ def libraries(bench: Bench) -> str:
     """OpenGL and EGL can be loaded, and EGL starts: the engine needs them even without a camera."""
     if sys.platform != "linux":
         return f"not checked on {sys.platform}"
+    if (given := os.environ.get("PYOPENGL_PLATFORM", "egl")) != "egl":
+        raise StepError(f"PYOPENGL_PLATFORM={given!r} does not work with the engine: unset it.")
     session.require_display(session.require_libraries())
     return f"{' and '.join(session.LIBRARIES)} can be loaded, and EGL starts"
 
