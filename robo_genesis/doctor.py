@@ -250,10 +250,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--like", metavar="BUNDLE", help="compare with the machine of this run")
     parser.add_argument("--report", metavar="FILE", help="show this report, run no step")
     options = parser.parse_args(arguments)
-    given = [name for name in ("like", "report") if getattr(options, name) is not None]
-    if options.json and given:
-        how = "make the report first, and compare it with --report FILE --like BUNDLE"
-        parser.error(f"--json and --{given[0]} cannot be combined: {how}")
+    if options.json and {options.like, options.report} != {None}:
+        parser.error("--json is alone: compare its output later, with --report FILE --like BUNDLE")
     try:
         recorded = None if options.like is None else recorded_machine(options.like)
         saved = None if options.report is None else read_report(options.report)
