@@ -22,12 +22,9 @@ DOCTOR, TIMES = "doctor", "times"
 """Groups of a bundle's metrics: 1 for each step that passed, and elapsed times."""
 
 PARTS = {
-    "import": "import",
-    "init": "gs.init",
-    "scene": "scene, entities",
-    "build": "scene.build",
+    "import": "import", "init": "gs.init", "scene": "scene, entities", "build": "scene.build",
     "first_step": "first step",
-}
+}  # fmt: skip
 """Parts of a start, and their words in a figure."""
 
 STARTS = ("first", "second")
