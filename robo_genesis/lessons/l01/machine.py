@@ -54,7 +54,7 @@ scene = gs.Scene(
     show_viewer=False,
 )
 scene.add_entity(gs.morphs.Plane())
-sphere = scene.add_entity(gs.morphs.Sphere(radius={spec.RADIUS}, pos=(0, 0, 0.5)))
+scene.add_entity(gs.morphs.Sphere(radius={spec.RADIUS}, pos=(0, 0, 0.5)))
 mark()
 scene.build()
 mark()
