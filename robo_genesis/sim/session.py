@@ -240,7 +240,7 @@ def require_display(egl: ctypes.CDLL) -> None:
     found = [display(PLATFORM_DEVICE, device, None) for device in devices[: count.value]]
     if not any(egl.eglInitialize(pointer(one), None, None) for one in found):
         raise EngineError(
-            f"EGL starts on none of {count.value} devices, as scene.build() does: a driver is "
+            f"EGL starts on none of {count.value} devices, so scene.build() fails. A driver is "
             "missing, or its file in /usr/share/glvnd/egl_vendor.d. On Debian: apt install "
             "--reinstall libegl-mesa0. Unset variables that begin with __EGL_VENDOR."
         )
