@@ -18,6 +18,7 @@ from pathlib import Path
 from robo_genesis.core.text import printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import DIFFERS, EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
@@ -48,22 +49,21 @@ def bundle_folder(given: str, opened: ExitStack) -> Path:
     Raises:
         BundleRefused: there is neither a folder nor an archive of a bundle.
     """
-    path = Path(given)
-    if path.is_dir():
-        return path
-    if not zipfile.is_zipfile(path):
-        raise BundleRefused(
-            "missing",
-            f"{given!r} is neither a folder nor a zip archive. Give the folder of a run, such as "
-            "outputs/l04/lab/cpu, and an archive from the site's ledger.",
-        )
-    with zipfile.ZipFile(path) as archive:
-        size = sum(entry.file_size for entry in archive.infolist())
-        if size > LARGEST:
-            raise BundleRefused("size", f"{given!r} holds {size} bytes, expected a bundle.")
-        folder = Path(opened.enter_context(tempfile.TemporaryDirectory()))
-        archive.extractall(folder)
-    return folder
+    path, remedy = Path(given), "expected a run's folder, as outputs/l04/lab/cpu, or its archive"
+    if not path.is_dir():
+        if not zipfile.is_zipfile(path):
+            raise BundleRefused(
+                "missing", f"{given!r} is neither a folder nor a zip archive; {remedy}"
+            )
+        with zipfile.ZipFile(path) as archive:
+            size = sum(entry.file_size for entry in archive.infolist())
+            if size > LARGEST:
+                raise BundleRefused("size", f"{given!r} holds {size} bytes, expected a bundle.")
+            path = Path(opened.enter_context(tempfile.TemporaryDirectory()))
+            archive.extractall(path)
+    if not (path / MANIFEST).is_file():
+        raise BundleRefused("missing", f"{given!r} has no {MANIFEST}; {remedy}")
+    return path
 
 
 def reasons(mine: Predicate, other: Predicate) -> Iterator[str]:

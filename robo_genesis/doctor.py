@@ -8,33 +8,41 @@
 
 A bundle is a folder, or an archive as the ledger of the site offers it. A report is a file that
 `--json` wrote, on this machine or another.
+The steps run in a process of their own. If the system ends it, the step that it ran is broken.
 Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 
+import sys
+
+if not (3, 11) <= sys.version_info < (3, 14):
+    sys.exit(f"DOCTOR: Python {sys.version.split()[0]} runs, the course needs 3.11, 3.12 or 3.13")
+if __name__ == "__main__" and not sys.flags.safe_path:
+    sys.path.pop(0)  # a student's own json.py is not imported here
+
 import argparse
-import contextlib
-import io
 import json
 import os
 import platform
-import sys
+import re
+import signal
+import subprocess
 import tempfile
 import textwrap
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from robo_genesis.core import project
-from robo_genesis.core.project import OUTPUTS_DIR
 from robo_genesis.core.text import printable
-from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.sim import diagnosis
-from robo_genesis.sim.diagnosis import Bench, StepResult, shareable
 
-WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
-REPORT_FORMAT = 3
+WIDTH, INDENT = 72, 25  # Characters of a row, which fits 80 columns, and before what was found
+REPORT_FORMAT = 4
+MARK = "\x1e"  # Begins a report among the other output of the process that runs the steps
+STEPS_PROCESS = "from robo_genesis import doctor; doctor.send_reports()"
 MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
 FACTS = ("engine", "quadrants", "torch", "python", "system", "backend", "device")
 """What a manifest and a report say about a machine."""
@@ -42,58 +50,118 @@ FACTS = ("engine", "quadrants", "torch", "python", "system", "backend", "device"
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
-def table(results: Sequence[StepResult]) -> str:
-    """Return the results as an aligned table, no line longer than `WIDTH`."""
-    indent = max(len(f.step) for f in results) + 15
-    lines = []
-    for number, f in enumerate(results, start=1):
-        head = f"{number:2}  {f.step:{indent - 15}}  {f.state:7}  "
-        found = textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
-        lines.append(found or head.rstrip())
-    text = "\n".join([*lines, "", verdict(results)])
-    return "\n".join(map(printable, text.split("\n")))
+def table(steps: Sequence[Mapping[str, str]]) -> str:
+    """Return the rows of the steps that are done, and the beginning of the next one's.
+
+    If none is left, the verdict is the last line. Only a long word makes a row longer than `WIDTH`.
+    """
+    text, verdict = "", f"all {len(steps)} steps pass"
+    for number, step in enumerate(steps, start=1):
+        text += f"{number:2}  {step['step']:{INDENT - 15}}  "
+        if step["state"] == "not run" and verdict.startswith("all"):
+            return text
+        lines = textwrap.wrap(step["found"], WIDTH - INDENT, break_long_words=False)
+        found = f"\n{' ' * INDENT}".join(map(printable, lines))
+        text += f"{step['state']:7}  {found}".rstrip() + "\n"
+        if step["state"] == "broken":
+            verdict = f"step {number}, {step['step']}, is broken; fix it and run this again"
+    return f"{text}\nDOCTOR: {verdict}\n"
 
 
-def verdict(results: Sequence[StepResult]) -> str:
-    """Return the last line: how many steps pass, or which one is broken."""
-    broken = [f"{number}, {f.step}" for number, f in enumerate(results, 1) if f.state == "broken"]
-    if broken:
-        return f"DOCTOR: step {broken[0]}, is broken; fix it and run this again"
-    passed = sum(f.state == "ok" for f in results)
-    how_many = "all" if passed == len(results) else f"{passed} of"
-    return f"DOCTOR: {how_many} {len(results)} steps pass"
+def report_of(steps: Sequence[Mapping[str, str]], engine: Any = None) -> dict[str, Any]:
+    """Return a report on steps, each with `step`, `state` and `found`.
 
-
-def examine() -> dict[str, Any]:
-    """Run the steps; return a report with versions and platform, and without private paths."""
-    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-        # Without it, the outputs would go to the working directory.
-        bench = Bench({OUTPUTS_DIR: folder} | os.environ)
-        results = diagnosis.run_steps(diagnosis.STEPS, bench)
-    warnings = bench.engine.log.warnings if bench.engine else []
-    contract = project.environment_contract(bench.environ)
+    Args:
+        steps: those that are done, and others.
+        engine: the started one, None before.
+    """
     return {
         "format": REPORT_FORMAT,
-        "ok": all(one.state == "ok" for one in results),
-        "broken": next((one.step for one in results if one.state == "broken"), None),
-        "steps": [asdict(one) | {"found": shareable(one.found)} for one in results],
-        "machine": machine(bench),
-        "versions": {"python": platform.python_version()}
-        | {name: project.installed_version(name) for name in PACKAGES},
-        "platform": {name: getattr(platform, name)() for name in ("system", "release", "machine")}
-        | {"cpus": os.cpu_count()},
-        "environment": {name: shareable(value) for name, value in contract.items()},
-        "warnings": [shareable(text) for text in warnings],
+        "ok": all(step["state"] == "ok" for step in steps),
+        "broken": next((step["step"] for step in steps if step["state"] == "broken"), None),
+        "steps": steps,
+        "machine": machine(engine),
+        "versions": {name: project.installed_version(name) for name in PACKAGES},
+        "environment": project.environment_contract(),
+        "warnings": engine.log.warnings if engine else [],
     }
 
 
-def machine(bench: Bench) -> dict[str, str]:
+def examine() -> Iterator[dict[str, Any]]:
+    """Run the steps in this process; yield the report before the first and after each one."""
+    from robo_genesis.sim import diagnosis
+
+    with tempfile.TemporaryDirectory() as folder:
+        # Without it, the outputs would go to the working directory.
+        bench = diagnosis.Bench({project.OUTPUTS_DIR: folder} | os.environ)
+        steps = [{"step": s.__name__, "state": "not run", "found": ""} for s in diagnosis.STEPS]
+        yield report_of(steps)
+        for number, result in enumerate(diagnosis.run_steps(diagnosis.STEPS, bench)):
+            steps[number] = asdict(result)
+            yield report_of(steps, bench.engine)
+
+
+def send_reports() -> None:
+    """Print each report of `examine` on a line of its own."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends the compiler at once
+    for report in examine():
+        print(f"\n{MARK}{json.dumps(report)}", flush=True)
+
+
+def reports() -> Iterator[dict[str, Any]]:
+    """Run the steps in a process of their own; yield its reports.
+
+    If it ends before the last step does, the step that it ran is broken in one more report.
+    """
+    report = report_of([{"step": "version", "state": "not run", "found": ""}])
+    said = deque[str](maxlen=3)
+    with subprocess.Popen(
+        [sys.executable, "-c", STEPS_PROCESS], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        encoding="utf8", errors="replace",
+    ) as process:  # fmt: skip
+        signal.signal(signal.SIGINT, lambda *_: process.send_signal(signal.SIGINT))
+        for line in process.stdout or ():
+            text, mark, sent = line.partition(MARK)
+            if mark:
+                yield (report := json.loads(sent))
+            elif text.strip():
+                said.append(text.strip())
+    left = [step for step in report["steps"] if step["state"] == "not run"]
+    if left and not report["broken"]:
+        left[0] |= {"state": "broken", "found": ending(process.returncode, said)}
+        yield report | {"broken": left[0]["step"]}
+
+
+def ending(status: int, said: Sequence[str]) -> str:
+    """Return how a process ended too early, and what to do.
+
+    Args:
+        status: as `subprocess` gives it, negative for a signal.
+        said: the last lines of the process.
+    """
+    if status >= 0:
+        return f"{said[-1] if said else f'Status {status}'}. {project.import_advice()}"
+    folders = " and ".join(project.cache_folders().values())
+    return (
+        f"Ended by {signal.Signals(-status).name} ({signal.strsignal(-status)}). If you did not "
+        "stop it, the memory or the disk is full, or compiled code is damaged: close programs, "
+        f"free space, or delete {folders}. {' '.join(said)}"
+    )
+
+
+def machine(engine: Any) -> dict[str, str]:
     """Return the facts that the manifest of a run has too; fewer if the engine did not start."""
     versions = [project.installed_version(name) for name in PACKAGES[:3]]
     found = [*versions, platform.python_version(), platform.platform()]
-    if bench.engine:
-        found += [bench.engine.backend.actual, bench.engine.backend.device_name]
+    if engine:
+        found += [engine.backend.actual, engine.backend.device_name]
     return {name: value or "not installed" for name, value in zip(FACTS, found, strict=False)}
+
+
+def shareable(text: str) -> str:
+    """Return a text without folders, which can name users; paths in the course stay relative."""
+    text = project.without_folders(text.replace(sys.prefix, "<environment>"))
+    return re.sub(r"(?<![\w.~>/-])/(?!usr/(?:share|lib)/)(?:[^/\s'\"]+/)+", "…/", text)
 
 
 def recorded_machine(bundle: str) -> dict[str, str]:
@@ -105,7 +173,7 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     from robo_genesis.compare import bundle_folder
     from robo_genesis.evidence.bundle import read_manifest
 
-    with contextlib.ExitStack() as opened:
+    with ExitStack() as opened:
         run = read_manifest(bundle_folder(bundle, opened)).predicate
     engine, backend, host = run.engine, run.backend, run.host
     versions = [engine.version, engine.quadrants_version, backend.torch_version, host.python]
@@ -117,13 +185,23 @@ def read_report(file: str) -> dict[str, Any]:
     """Return a saved report.
 
     Raises:
-        ValueError: the file is not a report of this format.
+        ValueError: the file is not a report of this format, or of no complete examination.
     """
-    from pydantic import BaseModel, Field, ValidationError
+    from pydantic import AfterValidator, BaseModel, ValidationError
+
+    from robo_genesis.sim.diagnosis import STEPS, StepResult
+
+    def complete(steps: list[StepResult]) -> list[StepResult]:
+        names, states = [step.__name__ for step in STEPS], [one.state for one in steps]
+        done = states.index("broken") + 1 if "broken" in states else len(names)
+        in_order = [one.step for one in steps] == names[: max(done, len(steps))]
+        if not in_order or "not run" in states[:done]:
+            raise ValueError(f"not every step was done: {', '.join(names)}")
+        return steps
 
     class Report(BaseModel):
-        format: Literal[3]
-        steps: list[StepResult] = Field(min_length=1)
+        format: Literal[4]
+        steps: Annotated[list[StepResult], AfterValidator(complete)]
         machine: dict[str, str]
 
     try:
@@ -155,14 +233,10 @@ def differences(
         rows.append((name, printable(value), "equal" if found == value else printable(found)))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = [f"{name:{widths[0]}}  {value:{widths[1]}}  {found}" for name, value, found in rows]
-    if here.get("engine") != recorded["engine"]:
-        lines.append("Install the engine's version of the site: another one gives other numbers.")
-    elif here.get("backend", recorded["backend"]) != recorded["backend"]:
-        lines.append("Another backend rounds differently. Orderings of runs should agree.")
-    else:
-        same = "engine is" if "backend" in here else "engine's version is"
-        lines.append(f"The {same} the same. Other differences usually change only the last digits.")
-    return lines
+    advice = (
+        "If the engine differs, install the site's version. Another backend rounds differently;"
+    )
+    return [*lines, f"{advice} other differences usually change only the last digits."]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -176,27 +250,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--like", metavar="BUNDLE", help="compare with the machine of this run")
     parser.add_argument("--report", metavar="FILE", help="show this report, run no step")
     options = parser.parse_args(arguments)
-    given = [name for name in ("like", "report") if getattr(options, name) is not None]
-    if options.json and given:
-        parser.error(
-            f"--json and --{given[0]} cannot be combined. Make the report with {MAKE_REPORT}, and "
-            "compare it with --report report.json --like BUNDLE"
-        )
+    if options.json and {options.like, options.report} != {None}:
+        parser.error("--json is alone: compare its output later, with --report FILE --like BUNDLE")
     try:
         recorded = None if options.like is None else recorded_machine(options.like)
-        report = None if options.report is None else read_report(options.report)
-    except (BundleRefused, zipfile.BadZipFile, ValueError) as error:
+        saved = None if options.report is None else read_report(options.report)
+    except ImportError as error:
+        parser.error(f"{error}. {project.import_advice()}")
+    except (ValueError, zipfile.BadZipFile) as error:
         parser.error(printable(str(error)))
-    head = "this machine" if report is None else "report"
-    if report is None:
-        count = len(diagnosis.STEPS)
-        print(f"{count} steps; the first start of the engine takes minutes", file=sys.stderr)
-        report = examine()
-    results = [StepResult(**step) for step in report["steps"]]
-    print(json.dumps(report, indent=2, ensure_ascii=False) if options.json else table(results))
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    if not saved:
+        print("The first start of the engine takes minutes.", file=sys.stderr)
+    written = ""
+    for report in [saved] if saved else reports():
+        if not options.json:
+            text = table(report["steps"])
+            print(text[len(written) :], end="", flush=True)
+            written = text
+    if options.json:
+        print(shareable(json.dumps(report, indent=2)))
     if recorded is not None:
+        head = "report" if saved else "this machine"
         print("", *differences(report["machine"], recorded, head), sep="\n")
-    return 0 if all(one.state == "ok" for one in results) else 1
+    return int(any(step["state"] != "ok" for step in report["steps"]))
 
 
 if __name__ == "__main__":

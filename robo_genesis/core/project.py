@@ -2,14 +2,16 @@
 
 import hashlib
 import os
+import platform
 import re
+import shlex
+import sys
 import sysconfig
 import tomllib
 from collections.abc import Mapping, Sequence
+from importlib.machinery import PathFinder
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
-
-from packaging.requirements import Requirement
 
 MEASURES = False
 
@@ -27,6 +29,7 @@ KEPT, STAGING = "render", "staging"
 
 ENGINE = "genesis-world"
 COURSE = "robo-genesis"
+WHEEL = COURSE.replace("-", "_")  # How the name of its file begins
 BUILD_BACKEND = "cpu"  # What every page of the site is executed on
 
 # Environment variables by which commands, pages and Sphinx tell each other.
@@ -50,11 +53,11 @@ ENGINE_PREFIXES = (
     "NVIDIA_TF32_",
 )  # fmt: skip
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
-KERNELS = "QD_OFFLINE_CACHE_FILE_PATH"
+KERNELS, GEOMETRY, NUMBA = "QD_OFFLINE_CACHE_FILE_PATH", "GS_CACHE_FILE_PATH", "NUMBA_CACHE_DIR"
 CACHE_FOLDERS = {
     KERNELS: "kernels",
-    "GS_CACHE_FILE_PATH": "geometry",  # by default below the user's home, for all versions
-    "NUMBA_CACHE_DIR": "numba",
+    GEOMETRY: "geometry",  # by default below the user's home, for all versions
+    NUMBA: "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",
     "MPLCONFIGDIR": "matplotlib",  # its font list; also ignores a user's matplotlibrc
 }
@@ -89,10 +92,12 @@ def engine_pin(root: Path = ROOT) -> str:
         ProjectError: the dependencies cannot be read, the engine is missing, or its version is
             not exact.
     """
+    from packaging.requirements import Requirement  # the doctor starts where it is missing
+
     file, fix = str(root / "pyproject.toml"), "Fix the line in project.dependencies"
     if from_metadata := root == ROOT and not in_checkout():
         file = f"The metadata of the installed package {COURSE}"
-        fix = "Install the course's wheel again with pip, or use a checkout"
+        fix = f"Run {install_command()}, or use a checkout"
     try:
         text = "" if from_metadata else Path(file).read_text("utf8")
         declared = (
@@ -125,46 +130,67 @@ def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
 
     The course itself is excluded: pip leaves its metadata in a checkout.
     """
-    suffixes, course = (".dist-info", ".egg-info", ".egg-link", ".pth"), COURSE.replace("-", "_")
+    suffixes = (".dist-info", ".egg-info", ".egg-link", ".pth")
     return sorted(
         (str(folder), path.name, path.stat().st_mtime_ns)
         for folder in (Path(place or ".") for place in places)
         if folder.is_dir()
         for path in folder.iterdir()
-        if path.suffix in suffixes and not path.name.startswith(f"{course}.")
+        if path.suffix in suffixes and not path.name.startswith(f"{WHEEL}.")
     )
 
 
+def install_command(what: str = "") -> str:
+    """Return the command that installs packages into this Python, by default all of the course."""
+    here = "-r requirements.lock" if in_checkout() else f"-c constraints.txt ./{WHEEL}-*.whl"
+    return f"{shlex.quote(sys.executable)} -m pip install {what or here}"
+
+
+def import_advice() -> str:
+    """Return what to do where an import fails: rename one's own file, or install packages."""
+    if hidden := " and ".join(hidden_modules()):
+        return f"Python imports {hidden} of this folder, not the installed module: rename your file"
+    course = f"{'.venv' if in_checkout() else 'course'}/bin/python"
+    here = f"This is Python {platform.python_version()}, {sys.executable}"
+    return f"{here}. Start the one of the course, {course}, or run {install_command()}"
+
+
+def hidden_modules() -> list[str]:
+    """Return the files of the working folder that Python imports in place of installed modules."""
+    here = Path.cwd()
+    others = [folder for folder in sys.path if Path(folder).resolve() != here]
+    own = [*here.glob("*.py"), *(path.parent for path in here.glob("*/__init__.py"))]
+    hidden = (p.name for p in own if p.stem != WHEEL and PathFinder.find_spec(p.stem, others))
+    return sorted(hidden)
+
+
+def unmet_requirements() -> list[str]:
+    """Return which packages the engine requires in another version."""
+    from packaging.requirements import Requirement
+
+    needed = [Requirement(line) for line in requires(ENGINE) or () if "extra ==" not in line]
+    found = {line: installed_version(line.name) for line in needed}
+    return [
+        f"{line.name}{line.specifier} is required, installed is {version}"
+        for line, version in found.items()
+        if version and not line.specifier.contains(version, prereleases=True)
+    ]
+
+
 def require_pinned_engine(root: Path = ROOT) -> str:
-    """Return the pinned engine version after checking that this environment has it.
-
-    Args:
-        root: the checkout.
-
-    Raises:
-        ProjectError: another engine version is installed, or none.
-    """
+    """Return the engine version that a checkout pins; raise ProjectError if it is not installed."""
     pin, installed = engine_pin(root), installed_version(ENGINE)
     if installed != pin:
-        found = f"Installed is {ENGINE} {installed or '(none)'}, pinned in pyproject.toml is {pin}."
-        if not in_checkout():
-            raise ProjectError(f"{found} Run pip install {ENGINE}=={pin}.")
+        command = install_command("" if in_checkout() else f"{ENGINE}=={pin}")
         raise ProjectError(
-            f"{found} Install the lock (pip install -r requirements.lock), or change pin and lock "
-            "together."
+            f"Installed is {ENGINE} {installed or '(none)'}, the course needs {pin}. Run {command}"
+            f"{', or change pin and lock together' * in_checkout()}"
         )
     return pin
 
 
 def lock_digest(root: Path = ROOT) -> str:
-    """Return the sha256 of requirements.lock as hex digits.
-
-    Args:
-        root: the checkout.
-
-    Raises:
-        ProjectError: there is no lock.
-    """
+    """Return the sha256 of a checkout's lock as hex digits; raise ProjectError without a lock."""
     lock = root / "requirements.lock"
     if not lock.is_file():
         raise ProjectError(f"No {lock}. `make lock` writes it.")
@@ -197,6 +223,15 @@ def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> di
     for path in paths.values():
         path.mkdir(parents=True, exist_ok=True)
     return {name: str(path) for name, path in paths.items()} | CACHE_LIMIT
+
+
+def cache_folders() -> dict[str, str]:
+    """Return the folders of compiled code by variable: as it is set, or else the default."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    default = {KERNELS: "quadrants/qdcache", GEOMETRY: "genesis", NUMBA: "numba"}
+    found = {name: f"{base}/{path}" for name, path in default.items()}
+    own = engine_cache_environment() if in_checkout() else {}
+    return {name: os.environ.get(name) or (found | own)[name] for name in found}
 
 
 def nothing_compiled(environment: Mapping[str, str]) -> bool:

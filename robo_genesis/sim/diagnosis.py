@@ -2,9 +2,8 @@
 
 import os
 import platform
-import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -64,17 +63,21 @@ class StepResult:
 
 
 def version(bench: Bench) -> str:
-    """The pinned engine is the installed one."""
+    """The pinned engine is the installed one, with packages in the versions that it requires."""
     pin = project.require_pinned_engine()
+    if unmet := "; ".join(project.unmet_requirements()):
+        raise StepError(f"{unmet}. Run {project.install_command()}")
     return f"{project.ENGINE} {pin}, as pinned; Python {platform.python_version()}"
 
 
 def libraries(bench: Bench) -> str:
-    """EGL and OpenGL can be loaded, which the engine needs even without a camera."""
+    """OpenGL and EGL can be loaded, and EGL starts: the engine needs them even without a camera."""
     if sys.platform != "linux":
         return f"not checked on {sys.platform}"
-    session.require_libraries()
-    return f"{' and '.join(session.LIBRARIES)} can be loaded"
+    if (given := os.environ.get("PYOPENGL_PLATFORM", "egl")) != "egl":
+        raise StepError(f"PYOPENGL_PLATFORM={given!r} does not work with the engine: unset it.")
+    session.require_display(session.require_libraries())
+    return f"{' and '.join(session.LIBRARIES)} can be loaded, and EGL starts"
 
 
 def backend(bench: Bench) -> str:
@@ -83,6 +86,10 @@ def backend(bench: Bench) -> str:
     if project.in_checkout():
         for name, value in project.engine_cache_environment().items():
             os.environ.setdefault(name, value)  # reuse the kernels that `make book` compiled
+    if not (os.environ.get("HOME") or os.environ.get("XDG_CACHE_HOME")):
+        raise StepError("HOME is not set, and the compiler ends without it: export HOME=folder")
+    for name, folder in project.cache_folders().items():
+        session.require_writable(name, Path(folder))
     bench.engine = session.start(bench.contract)
     found = bench.engine.backend
     return f"asked for {found.requested}, found {found.actual} ({found.device_name})"
@@ -119,7 +126,7 @@ def render(bench: Bench) -> str:
 
 
 def names(bench: Bench) -> str:
-    """Nine joints are found by name, with the expected DOFs, types and limits."""
+    """Nine joints are found by name, with the expected DOFs and types."""
     robot = bench.robot
     bench.joints = robot_model.resolve_joints(robot, franka.JOINT_NAMES)
     counts = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
@@ -129,10 +136,7 @@ def names(bench: Bench) -> str:
             f"The model has {model} and joints {', '.join(bench.joints.types)}; expected "
             f"{franka.MODEL_COUNTS} and {', '.join(franka.JOINT_TYPES)}. Check model and version."
         )
-    lower, upper = bench.joints.lower, bench.joints.upper
-    if not (np.isfinite(lower).all() and np.isfinite(upper).all() and (lower < upper).all()):
-        raise StepError(f"Limits {lower} to {upper} are not ranges. Check model and version.")
-    return f"{len(franka.JOINT_NAMES)} joints by name, {model['dofs']} DOFs, every limit a range"
+    return f"{len(franka.JOINT_NAMES)} joints by name, {model['dofs']} DOFs"
 
 
 def target(bench: Bench) -> str:
@@ -183,19 +187,18 @@ STEPS: tuple[Callable[[Bench], str], ...] = (
 Subject = TypeVar("Subject")
 
 
-def run_steps(steps: Sequence[Callable[[Subject], str]], subject: Subject) -> list[StepResult]:
-    """Run steps in order; after a broken one, run none.
+def run_steps(steps: Sequence[Callable[[Subject], str]], subject: Subject) -> Iterator[StepResult]:
+    """Run steps in order and yield the result of each; after a broken one, run none.
 
     Args:
         steps: each returns what it found, or raises an error that says what to do.
         subject: what all steps look at, and where they leave what later steps need.
     """
-    results: list[StepResult] = []
+    state: State = "ok"
     for step in steps:
-        ended = any(result.state == "broken" for result in results)
-        found: tuple[State, str] = ("not run", "") if ended else outcome(step, subject)
-        results.append(StepResult(step.__name__, *found))
-    return results
+        ended = state in ("broken", "not run")
+        state, found = ("not run", "") if ended else outcome(step, subject)
+        yield StepResult(step.__name__, state, found)
 
 
 def outcome(step: Callable[[Subject], str], subject: Subject) -> tuple[State, str]:
@@ -212,17 +215,10 @@ def advice(error: Exception) -> str:
     """Return the message of an error and what to do; the course's own messages say both."""
     if type(error).__module__.startswith("robo_genesis."):
         return str(error)
+    name = f"{type(error).__name__}: {error}"
+    if project.hidden_modules():
+        return f"{name}. {project.import_advice()}"
     return (
-        f"{type(error).__name__}: {error}. The course does not know this error: search for its "
+        f"{name}. The course does not know this error: search for its "
         "text among the engine's issues, and report it with the output of --json."
     )
-
-
-def shareable(text: str) -> str:
-    """Return a text without folders, which can name users; paths in the course stay relative."""
-    known = {project.ROOT: "<course>", Path(sys.prefix): "<environment>", Path.home(): "~"}
-    for folder in sorted(known, key=lambda path: -len(str(path))):
-        if folder != Path(folder.anchor):
-            text = text.replace(str(folder), known[folder])
-    text = re.sub(r"([/\\](?:home|Users)[/\\])[^/\\\s'\"]+", r"\1…", text)
-    return re.sub(r"(?<![\w.~>/-])/(?:[^/\s'\"]+/)+", "…/", text)

@@ -25,13 +25,13 @@ from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
 """Valid values of the variables of the contract; the first is the default."""
 
-LIBRARIES = ("libEGL.so.1", "libGL.so.1")  # What the engine needs even without a camera
+LIBRARIES = ("libGL.so.1", "libEGL.so.1")  # What the engine needs even without a camera
 
 PRECISION = "32"
 ARGUMENTS = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}
 """Of each `gs.init` of the course, beside backend and log."""
 
-INSTALL = "Install it again: pip install --force-reinstall -r requirements.lock."
+PLATFORM_DEVICE = 0x313F  # Of EGL: without a window system
 
 
 class ContractError(ValueError):
@@ -56,8 +56,7 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
 
     Unset means cpu, 1 and `outputs` in the working directory.
 
-    Raises:
-        ContractError: naming the variable, its value and the choices.
+    It raises ContractError with the variable, its value and the choices.
     """
     environ = os.environ if environ is None else environ
     values = {name: environ.get(name, choices[0]) for name, choices in CHOICES.items()}
@@ -66,17 +65,22 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
             choices = ", ".join(sorted(CHOICES[name]))
             raise ContractError(f"{name}={value!r} is not valid. Choose one of: {choices}.")
     outputs = Path(environ.get(OUTPUTS_DIR) or "outputs").resolve()
-    try:
-        outputs.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=outputs):
-            pass
-    except OSError as error:
-        raise ContractError(
-            f"{OUTPUTS_DIR}={str(outputs)!r} cannot be written: {error.strerror}. "
-            "Name a folder that you may create and write."
-        ) from error
+    require_writable(OUTPUTS_DIR, outputs)
     backend, render = values.values()
     return Contract(backend, render == "1", outputs)
+
+
+def require_writable(variable: str, folder: Path) -> None:
+    """Raise ContractError unless the folder of a variable can be made and takes a file of 1 MB."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(bytes(2**20))
+    except OSError as error:
+        raise ContractError(
+            f"{variable}={str(folder)!r} cannot be written: {error.strerror}. "
+            "Name a folder that you may create and write."
+        ) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,8 +128,7 @@ def start(contract: Contract) -> Engine:
 def requested_backend(contract: Contract) -> Any:
     """Return the argument `backend` of the `gs.init` that follows, and start to keep its log.
 
-    Raises:
-        EngineError: Genesis is missing or already initialised, or a graphics library is missing.
+    It raises EngineError if Genesis is missing or initialised, or a graphics library is missing.
     """
     gs = import_engine()
     if getattr(gs, "_initialized", False):
@@ -191,43 +194,56 @@ def _kept_logs() -> list[EngineLog]:
 
 
 def import_engine() -> Any:
-    """Import Genesis after the libraries that it needs even without a camera.
-
-    Raises:
-        EngineError: saying what is missing and the command that installs it.
-    """
+    """Import Genesis, or raise EngineError: what is missing, and the command that installs it."""
     if sys.platform == "linux":
         require_libraries()
     spare_repeated_work()
     try:
         return importlib.import_module("genesis")
     except ImportError as error:
-        raise EngineError(f"Genesis cannot be imported: {error}. {INSTALL}") from error
+        advice = project.import_advice()
+        raise EngineError(f"Genesis cannot be imported: {error}. {advice}") from error
 
 
 def asset(name: str) -> Path:
-    """Return the path of a file that Genesis bundles; the engine is found, not imported.
-
-    Raises:
-        EngineError: genesis-world is not installed, or does not have the file.
-    """
+    """Return the path of a file of the engine, which is not imported, or raise EngineError."""
     found = find_spec("genesis")
     path = Path(found.origin if found and found.origin else "genesis").parent / "assets" / name
     if not path.is_file():
-        raise EngineError(f"{project.ENGINE} has no file genesis/assets/{name}. {INSTALL}")
+        engine = f"{project.ENGINE}=={project.engine_pin()}"
+        again = project.install_command(f"--force-reinstall --no-deps {engine}")
+        raise EngineError(f"{engine} has no file genesis/assets/{name}. Run {again}")
     return path
 
 
-def require_libraries() -> None:
-    """Raise EngineError for one of `LIBRARIES` that cannot be loaded."""
+def require_libraries() -> ctypes.CDLL:
+    """Load `LIBRARIES` and return the last one, EGL; raise EngineError if one cannot be loaded."""
     for name in LIBRARIES:
         try:
-            ctypes.CDLL(name)
+            library = ctypes.CDLL(name)
         except OSError as error:
             raise EngineError(
                 f"{name} cannot be loaded ({error}). Genesis needs EGL and OpenGL even without a "
                 "camera. On Debian: apt install libegl1 libgl1"
             ) from error
+    return library
+
+
+def require_display(egl: ctypes.CDLL) -> None:
+    """Start EGL without a window system, as `scene.build()` does; raise EngineError if it fails."""
+    pointer = egl.eglGetProcAddress.restype = ctypes.c_void_p
+    call = ctypes.CFUNCTYPE(pointer, ctypes.c_uint, pointer, pointer)
+    names = (b"eglQueryDevicesEXT", b"eglGetPlatformDisplayEXT")
+    query, display = (call(egl.eglGetProcAddress(name)) for name in names)
+    devices, count = (pointer * 64)(), ctypes.c_int()
+    query(len(devices), devices, ctypes.addressof(count))
+    found = [display(PLATFORM_DEVICE, device, None) for device in devices[: count.value]]
+    if not any(egl.eglInitialize(pointer(one), None, None) for one in found):
+        raise EngineError(
+            f"EGL starts on none of {count.value} devices, so scene.build() fails. A driver is "
+            "missing, or its file in /usr/share/glvnd/egl_vendor.d. On Debian: apt install "
+            "--reinstall libegl-mesa0. Unset variables that begin with __EGL_VENDOR."
+        )
 
 
 def probe(requested: str) -> Backend:

@@ -49,7 +49,7 @@ def test_without_a_checkout_the_pin_is_that_of_the_installed_package(monkeypatch
     monkeypatch.setattr(project, "requires", lambda package: ["genesis-world==9.8.7"])
     assert project.engine_pin() == "9.8.7"
     monkeypatch.setattr(project, "requires", lambda package: None)
-    said = rf"^The metadata of the installed package .* {NO_PIN}.*Install the course's wheel again"
+    said = rf"^The metadata of the installed package .* {NO_PIN}.* -c constraints.txt ./robo_gen"
     with pytest.raises(project.ProjectError, match=said):
         project.engine_pin()
 

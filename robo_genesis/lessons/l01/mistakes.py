@@ -3,6 +3,7 @@
 import os
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,20 @@ from robo_genesis.sim.fresh_process import run_python
 
 MEASURES = False
 
+PLAIN = """\
+import genesis as gs
+try:
+    gs.init(backend=gs.%s, logging_level="error")
+    gs.Scene(show_viewer=False).build()
+    print(gs.backend.name)
+except Exception as error:
+    print(f"{type(error).__name__}:", *str(error).split())
+"""
+
 
 def broken_step(name: str, report: Mapping[str, Any], step: str) -> Mistake:
     """Return a failure on purpose by the step at which the doctor stopped."""
-    found = next(s for s in report["steps"] if s["step"] == step)["found"]
+    found = next((s["found"] for s in report["steps"] if s["state"] == "broken"), "nothing broken")
     return Mistake(
         name,
         shown=report["broken"] == step,
@@ -34,20 +45,25 @@ def wrong_version() -> Mistake:
 
 
 def no_egl() -> Mistake:
-    """Run the doctor where the file of EGL contains a line of text."""
+    """Run the doctor and a plain script where EGL finds the file of no driver."""
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "libEGL.so.1").write_text("not a library")
-        return broken_step("no_egl", machine.examine({"LD_LIBRARY_PATH": folder}), "libraries")
+        changed = {"__EGL_VENDOR_LIBRARY_DIRS": folder}
+        found = broken_step("no_egl", machine.examine(changed), "libraries")
+        line = plain_script("cpu", changed)
+    evidence = f"{found.evidence}\n\nA script with `gs.init` and `scene.build()` ends with `{line}`"
+    return replace(found, shown=found.shown and "EGL" in line, evidence=evidence)
 
 
 def absent_backend() -> Mistake:
     """Ask the engine for a processor that this machine does not have."""
-    call = 'import genesis as gs\ntry:\n    gs.init(backend=gs.metal, logging_level="error")\n'
-    call += 'except Exception as error:\n    print(type(error).__name__, error, sep=": ")\n'
-    call += "else:\n    print(gs.backend.name)"
-    line = run_python(["-c", call], {}).strip().splitlines()[-1]
+    line = plain_script("metal", {})
     return Mistake(
         "absent_backend",
         shown="Exception" in line or "Error" in line,
         evidence=f"`gs.init(backend=gs.metal)` on this machine, in a process of its own: `{line}`",
     )
+
+
+def plain_script(backend: str, changed: Mapping[str, str]) -> str:
+    """Return how `PLAIN` ends in a process of its own, with changed environment variables."""
+    return run_python(["-c", PLAIN % backend], changed).strip().splitlines()[-1]

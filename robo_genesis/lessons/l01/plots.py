@@ -1,10 +1,12 @@
 """Figures of L01, each a function of the experiment."""
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import look
+from robo_genesis.lessons.l01 import machine
 from robo_genesis.sim.bodies.free_fall import summed_drop
 
 MEASURES = False
@@ -29,3 +31,19 @@ def ends(run: Experiment) -> Figure:
     if not run.rendered:
         return height(run)
     return plotting.stacked({name: run.frames[name] for name in ("initial", "final")})
+
+
+def starts(run: Experiment) -> Figure:
+    """Draw the time of each part of both starts [s], in whole seconds beside the bars."""
+    (figure, ax), found = plotting.axes(3.6), run.readings[machine.TIMES]
+    for start, shift in zip(machine.STARTS, (-0.2, 0.2), strict=True):
+        times = [found[f"{start}_{part}"] for part in machine.PARTS]
+        times.append(sum(times))
+        places, colour = np.arange(len(times)) + shift, look(start)["color"]
+        bars = ax.barh(places, times, 0.38, color=colour, label=f"{start} start")
+        ax.bar_label(bars, [f"{t:.0f}" if t > 0.5 else "< 1" for t in times], padding=3)
+    ax.set_yticks(range(len(times)), [*machine.PARTS.values(), "together"])
+    ax.invert_yaxis()
+    ax.set_xlabel("time [s]")
+    plotting.legend_above(ax, "Where the time of a start goes")
+    return figure

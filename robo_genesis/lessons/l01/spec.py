@@ -36,9 +36,6 @@ FORMULA_TOLERANCE = 1e-6
 VIEW = CAMERA | {"pos": (0.75, -0.75, 0.5), "lookat": (0.0, 0.0, 0.32), "fov": 36}
 """The lesson's camera: ground and sphere are in the picture."""
 
-MORE_STEPS = 100
-"""Outer steps after the first one whose time is measured."""
-
 RESOLUTION = {"m": 1e-6, "s": DT / 2, "1": 0.5}
 """By unit, the difference below which two values count as equal."""
 
@@ -52,8 +49,3 @@ RELATIONS = ()
 def parameters() -> dict[str, Any]:
     """Return every configured input as JSON values, for the evidence key."""
     return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL))
-
-
-def lecture_parameters() -> dict[str, Any]:
-    """Return the inputs of the lecture, which also measures how long a start takes."""
-    return parameters() | {"more_steps": MORE_STEPS}

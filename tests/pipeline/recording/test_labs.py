@@ -139,7 +139,7 @@ FOUND += [StepResult("torch", "warning", "c")]
         ({"lesson": "l05"}, r"^LESSON='l05' is not valid\. Lessons with a lab: l04; unset, all\."),
         ({"expected": "rocm"}, r"^BACKEND='rocm' is not valid\. Choices: amdgpu, cuda, cpu;"),
         ({"to": Path("file", "below")}, r"file is not a folder .* TO=folder"),
-        ({"root": Path()}, r"Installed is genesis-world \S+, pinned in pyproject.toml is 0\.0\.1"),
+        ({"root": Path()}, r"Installed is genesis-world \S+, the course needs 0\.0\.1"),
         ({"probe": finds("cuda", *FOUND)}, r"^Broken: devices, kernel\. The lines"),
     ],
 )

@@ -33,6 +33,7 @@ from robo_genesis.site.takeaways.files import (
 
 LINKS = ["link0", "link4", "hand"]
 UP_TO_THE_ENGINE = """
+import json
 from robo_genesis import doctor
 from robo_genesis.sim import session
 
@@ -40,7 +41,7 @@ def start(contract):
     raise OSError("the engine would start now")
 
 session.start = start
-doctor.main(["--json"])
+print(json.dumps([*doctor.examine()][-1]))
 """
 
 
@@ -122,7 +123,7 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
     home.mkdir()
     with zipfile.ZipFile(build_wheel(tmp_path)) as wheel:
         wheel.extractall(installed)
-    given = os.environ | {"PYTHONPATH": str(installed)}
+    given = os.environ | {"PYTHONPATH": str(installed), "HOME": str(home)}
     command = [sys.executable, "-c", UP_TO_THE_ENGINE]
     done = subprocess.run(command, cwd=home, env=given, capture_output=True, text=True, check=False)
     version, libraries, backend = json.loads(done.stdout)["steps"][:3]
