@@ -45,14 +45,20 @@ MOTION = MeasuringPage(
     parameters=spec.parameters,
     camera=False,
 )
-LECTURE = replace(
+RECORDED = replace(
     MOTION,
     readings=MODEL | study.READINGS | SEEN | view_record.groups(spec.VIEWED),
     checks=checks.CHECKS,
     camera=True,
     frames=("initial", "final", *view_record.frame_names(spec.VIEWED)),
 )
-LAB = with_functions(LECTURE, "chain", "damped", "accept", "project", "back_project")
+LECTURE = replace(
+    RECORDED,
+    runs=RECORDED.runs | runs_of(spec.FINER | {"unlimited": spec.FREE}),
+    checks=checks.LECTURE,
+    parameters=lambda: spec.parameters() | {"finer": spec.FINE},
+)
+LAB = with_functions(RECORDED, "chain", "damped", "accept", "project", "back_project")
 
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
 ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}

@@ -45,9 +45,21 @@ CASES = {
 CASE_MARKS = dict(zip(CASES, ("baseline", "first", "second", "third"), strict=True))
 """The mark of each case in the palette."""
 
+FINE = 20
+FINER = {
+    f"{name}_fine": replace(CASES[name], substeps=FINE)
+    for name in ("baseline", "kp_doubled", "kp_doubled_ramp")
+}
+"""Runs of the lecture with a smaller solver step."""
+
+FREE = replace(CASES["kp_doubled"], effort_limit=10 * franka.EFFORT_LIMIT)
+"""A run of the lecture in which no joint meets a force limit."""
+
 LABELS = {
     name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ") for name in CASES
 }
+LABELS |= {f"{name}_fine": f"{LABELS[name]}, {FINE} substeps" for name in CASES}
+LABELS["unlimited"] = "KP doubled, ten times the force limits"
 """Words of a reader for runs."""
 
 VIEWED = "world"

@@ -83,8 +83,8 @@ def price_table(run: Experiment) -> str:
     """Return how far each run passes the target, and in how many samples it is at a force limit."""
     heads = {"past the target [mm]": 1, "at limit": 0, "to target at the end [mm]": 2}
     rows = {}
-    for name in spec.CASES:
-        trace, m = run.traces[name], run.metrics[name]
+    for name, m in run.metrics.items():
+        trace = run.traces[name]
         at_limit = np.abs(trace.control_force) >= AT_LIMIT * trace.effort_limit
         samples = at_limit[:, : kinematics.ARM].any(axis=1).sum()
         rows[spec.LABELS[name]] = 1000 * m.overshoot, samples, 1000 * m.final_distance

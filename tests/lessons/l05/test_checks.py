@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import copied, failed, put, reading, shift, trace
-from robot_runs import answer
+from robot_runs import LINKS, answer, driven
 
+from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l05 import spec, study
+from robo_genesis.lessons.l05 import checks, spec, study
 from robo_genesis.lessons.l05.laws import laws_of_motion
 from robo_genesis.lessons.l05.metrics import reach_metrics
+from robo_genesis.lessons.l05.pages import LECTURE
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
@@ -70,6 +72,19 @@ def test_each_check_of_the_page_has_such_a_change(reaches):
     assert not failed(reaches)
     names = {check.__name__ for check in reaches.page.checks}
     assert names == {name for name, _ in CHANGES} | {"laws_of_motion"}
+
+
+def test_the_lecture_compares_solver_steps_and_force_limits(reaches):
+    found = answer(spec.TARGET, spec.BASELINE.q_start, 100)
+    more = {name: case for name, case in LECTURE.cases.items() if name not in reaches.traces}
+    runs = {name: driven(control_case(case, found), LINKS) for name, case in more.items()}
+    run = replace(reaches, page=LECTURE, traces={**reaches.traces, **runs})
+    changes = (lambda of: of, copied("kp_doubled_fine", "kp_doubled"),
+               copied("unlimited", "kp_doubled"))  # fmt: skip
+    outcomes = [evaluate(checks.LECTURE[-2:], change(run)) for change in changes]
+    assert [[check.passed for check in of] for of in outcomes] == [
+        [True, True], [False, True], [True, False],
+    ]  # fmt: skip
 
 
 def test_the_record_of_answers_has_the_dt_of_its_case():

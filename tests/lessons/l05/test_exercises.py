@@ -129,6 +129,8 @@ CASES = {
         "of length 1": lambda J, e, d: STEP(J, e, d) / np.linalg.norm(STEP(J, e, d)),
         "as a column": lambda J, e, d: STEP(J, e, d)[:, None],
         "six rows alone": lambda J, e, d: J.T @ np.linalg.solve(J @ J.T + d**2 * np.eye(6), e),
+        "seven joints alone": lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(7), J.T @ e),
+        "damping for six rows alone": lambda J, e, d: STEP(J, e, d if len(e) == 6 else 0.01),
         "error changed": in_place(STEP, 1),
     },
     "acceptance": {
@@ -151,6 +153,16 @@ CASES = {
         "above the least clearance": lambda *given: ACCEPT(*given) and given[2] > given[5],
         "size of the clearance": fed(ACCEPT, lambda q, e, tip, *rest: (q, e, abs(tip), *rest)),
         "below the tolerances": fed(ACCEPT, lambda *g: (*g[:3], 0.99 * g[3], 0.99 * g[4], g[5])),
+        "rotation about z left out": fed(ACCEPT, lambda q, e, *r: (q, e * (1, 1, 1, 1, 1, 0), *r)),
+        "ends of q alone": fed(ACCEPT, lambda q, *rest: (q[[0, -1]], *rest)),
+        "not too large": lambda q, e, tip, a, b, c: (
+            bool(
+                np.isfinite(q).all()
+                and not np.linalg.norm(e[3:]) > b
+                and np.linalg.norm(e[:3]) <= a
+            )
+            and tip >= c
+        ),
         "no answer": lambda *given: None,
     },
     "project": {
@@ -177,6 +189,8 @@ CASES = {
         "points behind in front": lambda p, k, t: (
             (seen := cameras.in_camera(p, t)) / abs(seen[:, 2:]) @ k.T
         )[:, :2],
+        "all or none": lambda p, k, t: PROJECT(p, k, t) + 0 * PROJECT(p, k, t).sum(),
+        "middle typed": lambda p, k, t: PROJECT(p, changed(k, by=(16, 10) - k[:2, 2]), t),
         "one point alone": lambda p, k, t: PROJECT(p[:1], k, t)[0],
         "points changed": in_place(PROJECT, 0),
         "pose changed": in_place(PROJECT, 2),
@@ -199,6 +213,7 @@ CASES = {
         "one depth for all": lambda d, k, t: BACK(np.full_like(d, d.mean()), k, t),
         "a list of points": lambda *given: BACK(*given).reshape(-1, 3),
         "millimetres": lambda *given: 1000 * BACK(*given),
+        "size typed": lambda d, k, t: BACK(np.resize(d, (20, 32)), k, t),
         "depth changed": in_place(BACK, 0),
     },
 }
