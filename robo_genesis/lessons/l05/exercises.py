@@ -126,8 +126,8 @@ def project(function: Callable[..., Any]) -> Iterator[Finding]:
         yield from same_array(name, function(points, K, transform), expected, ROUNDED)
         both = np.vstack([seen * (1, 1, -1), seen])  # behind the camera, and in front of it
         missing = np.isnan(function(both @ pose[:3, :3].T + pose[:3, 3], K, transform))
-        expected = [True] * 5 + [False] * 5
-        yield equal(f"{name}.without_a_pixel", missing.all(axis=1).tolist(), expected)
+        absent = [True] * 5 + [False] * 5
+        yield equal(f"{name}.without_a_pixel", missing.all(axis=1).tolist(), absent)
 
 
 @as_test

@@ -54,7 +54,7 @@ RECORDED = replace(
 )
 LECTURE = replace(
     RECORDED,
-    runs=RECORDED.runs | runs_of(spec.FINER | {"unlimited": spec.FREE}),
+    runs={**RECORDED.runs, **runs_of(spec.FINER | {"unlimited": spec.FREE})},
     checks=checks.LECTURE,
     parameters=lambda: spec.parameters() | {"finer": spec.FINE},
 )
