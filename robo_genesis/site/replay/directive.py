@@ -124,7 +124,7 @@ def replay_block(
     veiled = ["growing", *(["veiled"] if env.docname != env.config.root_doc else [])] * blind
     block = nodes.container(classes=["replay-block", *veiled], evidence_runs=(key,))
     block += html(opening)
-    over = controls.over_the_picture("Play") + controls.VEIL * blind
+    over = controls.over_the_picture("Play", blind)
     block += stage(still, over, controls.caption(runs, around), f"{name}-model")
     fold = f"<details><summary>{summary}</summary>"
     block += html(controls.panel(name, shown, weight) + fold)
