@@ -33,8 +33,7 @@ def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _cell(value: Any) -> str:
     if isinstance(value, float):
-        text = f"{value:.4f}".rstrip("0").rstrip(".")
-        return "0" if text == "-0" else text.replace("-", "−")
+        return f"{value:z.4f}".rstrip("0").rstrip(".").replace("-", "−")
     return str(value)
 
 

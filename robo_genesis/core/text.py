@@ -52,9 +52,7 @@ def format_value(value: float | None, unit: str) -> str:
         return NOT_OBSERVED
     if unit == "1":
         return f"{value} sample" if value == 1 else f"{value} samples"
-    digits = DIGITS[unit]
-    text = f"{value:.{digits}f}"
-    return f"{text.removeprefix('-') if float(text) == 0 else text} {unit}"
+    return f"{value:z.{DIGITS[unit]}f} {unit}"
 
 
 def six_digits(value: float | None, unit: str) -> str:
@@ -102,8 +100,7 @@ def signed(value: float, digits: int) -> str:
 
 def decimal(value: float, digits: int) -> str:
     """Return a value with digits after the point; the minus sign is U+2212, and zero has none."""
-    text = f"{value:.{digits}f}"
-    return text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
+    return f"{value:z.{digits}f}".replace("-", "−")
 
 
 def with_unit(value: float, unit: str, digits: int = 4) -> str:

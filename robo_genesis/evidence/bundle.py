@@ -20,17 +20,7 @@ import rfc8785
 from pydantic import Field, TypeAdapter, ValidationError
 
 from robo_genesis.core.text import LONGEST_SHOWN
-from robo_genesis.evidence.fields import (
-    Found,
-    Index,
-    Line,
-    LongLine,
-    Message,
-    RunId,
-    Sha256,
-    Strict,
-    Timestamp,
-)
+from robo_genesis.evidence import fields
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence.strict_json import read_json
 from robo_genesis.sim.camera.frames import Renderer
@@ -46,110 +36,110 @@ KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
 Value = TypeVar("Value")
 
 
-class Digest(Strict):
+class Digest(fields.Strict):
     """The digest of one file."""
 
-    sha256: Sha256
+    sha256: fields.Sha256
 
 
-class Subject(Strict):
+class Subject(fields.Strict):
     """One file of the bundle; the name is relative to the folder of the bundle."""
 
-    name: Line
+    name: fields.Line
     digest: Digest
 
 
-class EngineRecord(Strict):
+class EngineRecord(fields.Strict):
     """The engine that computed the runs."""
 
-    version: Line
-    quadrants_version: Line
-    precision: Line
+    version: fields.Line
+    quadrants_version: fields.Line
+    precision: fields.Line
     files_match_wheel: bool
 
 
-class BackendRecord(Strict):
+class BackendRecord(fields.Strict):
     """The backend: requested, found after `gs.init`, and found again at the end of the run."""
 
     requested: Literal["auto", "cpu"]
     actual: Literal["cpu", "cuda", "amdgpu", "metal"]
     actual_at_end: Literal["cpu", "cuda", "amdgpu", "metal"]
-    arch: Line
-    torch_device: Line
-    torch_version: Line
-    hip_version: Line | None
-    cuda_version: Line | None
-    device_name: Line
-    driver: Line | None
+    arch: fields.Line
+    torch_device: fields.Line
+    torch_version: fields.Line
+    hip_version: fields.Line | None
+    cuda_version: fields.Line | None
+    device_name: fields.Line
+    driver: fields.Line | None
 
 
-class RenderRecord(Strict):
+class RenderRecord(fields.Strict):
     """The renderer of the frames; with mode `skip`, the other fields are None."""
 
     mode: Literal["camera", "skip"]
-    vendor: Line | None
-    renderer: Line | None
+    vendor: fields.Line | None
+    renderer: fields.Line | None
     software: bool | None
 
 
-class HostRecord(Strict):
+class HostRecord(fields.Strict):
     """The machine and its packages."""
 
-    os: Line
-    machine: Line
-    cpu: Line
+    os: fields.Line
+    machine: fields.Line
+    cpu: fields.Line
     cores: int = Field(ge=1, lt=2**31)
-    python: Line
-    packages: dict[Line, Line]
+    python: fields.Line
+    packages: dict[fields.Line, fields.Line]
 
 
-class GitRecord(Strict):
+class GitRecord(fields.Strict):
     """State of the checkout."""
 
     commit: str = Field(pattern="^([0-9a-f]{40}|[0-9a-f]{64})$")
     dirty: bool
 
 
-class SourceRecord(Strict):
+class SourceRecord(fields.Strict):
     """Digests of the syntax of what computed: code cells and modules; and of data files."""
 
-    page: Sha256 | None
-    modules: dict[Line, Sha256]
+    page: fields.Sha256 | None
+    modules: dict[fields.Line, fields.Sha256]
 
 
-class CheckRecord(Strict):
+class CheckRecord(fields.Strict):
     """Outcome of one named check: what it found, and whether it passed when it was recorded."""
 
-    name: Line
+    name: fields.Line
     passed: bool
-    found: dict[Line, Found]
+    found: dict[fields.Line, fields.Found]
 
 
-class Predicate(Strict):
+class Predicate(fields.Strict):
     """The circumstances and outcomes of the run."""
 
     schema_version: int
-    lesson: Line
-    page: Line
-    run_id: RunId
-    started: Timestamp
-    ended: Timestamp
-    command: LongLine
+    lesson: fields.Line
+    page: fields.Line
+    run_id: fields.RunId
+    started: fields.Timestamp
+    ended: fields.Timestamp
+    command: fields.LongLine
     engine: EngineRecord
     backend: BackendRecord
     render: RenderRecord
     host: HostRecord
-    environment: dict[Line, LongLine]
-    parameters: dict[Line, Any]
+    environment: dict[fields.Line, fields.LongLine]
+    parameters: dict[fields.Line, Any]
     seed: int
     checks: list[CheckRecord]
-    warnings: list[Message]
+    warnings: list[fields.Message]
     git: GitRecord | None
     source: SourceRecord
-    evidence_key: Sha256
+    evidence_key: fields.Sha256
 
 
-class Manifest(Strict):
+class Manifest(fields.Strict):
     """`manifest.json`, in the shape of an in-toto Statement."""
 
     type_: Literal["https://in-toto.io/Statement/v1"] = Field(alias="_type")
@@ -158,51 +148,51 @@ class Manifest(Strict):
     predicate: Predicate
 
 
-class Metric(Strict):
+class Metric(fields.Strict):
     """One number of `metrics.json`; null means not observed."""
 
     value: int | float | None
-    unit: Line
+    unit: fields.Line
     kind: Literal["exact", "value", "performance"] = Field(alias="class")
-    source: list[Line] = Field(alias="from")
+    source: list[fields.Line] = Field(alias="from")
 
 
-class Variable(Strict):
+class Variable(fields.Strict):
     """One array of `arrays.json`. `unit` is a list if each DOF has its own unit."""
 
-    dims: list[Line]
+    dims: list[fields.Line]
     shape: list[int]
-    dtype: Line
-    unit: Line | list[Line]
-    long_name: Line
+    dtype: fields.Line
+    unit: fields.Line | list[fields.Line]
+    long_name: fields.Line
 
 
-class CaseArrays(Strict):
+class CaseArrays(fields.Strict):
     """The arrays of one case."""
 
-    file: Line
-    note: Line
-    variables: dict[Line, Variable]
+    file: fields.Line
+    note: fields.Line
+    variables: dict[fields.Line, Variable]
 
 
-class JointRecord(Strict):
+class JointRecord(fields.Strict):
     """The joint of one DOF of the arrays; a limit is null if the model has none."""
 
-    name: Line
-    type_: Line = Field(alias="type")
-    dof_idx_local: Index
-    q_idx_local: Index
+    name: fields.Line
+    type_: fields.Line = Field(alias="type")
+    dof_idx_local: fields.Index
+    q_idx_local: fields.Index
     lower: float | None
     upper: float | None
-    unit: Line
+    unit: fields.Line
 
 
-class Arrays(Strict):
+class Arrays(fields.Strict):
     """`arrays.json`: labels of the dimensions, the joints, and the arrays of each case."""
 
-    coords: dict[Line, list[Line]]
+    coords: dict[fields.Line, list[fields.Line]]
     joints: list[JointRecord]
-    cases: dict[Line, CaseArrays]
+    cases: dict[fields.Line, CaseArrays]
 
 
 def sha256(path: Path) -> str:
@@ -264,7 +254,7 @@ def _check_version(found: Any) -> None:
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
     content = read_json(folder, "metrics.json")
-    return _validated(dict[Line, dict[Line, Metric]], content, "metrics.json")
+    return _validated(dict[fields.Line, dict[fields.Line, Metric]], content, "metrics.json")
 
 
 def by_full_name(metrics: Mapping[str, Mapping[str, Value]]) -> dict[str, Value]:
@@ -279,7 +269,7 @@ def read_arrays(folder: Path) -> Arrays:
 
 def read_printed(folder: Path) -> list[list[dict[str, Any]]]:
     """Return what each code cell of the page put out."""
-    return _validated(list[list[dict[Line, Any]]], read_json(folder, PRINTED), PRINTED)
+    return _validated(list[list[dict[fields.Line, Any]]], read_json(folder, PRINTED), PRINTED)
 
 
 _adapter = cache(TypeAdapter[Any])

@@ -9,15 +9,7 @@ from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, bundle_files, rows
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.rows import (
-    NOT_COMPARABLE,
-    SEVERITY,
-    SHOWN,
-    PageSpecification,
-    Section,
-    Side,
-    worst,
-)
+from robo_genesis.evidence.rows import PageSpecification, Section, Side, worst
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_lesson, find_page
 
@@ -50,8 +42,8 @@ class BundleComparison:
     def state(self) -> str:
         """The verdict: equal, within tolerance, inconclusive, differs or not comparable."""
         if self.obstacles:
-            return NOT_COMPARABLE
-        return worst([f.state for s in self.sections for f in s.rows if f.state != SHOWN])
+            return rows.NOT_COMPARABLE
+        return worst([f.state for s in self.sections for f in s.rows if f.state != rows.SHOWN])
 
 
 def specification(lesson: str, page: str) -> PageSpecification:
@@ -111,7 +103,7 @@ def _sections(old: Side, new: Side, spec: PageSpecification) -> tuple[Section, .
         rows.section("Arrays", rows.arrays(old, new, spec), "There are no arrays."),
         rows.section("Performance", rows.values(old, new, spec, "performance"), NO_PERFORMANCE),
     )
-    return tuple(sorted(every, key=lambda s: -SEVERITY.index(s.state)))
+    return tuple(sorted(every, key=lambda s: -rows.SEVERITY.index(s.state)))
 
 
 def read_side(folder: Path) -> Side:

@@ -5,18 +5,17 @@ Text of a bundle is escaped: it cannot control a terminal, begin a line or becom
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
-from string import Template
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
+from robo_genesis.core.markup import filled
 from robo_genesis.core.text import bullets, printable
 from robo_genesis.evidence.rows import SEVERITY
 
 Cells = tuple[str, ...]
 
-PAGE = Path(__file__).with_suffix(".html")  # The page around the body, with its style sheet
+PAGE = Path(__file__).with_suffix(".html")  # Its template
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,14 +55,7 @@ class Document:
 
     def html(self) -> str:
         """Return the report as one HTML page without scripts, fonts or pictures from elsewhere."""
-        verdict = f'<p class="verdict {_css(self.state)}">{_escaped(self.verdict)}</p>'
-        blocks = [f"<h1>{_escaped(self.title)}</h1>", verdict, _list(self.remarks)]
-        for part in self.parts:
-            mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.state else ""
-            blocks += [f"<h2>{_escaped(part.heading)}{mark}</h2>", _list(part.remarks)]
-            blocks.append(_html_table(part) if len(part.rows) > 1 else f"<p>{part.empty}</p>")
-        page, body = Template(PAGE.read_text("utf8")), "\n".join(filter(None, blocks))
-        return page.substitute(title=_escaped(self.title), body=body)
+        return filled(PAGE, report=self, states=SEVERITY, line=_one_line)
 
     def write(self, folder: Path) -> list[Path]:
         """Write both pages and return their paths."""
@@ -78,38 +70,9 @@ def _markdown_table(rows: Sequence[Cells]) -> str:
     return tables.markdown([dict(zip(head, row, strict=True)) for row in body]).strip()
 
 
-def _list(lines: Sequence[str]) -> str:
-    items = "".join(f"<li>{_escaped(line)}</li>\n" for line in lines)
-    return f"<ul>\n{items}</ul>" if items else ""
-
-
-def _html_table(part: Part) -> str:
-    """Return a table in a box that scrolls."""
-    head, *body = part.rows
-    heads = "".join(f'<th scope="col">{_escaped(cell)}</th>' for cell in head)
-    lines = "".join(f"<tr>{''.join(map(_cell, row))}</tr>\n" for row in body)
-    return (
-        f'<div class="box" role="region" aria-label="{_escaped(part.heading)}" tabindex="0">\n'
-        f"<table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{lines}</tbody>\n</table>\n</div>"
-    )
-
-
-def _cell(text: str) -> str:
-    mark = f' class="{_css(text)}"' if text in SEVERITY else ""
-    return f"<td{mark}>{_escaped(text)}</td>"
-
-
-def _css(state: str) -> str:
-    return state.replace(" ", "-")
-
-
 def _one_line(text: str) -> str:
     """Return text as one line, without characters that change how others are shown."""
     return printable(" ".join(text.split()))
-
-
-def _escaped(text: str) -> str:
-    return escape(_one_line(text))
 
 
 def _plain(text: str) -> str:

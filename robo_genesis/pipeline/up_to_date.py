@@ -11,15 +11,10 @@ import sys
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
+from robo_genesis.core import project
 from robo_genesis.core.files import files_below, files_digest, json_digest
 from robo_genesis.core.git import git_or_none
-from robo_genesis.core.project import (
-    PUBLISHED,
-    ProjectError,
-    environment_contract,
-    installed,
-    require_pinned_engine,
-)
+from robo_genesis.core.project import PUBLISHED, ProjectError
 
 RECORD = "build.json"
 """Lies beside the site's HTML and describes the site that was published with it."""
@@ -67,10 +62,10 @@ def other_inputs(
         "book": [str(book), files_digest(book, kept)],
         "code": files_digest(root, (p for name in FOLDERS for p in files_below(root / name))),
         "files": files_digest(root, (root / name for name in FILES)),
-        "contract": environment_contract(given),
+        "contract": project.environment_contract(given),
         "variables": {name: given.get(name) or "" for name in VARIABLES},
         "python": [platform.python_version(), sys.executable],
-        "installed": installed(sys.path),
+        "installed": project.installed(sys.path),
     }
 
 
@@ -88,7 +83,7 @@ def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
         published: the folder of the published site.
     """
     try:
-        require_pinned_engine(root)
+        project.require_pinned_engine(root)
         lines = recorded_lines(published, inputs_digest(root, book))
     except (ProjectError, OSError):
         return []  # the build reports it

@@ -8,43 +8,31 @@ import pytest
 
 from robo_genesis.core import checks
 from robo_genesis.core.check_spec import MASS_SHARE
-from robo_genesis.core.checks import (
-    Check,
-    Finding,
-    above,
-    at_most,
-    below,
-    conclude,
-    equal,
-    evaluate,
-    noted,
-    within,
-)
 from robo_genesis.core.experiment import Readings
 
 
 @pytest.mark.parametrize(
     ("finding", "passed", "problem"),
     [
-        (equal("x", 3, 3), True, None),
-        (equal("x", 3, 4), False, "x is 3, expected 4"),
-        (equal("x", ("a", "b"), ["a", "b"]), True, None),
-        (equal("x", np.nan, None), False, "x is nan, expected not observed"),
-        (equal("x", np.float32(0), 0.0), True, None),
-        (within("x", 1.5, 1.0, 0.5), True, None),
-        (within("x", 1.6, 1.0, 0.5), False, "x is 1.6, expected 1 ± 0.5"),
-        (within("x", None, 1.0, 0.5), False, "x is not observed, expected 1 ± 0.5"),
-        (within("x", 1.0, np.nan, 0.5), False, None),
-        (at_most("x", 2.0, 2.0), True, None),
-        (at_most("x", 2.1, 2.0), False, "x is 2.1, expected at most 2"),
-        (at_most("x", np.nan, 2.0), False, "x is nan, expected at most 2"),
-        (below("x", 1.9, 2.0), True, None),
-        (below("x", 2.0, 2.0), False, "x is 2, expected less than 2"),
-        (below("x", None, 2.0), False, None),
-        (above("x", 2.1, 2.0), True, None),
-        (above("x", 2.0, 2.0), False, "x is 2, expected more than 2"),
-        (above("x", np.nan, 2.0), False, None),
-        (noted("x", -7.0), True, None),
+        (checks.equal("x", 3, 3), True, None),
+        (checks.equal("x", 3, 4), False, "x is 3, expected 4"),
+        (checks.equal("x", ("a", "b"), ["a", "b"]), True, None),
+        (checks.equal("x", np.nan, None), False, "x is nan, expected not observed"),
+        (checks.equal("x", np.float32(0), 0.0), True, None),
+        (checks.within("x", 1.5, 1.0, 0.5), True, None),
+        (checks.within("x", 1.6, 1.0, 0.5), False, "x is 1.6, expected 1 ± 0.5"),
+        (checks.within("x", None, 1.0, 0.5), False, "x is not observed, expected 1 ± 0.5"),
+        (checks.within("x", 1.0, np.nan, 0.5), False, None),
+        (checks.at_most("x", 2.0, 2.0), True, None),
+        (checks.at_most("x", 2.1, 2.0), False, "x is 2.1, expected at most 2"),
+        (checks.at_most("x", np.nan, 2.0), False, "x is nan, expected at most 2"),
+        (checks.below("x", 1.9, 2.0), True, None),
+        (checks.below("x", 2.0, 2.0), False, "x is 2, expected less than 2"),
+        (checks.below("x", None, 2.0), False, None),
+        (checks.above("x", 2.1, 2.0), True, None),
+        (checks.above("x", 2.0, 2.0), False, "x is 2, expected more than 2"),
+        (checks.above("x", np.nan, 2.0), False, None),
+        (checks.noted("x", -7.0), True, None),
     ],
 )
 def test_a_finding_is_judged_and_says_found_and_allowed(finding, passed, problem):
@@ -73,10 +61,10 @@ def test_a_value_becomes_one_that_json_can_hold(value, expected):
 def test_an_outcome_is_recorded_without_words_and_without_allowed_values():
     def near(limit):
         """The distance is small."""
-        yield at_most("distance_m", np.float32(0.5), limit)
-        yield equal("difference of two cases", ["kp"], ["kp"], recorded=False)
+        yield checks.at_most("distance_m", np.float32(0.5), limit)
+        yield checks.equal("difference of two cases", ["kp"], ["kp"], recorded=False)
 
-    (strict,), (loose,) = (evaluate([near], limit) for limit in (0.1, 1.0))
+    (strict,), (loose,) = (checks.evaluate([near], limit) for limit in (0.1, 1.0))
     assert (strict.passed, loose.passed) == (False, True)
     assert strict.detail == "distance_m is 0.5, expected at most 0.1"
     assert loose.detail == "The distance is small."
@@ -88,23 +76,23 @@ def test_an_outcome_is_recorded_without_words_and_without_allowed_values():
 def test_a_check_that_breaks_off_fails_and_keeps_what_it_found():
     def broken(subject):
         """There is a second one."""
-        yield noted("first", 1)
-        yield noted("second", subject["second"])
+        yield checks.noted("first", 1)
+        yield checks.noted("second", subject["second"])
 
-    (outcome,) = evaluate([broken], {})
+    (outcome,) = checks.evaluate([broken], {})
     assert not outcome.passed
     assert outcome.found == {"first": 1}
     assert outcome.detail == "cannot be evaluated: KeyError('second')"
 
 
 def test_a_check_that_finds_nothing_fails():
-    assert conclude("empty", "Something is there.", []) == Check(
+    assert checks.conclude("empty", "Something is there.", []) == checks.Check(
         "empty", False, "nothing was found"
     )
 
 
 def test_two_findings_need_two_labels():
-    outcome = conclude("twice", "", [noted("a", 1), noted("a", 2)])
+    outcome = checks.conclude("twice", "", [checks.noted("a", 1), checks.noted("a", 2)])
     assert not outcome.passed
     assert outcome.detail == "labels are repeated: a. Give each finding its own"
 
@@ -153,5 +141,5 @@ def test_a_reading_is_within_its_limits_and_a_count_is_an_integer():
 def test_compared_cases_differ_in_the_given_fields_alone(other, passed):
     pairs = {("one", "other"): ["steps"]}
     (finding,) = checks.factors({"one": Case(), "other": other}, pairs)
-    assert isinstance(finding, Finding)
+    assert isinstance(finding, checks.Finding)
     assert (finding.passed, finding.recorded) == (passed, False)

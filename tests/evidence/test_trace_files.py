@@ -4,23 +4,18 @@ import numpy as np
 import pytest
 
 from robo_genesis.core.trace import Trace
-from robo_genesis.evidence.trace_files import (
-    joint_records,
-    read_any_trace,
-    read_joints,
-    write_traces,
-)
+from robo_genesis.evidence import trace_files
 
 LINKS = ["link0", "link4", "hand"]
 
 
 @pytest.fixture
 def written(tmp_path, traces, joints):
-    return tmp_path, write_traces(tmp_path, {"G1": traces["G1"]}, joints, LINKS)
+    return tmp_path, trace_files.write_traces(tmp_path, {"G1": traces["G1"]}, joints, LINKS)
 
 
 def test_arrays_come_back_bit_for_bit(written, traces):
-    found = read_any_trace(*written, "G1")
+    found = trace_files.read_any_trace(*written, "G1")
     for field in Trace.arrays():
         before, after = getattr(traces["G1"], field), getattr(found, field)
         assert (after.dtype, after.shape) == (before.dtype, before.shape)
@@ -31,9 +26,9 @@ def test_joints_come_back_as_they_were_and_a_limit_that_is_missing_is_null(writt
     lower, upper = np.array(joints.lower), np.array(joints.upper)
     lower[2], upper[5] = -np.inf, np.inf
     free = replace(joints, lower=lower, upper=upper)
-    records = joint_records(free)
+    records = trace_files.joint_records(free)
     assert [r.name for r in records if r.lower is None] == ["joint3"]
-    found = read_joints(written[1].model_copy(update={"joints": records}))
+    found = trace_files.read_joints(written[1].model_copy(update={"joints": records}))
     assert (found.names, found.types) == (joints.names, joints.types)
     for name in ("dofs_idx_local", "qs_idx_local", "lower", "upper"):
         assert getattr(found, name).tolist() == getattr(free, name).tolist()

@@ -18,7 +18,7 @@ from pathlib import Path
 from tornado.web import RequestHandler
 
 from robo_genesis.core import project
-from robo_genesis.core.files import locked
+from robo_genesis.core.files import NO_SOURCE, files_below, locked
 from robo_genesis.pipeline.command import TIMEOUT, end_with_parent, say
 from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.html.draft import Draft
@@ -31,7 +31,6 @@ from robo_genesis.pipeline.pages.store import folders, places
 
 FOLDER = "live"
 """Below the cache folder: what is rendered and shown, apart from what `make book` makes."""
-UNWATCHED = ("_build", "__pycache__", ".")
 SHOWN_LINES = 2  # Lines of warnings and errors of Sphinx that the terminal shows
 
 INTERVAL = 0.1  # Seconds between two looks at the files; a look takes milliseconds
@@ -70,13 +69,10 @@ class Live:
         """Return time and size of each watched file: of the book, and of the package's code."""
         found: Seen = {}
         for top in (self.book, project.ROOT / "robo_genesis"):
-            for here, inside, files in os.walk(top):
-                inside[:] = [name for name in inside if not name.startswith(UNWATCHED)]
-                shown = (name for name in files if name[0] not in ".#" and name[-1] != "~")
-                for path in (Path(here, name) for name in shown):
-                    with suppress(OSError):  # an editor replaces files
-                        stat = path.stat()
-                        found[path] = (stat.st_mtime_ns, stat.st_size)
+            for path in files_below(top, (project.PUBLISHED,), NO_SOURCE):
+                with suppress(OSError):  # an editor replaces files
+                    stat = path.stat()
+                    found[path] = (stat.st_mtime_ns, stat.st_size)
         return found
 
     def changed(self) -> set[Path]:

@@ -16,15 +16,9 @@ from pathlib import Path
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
+from robo_genesis.core import project
 from robo_genesis.core.files import NO_SOURCE, files_below, json_digest
-from robo_genesis.core.project import (
-    PAGE_IMPORTS,
-    ROOT,
-    ProjectError,
-    environment_contract,
-    installed,
-    lock_digest,
-)
+from robo_genesis.core.project import ROOT
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_names, syntax_digest
 
@@ -139,7 +133,7 @@ def require_keyed_imports(root: Path) -> None:
         or (path.name == "__init__.py" and path.parent.with_suffix(".py").is_file())
     ]
     if found:
-        raise ProjectError(
+        raise project.ProjectError(
             f"Python would import {', '.join(sorted(found))} in {root}, which no key of a page "
             f"covers. Valid is the folder {PACKAGE}, where each module is one .py file. Move the "
             "others to another folder or delete them."
@@ -178,7 +172,7 @@ def running_modules(lesson: str) -> dict[str, str]:
 
     The build names the imports of the page in the environment.
     """
-    return measuring_modules(lesson, os.environ.get(PAGE_IMPORTS, "").split())
+    return measuring_modules(lesson, os.environ.get(project.PAGE_IMPORTS, "").split())
 
 
 def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | None = None) -> str:
@@ -199,10 +193,10 @@ def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | 
     """
     modules = tree.behind(page)
     parts = {
-        "lock": lock_digest(tree.root),
-        "installed": sorted({name for _, name, _ in installed(sys.path)}),
+        "lock": project.lock_digest(tree.root),
+        "installed": sorted({name for _, name, _ in project.installed(sys.path)}),
         "python": platform.python_version(),
-        "environment": environment_contract(environment),
+        "environment": project.environment_contract(environment),
         "cells": page.code.digests,
         "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
         "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},

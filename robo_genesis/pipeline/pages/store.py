@@ -12,15 +12,8 @@ from typing import Any
 
 from robo_genesis.core.files import require_replaceable, require_writable
 from robo_genesis.core.project import ENGINE, ROOT, ProjectError, installed_version
+from robo_genesis.pipeline.pages import folder
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.folder import (
-    OUTPUTS,
-    RECORD,
-    PageRefused,
-    Record,
-    read_record,
-    require_this_page,
-)
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle, unexpected_outcome
 from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint, require_keyed_imports
 
@@ -84,11 +77,11 @@ def result_of(page: Page, place: Path, fingerprint: str) -> PageResult:
         PageRefused: the folder is not this page, or its outputs contradict the tags and expected
             exceptions of the page.
     """
-    record = read_record(place)
-    notebook = require_this_page(place, record, page, fingerprint)
+    record = folder.read_record(place)
+    notebook = folder.require_this_page(place, record, page, fingerprint)
     if outcome := unexpected_outcome(page, notebook):
-        raise PageRefused("outcome", f"{outcome.error}: {outcome.message}")
-    bundle = find_bundle(place / OUTPUTS, record.run_id)
+        raise folder.PageRefused("outcome", f"{outcome.error}: {outcome.message}")
+    bundle = find_bundle(place / folder.OUTPUTS, record.run_id)
     return PageResult(page, "reused", 0.0, record.run_id, bundle, folder=place)
 
 
@@ -98,10 +91,10 @@ def folders(store: Path, page: Page) -> list[Path]:
     return sorted(found, key=lambda path: path.stat().st_mtime, reverse=True)
 
 
-def last_record(store: Path, page: Page) -> Record | None:
+def last_record(store: Path, page: Page) -> folder.Record | None:
     """Return the record of the last stored execution of a page, None if there was none."""
-    with suppress(PageRefused, IndexError):
-        return read_record(folders(store, page)[0])
+    with suppress(folder.PageRefused, IndexError):
+        return folder.read_record(folders(store, page)[0])
     return None
 
 
@@ -142,7 +135,7 @@ def exported(page: Page, to: Path) -> Path:
     """
     place = to / _folder(page)
     require_writable(to)
-    require_replaceable(place, RECORD)
+    require_replaceable(place, folder.RECORD)
     return place
 
 
@@ -169,16 +162,18 @@ def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -
     problems = []
     for place in exported_folders(source):
         try:
-            name = read_record(place).docname
+            name = folder.read_record(place).docname
             if name not in known:
                 valid = ", ".join(known)
-                raise PageRefused("page", f"its page is {name!r}. Pages of this book: {valid}.")
+                raise folder.PageRefused(
+                    "page", f"its page is {name!r}. Pages of this book: {valid}."
+                )
             result = result_of(known[name], place, into[name].name)
             if name in found:
                 other = found[name].folder
-                raise PageRefused("twice", f"{name} is in {other} as well. Remove one.")
+                raise folder.PageRefused("twice", f"{name} is in {other} as well. Remove one.")
             found[name] = replace(result, status="taken over")
-        except PageRefused as error:
+        except folder.PageRefused as error:
             problems.append(f"{place}: {error}")
     if not problems:  # a refused page would be reported as missing as well
         problems = [f"{name} is not among them." for name in known if name not in found]
@@ -191,7 +186,7 @@ def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -
 def exported_folders(source: Path) -> list[Path]:
     """Return the folders that hold a record, except hidden ones and those within another."""
     found: list[Path] = []
-    for path in sorted(source.rglob(RECORD), key=lambda path: len(path.parts)):
+    for path in sorted(source.rglob(folder.RECORD), key=lambda path: len(path.parts)):
         hidden = any(part.startswith(".") for part in path.relative_to(source).parts)
         if not hidden and not any(place in path.parents for place in found):
             found.append(path.parent)

@@ -15,22 +15,11 @@ from nbformat import NotebookNode
 
 from robo_genesis.core.project import OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
 from robo_genesis.pipeline.command import ANSI
+from robo_genesis.pipeline.pages import kernels, results
 from robo_genesis.pipeline.pages.book import Page, code_digest
 from robo_genesis.pipeline.pages.folder import PageRefused, write_page
-from robo_genesis.pipeline.pages.kernels import (
-    ARGUMENTS,
-    CleanKernelManager,
-    clean_environment,
-    die_with_parent,
-)
 from robo_genesis.pipeline.pages.opened import unkeyed_files
-from robo_genesis.pipeline.pages.results import (
-    Failure,
-    at_cell,
-    last_lines,
-    missing_bundle,
-    unexpected_outcome,
-)
+from robo_genesis.pipeline.pages.results import Failure
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 
 
@@ -77,7 +66,7 @@ def work(run: PageRun, connection: Connection) -> None:
         if cell == run.page.alone:
             connection.recv()
 
-    die_with_parent(run.scratch)
+    kernels.die_with_parent(run.scratch)
     runtime = Path(tempfile.mkdtemp(dir=run.scratch))
     own = {
         RUN_ID: run.run_id,
@@ -85,7 +74,9 @@ def work(run: PageRun, connection: Connection) -> None:
         PAGE_SHA256: code_digest(run.page),
         PAGE_IMPORTS: " ".join(run.page.code.imports),
     }
-    environment = clean_environment(runtime / "home", runtime, ROOT, {**run.environment, **own})
+    environment = kernels.clean_environment(
+        runtime / "home", runtime, ROOT, {**run.environment, **own}
+    )
     os.environ.clear()
     os.environ.update(environment)
     # The engine's compiled parts write past Python: to a file, because the build prints its
@@ -96,7 +87,8 @@ def work(run: PageRun, connection: Connection) -> None:
     begin = time.monotonic()
     failure = execute_page(run, starts)
     if failure:
-        failure = replace(failure, log=last_lines(run.log.read_text("utf8", errors="replace")))
+        written = run.log.read_text("utf8", errors="replace")
+        failure = replace(failure, log=results.last_lines(written))
     connection.send((time.monotonic() - begin, failure))
 
 
@@ -132,12 +124,12 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
         nonlocal begin
         asked = time.monotonic()
         on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
-        CleanKernelManager.busy = True
+        kernels.CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
         begin += begins[cell_index] - asked  # waiting for other pages is not part of the run
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
-        CleanKernelManager.busy = False
+        kernels.CleanKernelManager.busy = False
         seconds.append(round(time.monotonic() - begins[cell_index], 3))
 
     with tempfile.TemporaryDirectory(dir=run.scratch) as folder:
@@ -146,8 +138,8 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
                 notebook,
                 resources={"metadata": {"path": folder}},
                 timeout=notebook.metadata.get("execution", {}).get("timeout", run.timeout),
-                kernel_manager_class=CleanKernelManager,
-                extra_arguments=ARGUMENTS,
+                kernel_manager_class=kernels.CleanKernelManager,
+                extra_arguments=kernels.ARGUMENTS,
                 record_timing=False,
                 on_cell_execute=cell_starts,
                 on_cell_executed=cell_ends,
@@ -188,7 +180,7 @@ def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failu
     """Return why a page failed, None if it did not."""
     notebook = run.page.notebook
     if error is None:
-        return unexpected_outcome(run.page, notebook) or missing_bundle(
+        return results.unexpected_outcome(run.page, notebook) or results.missing_bundle(
             run.left, run.page, run.run_id
         )
     name, message = type(error).__name__, str(error)
@@ -199,4 +191,4 @@ def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failu
     if not started:
         return Failure(name, message)
     last = started[-1]
-    return at_cell(run.page, last, name, message, notebook.cells[last])
+    return results.at_cell(run.page, last, name, message, notebook.cells[last])

@@ -94,9 +94,5 @@ def gravity_effort(q: FloatArray, load: float = 0.0) -> FloatArray:
 
     model, data, q_at, dof_at = bare_robot(load)
     data.qpos[q_at], data.qvel[:] = q, 0.0
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    mujoco.mj_comVel(model, data)
-    effort = np.zeros(model.nv)
-    mujoco.mj_rne(model, data, 0, effort)
-    return np.asarray(effort[dof_at])
+    mujoco.mj_forward(model, data)
+    return np.array(data.qfrc_bias[dof_at])

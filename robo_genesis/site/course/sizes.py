@@ -11,13 +11,8 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_markdown_cell, new_notebook
 
 from robo_genesis.pipeline.pages.book import Page, read_notebook
-from robo_genesis.site.takeaways.plain_markdown import (
-    ADMONITIONS,
-    ANSWER,
-    DIRECTIVE,
-    PARSER,
-    excerpt,
-)  # fmt: skip
+from robo_genesis.site.takeaways import plain_markdown
+from robo_genesis.site.takeaways.plain_markdown import excerpt
 from robo_genesis.site.text.left_out import without_docstrings
 
 WORDS_A_MINUTE = 150  # A slow pace, for technical prose; code, tables and formulas are not counted
@@ -51,11 +46,11 @@ LIMITS = {
 }
 """The largest numbers by kind of page: the first word of its name."""
 
-SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
+SHOWN_AS_PROSE = {*plain_markdown.ADMONITIONS, "admonition", "seealso"}
 INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
-THOUGHT = re.compile(f"{ANSWER.pattern}|diagnosis", re.IGNORECASE)
+THOUGHT = re.compile(f"{plain_markdown.ANSWER.pattern}|diagnosis", re.IGNORECASE)
 """The title of a fold that a reader opens after an own answer."""
 FOLD = re.compile(r"^ *[`:]{3,}\{dropdown\} *(.*)", re.MULTILINE)
 
@@ -139,8 +134,8 @@ def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
 def count_words(text: str) -> int:
     """Return the number of words of running text: no folds, tables, captions, code or formulas."""
     words, in_table = 0, False
-    for token in PARSER.parse(text):
-        directive = DIRECTIVE.match(token.info.strip())
+    for token in plain_markdown.PARSER.parse(text):
+        directive = plain_markdown.DIRECTIVE.match(token.info.strip())
         if token.type in ("table_open", "table_close"):
             in_table = token.type == "table_open"
         elif token.type == "inline" and not in_table:

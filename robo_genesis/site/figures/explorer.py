@@ -39,6 +39,7 @@ from sphinx.util.docutils import SphinxDirective
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
+from robo_genesis.core.markup import filled
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
 from robo_genesis.evidence import bundle
@@ -109,8 +110,7 @@ def explorer_block(
             return nodes.paragraph("", "SKIP: this run has no camera.")
         data["frames"] = frames(recorded.folder / "frames", parts["picture"]["name"])
         figure = picture(directive, key, recorded.folder / "frames", **parts["picture"])
-        hint = "<p>Point at the picture, or use the arrow keys at a slider.</p>"
-        block += [opening("with-picture", data), figure, panel(data, hint)]
+        block += [opening("with-picture", data), figure, panel(data)]
     elif parts["postures"] is not None:
         block["classes"].append("replay-block")
         files = "-".join(("postures", *key.split("/"), *name))
@@ -129,42 +129,13 @@ def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:
     return html(start + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else ""))
 
 
-def panel(data: Mapping[str, Any], first: str = "") -> nodes.Node:
-    """Return the controls and the end of an explorer; the script fills and shows them."""
-    chooser = sliders(data["size"]) if "size" in data else selects(data)
-    plots = '<div class="plots"></div>' * ("curves" in data)
-    lines = "".join(map(controls.term, data["columns"]))
-    return html(f'<div class="panel" hidden>{first}{chooser}{plots}<dl>{lines}</dl></div></div>')
+def panel(data: Mapping[str, Any], loads: str = "") -> nodes.Node:
+    """Return the controls and the end of an explorer; the script fills and shows them.
 
-
-def selects(data: Mapping[str, Any]) -> str:
-    """Return the choices of a map, and the places of its cells, a question and a sentence."""
-    choices = zip(
-        ("map", "measure"), data["choices"], (data["maps"], data["measures"]), strict=True
-    )
-    labels = "".join(
-        f'<label{" hidden" * (len(of) == 1)}>{escape(label)} <select name="{name}">'
-        f"{controls.options({str(k): one['label'] for k, one in enumerate(of)}, '0')}"
-        "</select></label>"
-        for name, label, of in choices
-    )
-    if any("noun" in measure for measure in data["measures"]):
-        labels += '<label><input type="checkbox" name="predict" checked> Predict first</label>'
-    return (
-        f'<div class="controls">{labels}</div><div class="cells"></div>'
-        '<fieldset class="question" hidden><legend></legend></fieldset>'
-        '<output aria-live="polite"></output>'
-    )
-
-
-def sliders(size: tuple[int, int]) -> str:
-    """Return a slider for the column and one for the row of a picture."""
-    ranges = "".join(
-        f'<label>{label} <input type="range" name="{label.lower()}" min="0" max="{count - 1}" '
-        f'value="{count // 2}"></label>'
-        for label, count in zip(("Column", "Row"), size, strict=True)
-    )
-    return f'<div class="controls">{ranges}</div>'
+    A map has the choices of it, places for its cells, a question and a sentence; a picture has a
+    slider each for column and row. `loads` says what a button loads.
+    """
+    return html(filled(Path(__file__).with_suffix(".html"), **data, loads=loads))
 
 
 def fold(directive: SphinxDirective, found: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[Any]:
@@ -231,8 +202,7 @@ def postures(
     over = controls.over_the_picture("Show in 3D")
     caption = f"Recorded postures of the {replay.thing}. Yellow cross: the target."
     yield replays.stage(still, over, caption, f"{name}-model")
-    loads = f'<p role="status">Show in 3D loads the {escape(replay.thing)}: {weight} kB.</p>'
-    yield panel(data, loads)
+    yield panel(data, f"Show in 3D loads the {replay.thing}: {weight} kB.")
     yield from fold(directive, found)
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 

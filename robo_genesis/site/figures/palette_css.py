@@ -13,12 +13,13 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from robo_genesis.core.files import write_whole
+from robo_genesis.core.markup import filled
 from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, css_name
 from robo_genesis.lessons import course_marks
 from robo_genesis.site.evidence.origin import above
 from robo_genesis.site.figures import case_labels
 
-THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}  # Paper has the light theme
+SHEET = Path(__file__).with_name("palette.css")  # Its template. Paper has the light theme
 NAMES = sorted({*course_marks()} - {"baseline"})
 NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES)) or '(?!)'})\b")
 """A case's name in prose; without named cases it matches nothing."""
@@ -27,22 +28,9 @@ OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.r
 
 def css() -> str:
     """Return the style sheet of the palette."""
-    names = {css_name(name): mark for name, mark in MARKS.items()}
-    colours = names | {f"figure-{name}": part for name, part in PARTS.items()}
-    rules = [
-        (selector, {f"--{name}": getattr(mark, theme) for name, mark in colours.items()})
-        for theme, selector in THEMES.items()
-    ]
-    rules += [(f".time-plot .{name}", {"--ink": f"var(--{name})"}) for name in names]
-    for name in CASE_CLASSES.values():
-        rules.append((f".case-name.{name}", {"color": f"var(--{name})"}))
-        rules.append((f".case-mark.{name}::before", {"background": f"var(--{name})"}))
-    lines = ["/* Written from robo_genesis/core/palette.py. */"]
-    for selector, properties in rules:
-        declared = [f"  {name}: {value};" for name, value in properties.items()]
-        rule = [f"{selector} {{", *declared, "}"]
-        lines += ["@media screen {", *rule, "}"] if selector == THEMES["dark"] else rule
-    return "\n".join([*lines, ""])
+    marks = {css_name(name): mark for name, mark in MARKS.items()}
+    colours = marks | {f"figure-{name}": part for name, part in PARTS.items()}
+    return filled(SHEET, marks=marks, colours=colours, cases=CASE_CLASSES.values())
 
 
 class MarkCases(SphinxPostTransform):

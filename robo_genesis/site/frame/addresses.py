@@ -4,16 +4,15 @@ A site without an address has no canonical link, no sitemap and no card. The 404
 written; a server shows it at any depth, so its links begin at the site's root.
 """
 
-from html import escape
 from pathlib import Path
 from typing import Any
 
 from sphinx.application import Sphinx
 from sphinx.config import Config
 
+from robo_genesis.core.markup import filled
 from robo_genesis.pipeline.html.address import site_address, site_root
 
-NOT_FOUND = Path(__file__).with_name("not_found.html").read_text("utf8")
 WAYS_ON = {
     "index": "the course map: every lesson, published and planned",
     "glossary": "the words of the field",
@@ -34,12 +33,8 @@ def configure(app: Sphinx, config: Config) -> None:
 def write_not_found(app: Sphinx) -> list[Any]:
     """Write the text of the 404 page when the pages of the book are known."""
     root, titles = site_root(), app.env.titles
-    links = "".join(
-        f'<li><a href="{root}{page}.html">{escape(titles[page].astext())}</a>: {what}</li>'
-        for page, what in WAYS_ON.items()
-        if page in titles
-    )
-    body = NOT_FOUND.format(root=root, links=links)
+    ways = [(page, titles[page].astext(), what) for page, what in WAYS_ON.items() if page in titles]
+    body = filled(Path(__file__).with_name("not_found.html"), root=root, ways=ways)
     app.config.notfound_context = {"title": "Page not found", "body": body}
     return []
 

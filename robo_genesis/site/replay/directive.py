@@ -12,7 +12,6 @@ import base64
 import gzip
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,6 +23,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.files import derived, write_whole
+from robo_genesis.core.markup import filled
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import find_replay
@@ -124,7 +124,7 @@ def replay_block(
     veiled = ["growing", *(["veiled"] if env.docname != env.config.root_doc else [])] * blind
     block = nodes.container(classes=["replay-block", *veiled], evidence_runs=(key,))
     block += html(opening)
-    over = controls.over_the_picture("Play") + controls.VEIL * blind
+    over = controls.over_the_picture("Play", blind)
     block += stage(still, over, controls.caption(runs, around), f"{name}-model")
     fold = f"<details><summary>{summary}</summary>"
     block += html(controls.panel(name, shown, weight) + fold)
@@ -215,13 +215,8 @@ def origin_html(name: str, folder: Path, env: BuildEnvironment, credit: str | No
         credit: of the shape, None for shapes of the scene itself.
     """
     run, up = bundle.read_manifest(folder).predicate, replay_folder(env)
-    links = f'<a href="{up}/{NOTICE}">notice</a>, <a href="{up}/{VIEWER_LICENCE}">licence</a>'
-    shape = f"{credit} ({links})." if credit else f"shapes of the scene itself. Viewer: {links}."
-    return (
-        f'<p class="credit">Poses and samples: {run.backend.actual}, Genesis '
-        f"{escape(run.engine.version)}, run {run.run_id[:8]}. "
-        f'3D model: <a href="{up}/{name}.glb" download>GLB</a>, {shape}</p>'
-    )
+    files = {"name": name, "notice": NOTICE, "licence": VIEWER_LICENCE}
+    return filled(Path(__file__).with_name("origin.html"), run=run, up=up, credit=credit, **files)
 
 
 def setup(app: Sphinx) -> None:

@@ -21,6 +21,7 @@ from sphinx.util import logging
 from sphinx.util.math import get_node_equation_number
 
 from robo_genesis.core.files import derived, write_whole
+from robo_genesis.core.markup import filled
 from robo_genesis.pipeline import npm
 
 LOGGER = logging.getLogger(__name__)
@@ -44,6 +45,7 @@ PACKAGE = "@fontsource/stix-two-math"
 FILE = f"{PACKAGE}/files/stix-two-math-latin-400-normal.woff"
 LOAD = """document.fonts.load('1em "Course Math"')"""
 STYLE, LICENCE = "math.css", "math-font-LICENSE.txt"
+SHEET = Path(__file__).with_name(STYLE)  # Its template
 
 SHOWN = {
     *map(chr, range(0x20, 0x7F)),  # ASCII
@@ -154,16 +156,9 @@ def cut(font: bytes) -> bytes:
 
 def css() -> str:
     """Return the style sheet; it raises accents, which browsers set close enough to touch."""
-    about = npm.locked(PACKAGE)
-    data = base64.b64encode(font()).decode()
-    return (
-        f"/* A part of STIX Two Math ({PACKAGE} {about['version']}, {about['license']}), "
-        f"see {LICENCE}. */\n"
-        '@font-face { font-family: "Course Math"; '
-        f'src: url("data:font/woff;base64,{data}") format("woff"); }}\n'
-        'math { font-family: "Course Math", math; font-size: 1.15em; }\n'
-        "mover[accent] > :last-child { position: relative; top: -0.14em; }\n"
-    )
+    about, data = npm.locked(PACKAGE), base64.b64encode(font()).decode()
+    facts = {name: about[name] for name in ("version", "license")}
+    return filled(SHEET, package=PACKAGE, file=LICENCE, font=data, **facts)
 
 
 def write_css(app: Sphinx) -> None:

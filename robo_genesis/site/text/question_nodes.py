@@ -1,8 +1,10 @@
 """Questions as HTML that `_static/choice.js` makes lively."""
 
 from collections.abc import Sequence
-from html import escape
+from pathlib import Path
+from typing import Any
 
+from robo_genesis.core.markup import filled
 from robo_genesis.site.evidence.plain_nodes import between
 
 
@@ -21,16 +23,7 @@ def choice(
         origin: of the measurement.
         options: (text, right, cause) of each option.
     """
-    answer = escape(answer)
-    rows = [
-        f'<div><input type="radio" name="{name}" id="{name}-{k}"/>'
-        f'<label for="{name}-{k}">{escape(text)}</label>'
-        f'<p class="feedback {"right" if right else "wrong"}">{"Yes" if right else "No"}. '
-        f"{f'{escape(cause)} ' if cause else ''}{answer}</p></div>"
-        for k, (text, right, cause) in enumerate(options)
-    ]
-    right = next(text for text, is_right, _ in options if is_right)
-    return _question("", "".join(rows), f"<strong>{escape(right)}</strong>. {answer}", origin)
+    return _question("", name=name, answer=answer, origin=origin, options=options)
 
 
 def number(
@@ -48,25 +41,12 @@ def number(
         unit: of the number, empty for none.
         feedback: (key, text) by the keys of the directive.
     """
-    texts = "".join(
-        f'<p class="feedback {"right" if key == "right" else "wrong"}" data-key="{key}">'
-        f"{escape(text)}</p>"
-        for key, text in feedback
-    )
-    in_unit = f" in {escape(unit)}" if unit else ""
-    field = (
-        f'<div class="number"><label for="{name}">Your number{in_unit}</label>'
-        f'<input type="number" step="any" inputmode="decimal" id="{name}"/>{texts}</div>'
-    )
     attributes = f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
-    return _question(attributes, field, escape(answer), origin)
+    given = {"name": name, "answer": answer, "origin": origin, "unit": unit}
+    return _question(attributes, **given, feedback=feedback)
 
 
-def _question(attributes: str, inside: str, answer: str, origin: str) -> question:
+def _question(attributes: str, **values: Any) -> question:
     """Return a question with a place for announcements and the answer in a fold."""
-    closing = (
-        f'</legend>{inside}<output class="visually-hidden" aria-live="polite"></output>'
-        f"<details><summary>Answer</summary><p>{answer}</p>"
-        f'<p class="origin">{escape(origin)}.</p></details></fieldset>'
-    )
+    closing = filled(Path(__file__).with_name("question.html"), **values)
     return question(opening=f'<fieldset class="choice"{attributes}><legend>', closing=closing)

@@ -272,14 +272,6 @@ def test_beside_the_first_lab_runs_what_has_kernels_of_its_own_while_none_is_com
         assert said[:6] == order
 
 
-def test_with_one_job_the_first_lab_starts_first_while_no_kernel_is_compiled(tmp_path):
-    own = notebook(cell("1", ":tags: [own-kernels]\n"), cell("1"))
-    make_book(tmp_path, a=own, b=notebook(cell(WRITE_BUNDLE), front=LAB_FRONT))
-    said, caches = [], engine_cache_environment(cache=tmp_path / "cache")
-    execute(tmp_path, environment=caches, report=noting(said))
-    assert [name for name, event in said if event == "started"] == ["b", "a"]
-
-
 def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
     make_book(tmp_path, page=notebook(cell("1")))
     (tmp_path / "store").mkdir()

@@ -145,7 +145,7 @@ def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):
     found = [key(page, root), key(replace(page, notebook=alone), root)]
     found += [key(page, root, **{name: "0"}) for name in names]
     for module, name, value in (
-        (sources, "installed", [("", "mujoco-0.1.dist-info", 0)]),
+        (sources.project, "installed", [("", "mujoco-0.1.dist-info", 0)]),
         (sources.platform, "python_version", "3.99.0"),
     ):
         monkeypatch.setattr(module, name, lambda *given, value=value: value)

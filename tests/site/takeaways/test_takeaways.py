@@ -22,14 +22,6 @@ from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways import files
 from robo_genesis.site.takeaways.directive import codespace, require_address
-from robo_genesis.site.takeaways.files import (
-    build_wheel,
-    built_wheel,
-    csv_text,
-    package_facts,
-    run_commands,
-    without_places,
-)
 
 LINKS = ["link0", "link4", "hand"]
 UP_TO_THE_ENGINE = """
@@ -50,7 +42,7 @@ def test_each_number_of_a_run_is_in_its_table_with_its_unit_and_none_is_made_up(
 ):
     run = traces["G2"]
     described = write_traces(tmp_path, {"G2": run}, joints, LINKS)
-    table = list(csv.DictReader(io.StringIO(csv_text(run, described, "G2"))))
+    table = list(csv.DictReader(io.StringIO(files.csv_text(run, described, "G2"))))
 
     def column(name: str) -> np.ndarray:
         return np.array([row[name] for row in table], dtype=np.float32)
@@ -99,9 +91,9 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repositor
     data = {f"{lesson}arm.xml", f"{lesson}data/arm"}
     for name in (*data, f"{lesson}arm.xml~", f"{lesson}.arm.xml.swp"):
         (root / name).touch()
-    first = build_wheel(tmp_path, root, repository)
-    assert built_wheel(root, repository) == first.read_bytes()
-    assert first.name == f"robo_genesis-{package_facts()['version']}-py3-none-any.whl"
+    first = files.build_wheel(tmp_path, root, repository)
+    assert files.built_wheel(root, repository) == first.read_bytes()
+    assert first.name == f"robo_genesis-{files.package_facts()['version']}-py3-none-any.whl"
     with zipfile.ZipFile(first) as wheel:
         names = wheel.namelist()
         (found,) = (name for name in names if name.endswith("/METADATA"))
@@ -121,7 +113,7 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
     """The metadata of the wheel has the pin; an unpacked wheel is what pip installs."""
     home, installed = tmp_path / "home", tmp_path / "installed"
     home.mkdir()
-    with zipfile.ZipFile(build_wheel(tmp_path)) as wheel:
+    with zipfile.ZipFile(files.build_wheel(tmp_path)) as wheel:
         wheel.extractall(installed)
     given = os.environ | {"PYTHONPATH": str(installed), "HOME": str(home)}
     command = [sys.executable, "-c", UP_TO_THE_ENGINE]
@@ -151,7 +143,7 @@ def test_a_valid_repository_on_github_alone_offers_a_codespace(given, valid, off
 
 
 def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
-    commands = run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb")
+    commands = files.run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb")
     page = SimpleNamespace(notebook=new_notebook(cells=[new_markdown_cell("# A lab\n\nText.")]))
     ran = SimpleNamespace(run_id="0" * 32, started="2026-01-02T10:00:00Z")
     config = SimpleNamespace(html_title="Course", author="Its authors")
@@ -171,7 +163,7 @@ def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
 
 def test_a_notebook_names_no_folder_of_the_builder():
     text = "/srv/site/robo_genesis/page.py, /srv/site, /srv/site-2/a, x/srv/site, /home/me/b"
-    assert without_places(text, Path("/srv/site")) == (
+    assert files.without_places(text, Path("/srv/site")) == (
         "robo-genesis/robo_genesis/page.py, robo-genesis, /srv/site-2/a, x/srv/site, ~/b"
     )
-    assert without_places(f"{project.ROOT}/a") == "robo-genesis/a"
+    assert files.without_places(f"{project.ROOT}/a") == "robo-genesis/a"
