@@ -140,25 +140,16 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     accepted = kinematics.accepted(q, error, *case.settings.tolerances)
     tip = kinematics.fingertip(measured)[:, 2]
     found = {"position": apart, "rotation": angle, "accepted": accepted, "tip": tip}
-    return found | qualities(q[:, :ARM], trace.q[0, :ARM])
+    return found | {
+        "manipulability": kinematics.manipulability(kinematics.jacobian(q)),
+        "margin": kinematics.limit_margin(q[:, :ARM], *spec.ARM_LIMITS),
+        "from_start": np.abs(q - trace.q[0])[:, :ARM].max(axis=1),
+    }
 
 
 def many_answers(run: Experiment) -> dict[str, FloatArray]:
     """Return what is known of the answers from many starts."""
     return answers(run.traces["many_starts"], spec.MANY_STARTS)
-
-
-def qualities(q: FloatArray, start: FloatArray) -> dict[str, FloatArray]:
-    """Return what can decide between postures (m, 7), given the start (7,) of a run [rad].
-
-    Returns:
-        `manipulability`, `margin` and `from_start` as `answers` does.
-    """
-    return {
-        "manipulability": kinematics.manipulability(kinematics.jacobian(q)),
-        "margin": kinematics.limit_margin(q, *spec.ARM_LIMITS),
-        "from_start": np.abs(q - start).max(axis=1),
-    }
 
 
 def self_motion(q: FloatArray, target: Pose, step: float = 0.05) -> FloatArray:
