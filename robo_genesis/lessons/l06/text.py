@@ -227,7 +227,7 @@ def parts_table(run: Experiment) -> str:
     """Return both parts of a step from 1 and 256 environments, for other contents and substeps."""
     found, rows = run.readings[GROUP], {}
     for part, substeps in {"": SUBSTEPS, **PARTS}.items():
-        label = f"{part.partition('_')[0] or 'robot'}, {substeps} substeps"
+        label = f"{part.partition('_')[0] or 'robot'}, substeps: {substeps}"
         of = part and f"{part}_"
         model = fit((1, 256), [found[f"step_{of}{size}"] for size in (1, 256)])
         rows[label] = ms(model.fixed), three(1e6 * model.each)

@@ -71,7 +71,7 @@ DEEPER = Protocol(
 )
 """The same with sizes beside powers of two, and with other scenes."""
 
-FITTED = (1, 4, 16, 60, 64)
+FITTED = (1, 16, 60, 64)
 """Numbers of environments from which the model is fitted, three at a time. It predicts others."""
 
 
