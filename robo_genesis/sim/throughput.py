@@ -50,6 +50,8 @@ def in_turn(
 ) -> dict[str, float]:
     """Time several scenes in turn, so that a slow second of the machine touches all of them.
 
+    Each repeat has an order of its own, so that no scene always follows the same other one.
+
     Args:
         timed: calls of each scene by name.
         warm_up: steps of each scene before each repeat, whose time is not used: the scene before
@@ -66,7 +68,9 @@ def in_turn(
         seconds_per_step(calls, warm_up, clock)
         return seconds_per_step(calls, steps, clock)
 
-    times = [{name: one(calls) for name, calls in timed.items()} for _ in range(repeats)]
+    shuffled = np.random.default_rng(0)
+    orders = [shuffled.permutation([*timed]).tolist() for _ in range(repeats)]
+    times = [{name: one(timed[name]) for name in order} for order in orders]
     return {
         f"{what}_{name}": float(of([repeat[name] for repeat in times]))
         for name in timed

@@ -1,5 +1,6 @@
 """Checks of the functions that a student writes in L06's lab; see `core/exercises.py`."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from types import SimpleNamespace
@@ -15,32 +16,48 @@ from robo_genesis.sim.arm.reaching import ANSWERS
 MEASURES = False
 
 
+ROWS = ANSWERS | {
+    "turned_too_far_about_x": ((8, 0.1), (0, 0, 0, 6e-3, 0, 0), False),
+    "turned_too_far_about_z": ((8, 0.1), (0, 0, 0, 0, 0, -6e-3), False),
+    "height_is_no_angle": ((8, 0.1), (0, 0, 4e-4, 0, 0, 4.99e-3), True),
+    "rotation_not_a_number": ((8, 0.1), (0, 0, 0, 0, math.nan, 0), False),
+    "middle_joint_not_a_number": ((4, math.nan), (0.0,) * 6, False),
+}
+"""Answers in which each kind of error occurs in another row."""
+
+
 @as_test
 def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` on rows (k, d) and (k, 6).
 
-    It returns one truth value for each row, (k,).
+    It returns one truth value for each row, (k,), and leaves its arguments as they are.
     """
-    names = list(ANSWERS)
+    names = list(ROWS)
     for label, rows in (("all", names), ("backwards", names[::-1]), ("one", names[3:4])):
-        changed = [ANSWERS[name][0] for name in rows]
+        changed = [ROWS[name][0] for name in rows]
         q = np.array([np.where(np.arange(9) == joint, value, 0.1) for joint, value in changed])
-        error = np.array([ANSWERS[name][1] for name in rows], dtype=float)
+        error = np.array([ROWS[name][1] for name in rows], dtype=float)
+        given = q.copy(), error.copy()
         found = np.asarray(accept(q, error, *spec.IK.tolerances))
         yield equal(f"{label}.shape", list(found.shape), [len(rows)])
+        yield equal(f"{label}.type", found.dtype.name, "bool")
         if found.shape == (len(rows),):
             for name, value in zip(rows, found, strict=True):
-                yield equal(f"{label}.{name}", bool(value), ANSWERS[name][2])
+                yield equal(f"{label}.{name}", bool(value), ROWS[name][2])
+        same = [
+            np.array_equal(a, b, equal_nan=True) for a, b in zip(given, (q, error), strict=True)
+        ]
+        yield equal(f"{label}.arguments_are_unchanged", all(same), True)
     loose = accept(np.zeros((2, 9)), np.full((2, 6), 0.1), 0.2, 0.2)
     yield equal("looser_tolerances", np.asarray(loose, dtype=bool).tolist(), [True, True])
 
 
 class Robot:
-    """Keeps the commands of four environments, and broadcasts as the engine does."""
+    """Keeps the commands of some environments, and broadcasts as the engine does."""
 
-    def __init__(self) -> None:
-        self.scene = SimpleNamespace(n_envs=4)
-        self.target = np.zeros((4, 3))
+    def __init__(self, n_envs: int = 4) -> None:
+        self.scene = SimpleNamespace(n_envs=n_envs)
+        self.target = 0.5 - np.arange(3.0 * n_envs).reshape(n_envs, 3)
         self.calls = 0
 
     def control_dofs_position(
@@ -48,23 +65,27 @@ class Robot:
     ) -> None:
         """Keep positions of some DOFs in some environments."""
         dofs = range(3) if dofs_idx_local is None else dofs_idx_local
-        envs = range(4) if envs_idx is None else np.atleast_1d(envs_idx)
-        self.target[np.ix_(list(envs), list(dofs))] = position
+        envs = range(len(self.target)) if envs_idx is None else np.atleast_1d(envs_idx)
+        self.target[np.ix_([int(k) for k in envs], list(dofs))] = position  # a mask is 0 and 1
         self.calls += 1
 
 
-VALID: dict[str, tuple[Sequence[int], Sequence[int]]] = {
-    "two_rows": ([0, 1, 2], [1, 3]),
-    "other_order": ([0, 1, 2], [3, 1]),
-    "some_dofs": ([2, 0], [0, 2]),
-    "all_rows": ([0, 1, 2], [0, 1, 2, 3]),
+VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
+    "two_rows": (4, [0, 1, 2], [1, 3]),
+    "other_order": (4, [0, 1, 2], [3, 1]),
+    "some_dofs": (4, [2, 0], [0, 2]),
+    "all_rows": (4, [0, 1, 2], [0, 1, 2, 3]),
+    "more_environments": (6, [0, 1, 2], [5, 0]),
 }
-"""DOFs and environments of commands that must be sent."""
+"""Environments of the scene, DOFs and environments of commands that must be sent."""
 
 # The engine would send many of these commands.
 REFUSED: dict[str, tuple[int, tuple[int, ...], Sequence[int]]] = {
     "one_row_for_two": (3, (1, 3), [1, 3]),
     "no_rows_for_two": (3, (3,), [1, 3]),
+    "no_rows_for_one": (3, (3,), [1]),
+    "one_after_the_other": (3, (6,), [1, 3]),
+    "a_row_for_each_joint": (3, (3, 2), [1, 3]),
     "one_number_for_each": (2, (2,), [1, 3]),
     "one_column": (3, (2, 1), [1, 3]),
     "rows_of_all_for_two": (3, (4, 3), [1, 3]),
@@ -78,35 +99,39 @@ REFUSED: dict[str, tuple[int, tuple[int, ...], Sequence[int]]] = {
 
 @as_test
 def subset(command: Callable[..., Any]) -> Iterator[Finding]:
-    """Check `command(robot, dofs, q, envs)`: row k of `q` for environment `envs[k]`."""
-    for name, (dofs, envs) in VALID.items():
-        robot, expected = Robot(), np.zeros((4, 3))
-        q = np.arange(1.0, 1 + len(envs) * len(dofs)).reshape(len(envs), len(dofs))
+    """Check `command(robot, dofs, q, envs)`: one call, row k for environment `envs[k]`."""
+    for name, (count, dofs, envs) in VALID.items():
+        robot = Robot(count)
+        q, expected = 0.3 + np.arange(12.0)[: len(envs) * len(dofs)], robot.target.copy()
+        q = q.reshape(len(envs), len(dofs))
         expected[np.ix_(envs, dofs)] = q
         command(robot, dofs, q, np.array(envs))
         yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
+        yield equal(f"{name}.commands_sent", robot.calls, 1)
     for name, (count, shape, envs) in REFUSED.items():
         robot = Robot()
         error = refused(partial(command, robot, list(range(count)), np.ones(shape), envs))
         yield equal(f"{name}.raises_value_error", isinstance(error, ValueError), True)
         yield equal(f"{name}.commands_sent", robot.calls, 0)
-    robot = Robot()
+    robot = Robot(3)
+    error = refused(partial(command, robot, [0, 1, 2], np.ones((1, 3)), [3]))
+    yield equal("fewer_environments.raises_value_error", isinstance(error, ValueError), True)
     command(robot, [0, 1, 2], np.zeros((0, 3)), [])
     yield equal("no_environments.commands_sent", robot.calls, 0)
 
 
-STEP, TINY = 0.01, 1e-9
-"""Time of one undisturbed step of a pretended machine, and what rounding explains [s]."""
+STEP, WAIT, TINY = 0.01, 2e-3, 1e-9
+"""Time of one undisturbed step of a simulated machine, of one wait, and of rounding [s]."""
 
 
 class Machine:
-    """A machine that queues steps and does them when somebody waits for them, as a GPU does.
+    """A machine that queues steps and does them when `finish` waits for them, as a GPU does.
 
-    `slow` gives steps another duration [s] by their number.
+    `durations` of its steps are in `STEP`. A wait costs `WAIT` more.
     """
 
-    def __init__(self, slow: dict[int, float]) -> None:
-        self.slow, self.now, self.started, self.done = slow, 100.0, 0, 0
+    def __init__(self, *durations: float) -> None:
+        self.durations, self.now, self.started, self.done = durations, 100.0, 0, 0
 
     def step(self) -> None:
         """Queue a step."""
@@ -114,7 +139,7 @@ class Machine:
 
     def finish(self) -> None:
         """Do all queued steps."""
-        self.now += sum(self.slow.get(n, STEP) for n in range(self.done, self.started))
+        self.now += WAIT + STEP * sum(self.durations[self.done : self.started])
         self.done = self.started
 
     def clock(self) -> float:
@@ -122,26 +147,28 @@ class Machine:
         return self.now
 
 
-TRIALS: dict[str, tuple[tuple[int, int, int], dict[int, float]]] = {
-    "steady": ((3, 10, 5), {}),
-    "slow_first_steps": ((4, 10, 3), {0: 8.0, 1: 0.5}),
-    "one_repeat": ((6, 5, 1), {0: 8.0}),
-    "one_disturbed_repeat": ((2, 10, 5), {25: 3.0}),
-    "no_warm_up": ((0, 4, 3), {}),
-    "fast_first_and_slow_last_repeat": ((2, 2, 5), {2: STEP / 9, 3: STEP / 9, 11: 3.0}),
+TRIALS: dict[str, tuple[Sequence[float], int, Sequence[float]]] = {
+    "steady": ([1, 1, 1], 10, [1] * 5),
+    "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),
+    "one_repeat": ([800] * 6, 5, [1]),
+    "one_disturbed_repeat": ([1, 1], 10, [1, 1, 30, 1, 1]),
+    "no_warm_up": ([], 4, [1] * 3),
+    "five_different_repeats": ([1, 1], 2, [9, 0.1, 1, 30, 0.2]),
+    "an_even_number_of_repeats": ([1, 1], 3, [1.5, 8, 0.5, 0.1]),
 }
-"""Warm-up, steps and repeats of a call of the student's function, and its machine's slow steps."""
+"""Durations of the steps of the warm-up, steps of a repeat, and their duration in each repeat."""
 
 
 @as_test
 def throughput(measure: Callable[..., Any]) -> Iterator[Finding]:
     """Check `measure(step, finish, clock, warm_up, steps, repeats)`: the median of a step [s].
 
-    It runs on pretended machines, so the time of the real machine decides nothing.
+    It runs on simulated machines, so the time of the real machine decides nothing.
     """
-    for name, ((warm_up, steps, repeats), slow) in TRIALS.items():
-        machine = Machine(slow)
+    for name, (first, steps, repeats) in TRIALS.items():
+        machine = Machine(*first, *np.repeat(repeats, steps))
         calls = machine.step, machine.finish, machine.clock
-        found = float(measure(*calls, warm_up, steps, repeats))
-        yield within(f"{name}.step_s", found, STEP, TINY)
-        yield equal(f"{name}.number_of_steps", machine.started, warm_up + steps * repeats)
+        found = float(measure(*calls, len(first), steps, len(repeats)))
+        expected = STEP * float(np.median(repeats)) + WAIT / steps
+        yield within(f"{name}.step_s", found, expected, TINY)
+        yield equal(f"{name}.number_of_steps", machine.started, len(machine.durations))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm.franka import LINK_PARENTS
@@ -29,9 +30,24 @@ class WorldMetrics(CaseMetrics):
         noun="distance of the hand from its target at the end",
     )  # fmt: skip
     final_angle: float = metric("rad", "last target at the end, angle", *MEASURED)
+    overshoot: float = metric(
+        "m", "first target passed by", "link_pos_m",
+        noun="distance by which the hand passes its first target",
+    )  # fmt: skip
     moved_later: float | None = metric(
         "m", "motion after 1.8 s", "link_pos_m", noun="motion of the hand after 1.8 s"
     )
+
+
+def passed_by(hand: FloatArray, target: FloatArray) -> float:
+    """Return how far a hand passes its target along the line from its start [m].
+
+    Args:
+        hand: positions (n+1, 3) [m].
+        target: (3,) [m].
+    """
+    way = hand - target
+    return max(0.0, float((way @ -way[0]).max() / np.linalg.norm(way[0])))
 
 
 def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:
@@ -47,12 +63,13 @@ def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:
         )
     first, last = (Pose(world.positions[k], world.quat) for k in (0, -1))
     start, switched = (measured_hand(trace, k) for k in (0, world.switch))
-    later = trace.link_pos[world.switch :, HAND].astype(np.float64)
-    apart = np.linalg.norm(later - later[0], axis=1)
+    hand = trace.link_pos[:, HAND].astype(np.float64)
+    apart = np.linalg.norm(hand[world.switch :] - hand[world.switch], axis=1)
     return WorldMetrics(  # in the order of its fields
         distance_and_angle(first, start)[0],
         *distance_and_angle(last, hand_pose(trace.target[-1])),
         distance_and_angle(first, switched)[0],
         *distance_and_angle(last, measured_hand(trace, -1)),
+        passed_by(hand[: world.switch + 1], first.position),
         float(apart.max()) if len(apart) > 1 else None,
     )

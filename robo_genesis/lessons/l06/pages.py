@@ -19,18 +19,18 @@ MEASURES = False
 
 
 def target_parts() -> list[Part]:
-    """Return a sphere at each target for the replay, in the colour of its environment."""
+    """Return a sphere at the target of each robot of the replay, in the colour of the robot."""
     parts = []
-    for (x, y), (name, world) in zip(spec.PLACES, spec.WORLDS.items(), strict=True):
+    for place, name in zip(spec.PLACES, spec.VARIANTS, strict=True):
         red, green, blue = bytes.fromhex(MARKS[spec.CASE_MARKS[name]].light[1:])
-        centres = world.positions + np.array([x, y, 0])
-        parts += [ball(centre, spec.MARKER_RADIUS, (red, green, blue)) for centre in centres]
+        centre = spec.TARGETS[0] + np.array([*place, 0])
+        parts.append(ball(centre, spec.MARKER_RADIUS, (red, green, blue)))
     return parts
 
 
 COPY_NOTE = "repeats another run of this page, and has no metrics of its own"
 
-LECTURE = MeasuringPage(
+WORLDS = MeasuringPage(
     runs={
         **runs_of(spec.CASES),
         **{name: Run(world, False, COPY_NOTE) for name, world in spec.COPIES.items()},
@@ -42,17 +42,17 @@ LECTURE = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
+LECTURE = WORLDS.with_more(dict, readings=study.LECTURE_READINGS, checks=checks.LECTURE)
 MODEL = {"model": study.READINGS["model"]}
-MISTAKES = replace(LECTURE, runs={}, readings=MODEL, checks=(checks.mapping,), camera=False)
+MISTAKES = replace(WORLDS, runs={}, readings=MODEL, checks=(checks.mapping,), camera=False)
 
 
 def timed(page: MeasuringPage, protocol: throughput.Protocol) -> MeasuringPage:
     """Return a page that also measures a throughput."""
-    of_times = checks.equal_work, checks.times_in_order
-    return page.with_more(protocol.parameters, readings=protocol.readings(), checks=of_times)
+    return page.with_more(protocol.parameters, {}, protocol.readings(), [checks.equal_work])
 
 
-LAB = timed(LECTURE, throughput.PROTOCOL)
+LAB = timed(WORLDS, throughput.PROTOCOL)
 LAB = with_functions(LAB, "accept", "command", "step_time")
 THROUGHPUT = timed(MISTAKES, throughput.DEEPER)
 """The page that explains why the curve of throughput bends."""
@@ -62,16 +62,15 @@ LESSON = Lesson(
     metrics=dict.fromkeys(spec.CASES, WorldMetrics),
     pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES, "throughput": THROUGHPUT},
     replays={
-        "batch": Replay(
-            tuple(spec.WORLDS),
-            follows="joint1",
+        "robots": Replay(
+            tuple(spec.VARIANTS),
+            follows="joint4",
             thing="robots",
-            goal=lambda name, state: spec.WORLDS[name].positions[-1 if state >= spec.SWITCH else 0],
+            goal=lambda name, state: spec.TARGETS[0],
             places=spec.PLACES,
             credit=CREDIT,
             view="Four robots in the postures of the sample; spheres mark the hands' targets.",
-            quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
-            "{moved_later}.",
+            quality="The hand passes its target by {overshoot} and ends {final_distance} from it.",
             filmed="the robots of all environments",
         )
     },

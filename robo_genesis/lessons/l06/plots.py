@@ -1,28 +1,22 @@
 """Figures of L06, each a function of the experiment."""
 
-from collections.abc import Iterable
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator, ScalarFormatter
 
 from robo_genesis.core import plotting
-from robo_genesis.core.exercises import Curves
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import Environment
-from robo_genesis.lessons.l06.text import fitted, sizes
+from robo_genesis.lessons.l06.text import fits, sizes
 from robo_genesis.lessons.l06.throughput import FITTED, GROUP
 from robo_genesis.sim.arm.franka import LINK_PARENTS
-from robo_genesis.sim.arm.kinematics import ARM, HAND
+from robo_genesis.sim.arm.kinematics import HAND
 
 MEASURES = False
-
-FLOOR = 1e-9
-"""Smallest difference on a logarithmic axis; smaller ones, zeros among them, are drawn here."""
 
 
 def posture(run: Experiment) -> Figure:
@@ -39,51 +33,15 @@ def to_target(run: Experiment, name: str, world: Environment) -> FloatArray:
     return np.asarray(1000 * apart)
 
 
-def distances(run: Experiment, names: Iterable[str], title: str) -> tuple[Figure, Axes]:
-    """Draw the distance of the hand from its target in some runs, on a logarithmic scale."""
-    figure, ax = plotting.axes(3.6)
-    for name in names:
-        style = look(spec.CASE_MARKS[name])
-        apart = to_target(run, name, run.cases[name])
-        ax.semilogy(run.traces[name].t, apart, label=spec.LABELS[name], **style)
-    ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
-    plotting.label_ends(ax, title)
-    return figure, ax
-
-
 def distance(run: Experiment) -> Figure:
     """Draw the distance of each hand from its target, and the time of the second command."""
-    figure, ax = distances(run, spec.WORLDS, "Distance of each hand from its target")
+    figure, ax = plotting.axes(3.6)
+    for name, world in spec.WORLDS.items():
+        apart, style = to_target(run, name, world), look(spec.CASE_MARKS[name])
+        ax.semilogy(run.traces[name].t, apart, label=spec.LABELS[name], **style)
+    ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
+    plotting.label_ends(ax, "Distance of each hand from its target")
     ax.axvline(spec.SWITCH * spec.FIRST.dt, **LINE)
-    return figure
-
-
-def variants(run: Experiment) -> Figure:
-    """Draw the distance of the hand from one target in four robots."""
-    return distances(run, spec.VARIANTS, "One target, four robots")[0]
-
-
-def alone(run: Experiment) -> Figure:
-    """Draw the largest difference of an arm joint's position between each row and its run alone."""
-    figure, ax = plotting.axes(3.4)
-    for k, name in enumerate(spec.WORLDS):
-        row, other = run.traces[name], run.traces[f"alone_{k}"]
-        apart = np.abs(row.q.astype(float) - other.q)[:, :ARM].max(axis=1)
-        style = look(spec.CASE_MARKS[name])
-        ax.semilogy(row.t, np.maximum(apart, FLOOR), label=spec.LABELS[name], **style)
-    ax.set(xlabel="time [s]", ylabel="largest difference [rad]")
-    plotting.label_ends(ax, "A row and the same run alone")
-    return figure
-
-
-def judged(curves: Curves) -> Figure:
-    """Draw distances from a target [mm] and the limit for them, on a logarithmic scale."""
-    figure, limit = plotting.figure(3.2), 1000 * spec.REACHED[0]
-    ax = plotting.failure(figure.subplots(), curves, "hand to target [mm]")
-    ax.axhline(limit, **LINE | {"linewidth": 2, "zorder": 1.6})
-    ax.set_yscale("log")
-    ax.set_yticks([limit, 50, 100, 200, 500], [f"limit {limit:g}", "50", "100", "200", "500"])
-    ax.minorticks_off()
     return figure
 
 
@@ -98,7 +56,7 @@ def times(run: Experiment, name: str) -> FloatArray:
 
 def of_environments(ax: Axes, run: Experiment, title: str, ylabel: str) -> None:
     """Make both axes logarithmic and label them: numbers of environments to the right."""
-    shown = [size for size in sizes(run) if size != 512]
+    shown = [size for size in sizes(run) if size.bit_count() == 1]  # powers of two
     ax.set_xscale("log")
     ax.set_xticks(shown, [str(size) for size in shown])
     ax.xaxis.set_minor_locator(NullLocator())
@@ -120,13 +78,15 @@ def throughput(run: Experiment) -> Figure:
 
 
 def model(run: Experiment) -> Figure:
-    """Draw the measured time of a step and the model."""
+    """Draw the measured time of a step, and the range of the models."""
     figure, numbers = plotting.figure(3.8), np.array(sizes(run))
     ax, step, known = figure.subplots(), 1000 * times(run, "step"), np.isin(numbers, FITTED)
     fine = np.geomspace(numbers[0], numbers[-1], 60)
-    ax.plot(fine, 1000 * fitted(run).step_time(fine), label="model", **THEORY)
+    models = [1000 * one.step_time(fine) for one in fits(run)]
+    band = {"color": THEORY["color"], "alpha": 0.3, "linewidth": 0}
+    ax.fill_between(fine, np.min(models, axis=0), np.max(models, axis=0), label="models", **band)
     dots = MEASURED | {"linestyle": "none", "markersize": 5}
-    ax.plot(numbers[known], step[known], label="fitted", **dots)
+    ax.plot(numbers[known], step[known], label="in the fits", **dots)
     ax.plot(numbers[~known], step[~known], label="predicted", fillstyle="none", **dots)
     of_environments(ax, run, "Time of a step", "one step [ms]")
     ax.yaxis.set_major_formatter(ScalarFormatter())

@@ -5,6 +5,7 @@ nothing. `parameters()` has the values that decide what runs; all other values o
 """
 
 from dataclasses import asdict, replace
+from itertools import product
 from typing import Any
 
 from robo_genesis.core.experiment import inputs
@@ -59,11 +60,38 @@ VARIANTS = {
     "plain_robot": SHORT,
     "stiff_robot": replace(SHORT, kp=2 * franka.KP_BASELINE),
     "loaded_robot": replace(SHORT, load=1.0),
-    "stiff_loaded_robot": replace(SHORT, kp=2 * franka.KP_BASELINE, load=1.0),
+    "unlimited_robot": replace(
+        SHORT, kp=2 * franka.KP_BASELINE, effort_limit=20 * franka.EFFORT_LIMIT
+    ),
 }
-"""One target, and four robots that differ in their gains or in the mass of the hand."""
+"""One target, and four robots that differ in gains, mass of the hand or limits of the torques."""
+
+FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""By which the sweep multiplies all KP, and all KV."""
+
+LOADS = (0.0, 0.5, 1.0, 2.0)
+"""Masses that the sweep adds to the hand [kg]."""
+
+SWEEP = {
+    (kp, kv, load): f"kp_{kp:g}_kv_{kv:g}_load_{load:g}".replace(".", "_")
+    for kp, kv, load in product(FACTORS, FACTORS, LOADS)
+}
+"""Names of the sweep's robots by both factors and load, in the order of their rows."""
+
+SWEPT = {"plain_robot": (1.0, 1.0, 0.0), "stiff_robot": (2.0, 1.0, 0.0)}
+SWEPT |= {"loaded_robot": (1.0, 1.0, 1.0)}
+"""The robots of `VARIANTS` that are also in the sweep."""
 
 CASES = WORLDS | ALONE | VARIANTS
+
+PRESSED = {
+    f"pressed_{k}": replace(FIRST, positions=read_only([[x, y, 0.05]]), switch=STEPS, steps=STEPS)
+    for k, (x, y, _) in enumerate(TARGETS)
+}
+"""Targets of the hand that put its fingers into the floor; the solver does not know the floor."""
+
+RESTARTED = read_only([(0.25, 0.0, 0.2)])
+"""A target that the solver does not reach from the start, and reaches from random starts [m]."""
 
 ORDER = (2, 0, 3, 1)
 """Row k of the permuted batch is the world of this environment."""
@@ -92,7 +120,7 @@ LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
     "plain_robot": "plain robot",
     "stiff_robot": "KP doubled",
     "loaded_robot": "1 kg in the hand",
-    "stiff_loaded_robot": "KP doubled, 1 kg",
+    "unlimited_robot": "KP doubled, limits × 20",
 } | {name: f"environment {name[-1]} alone" for name in ALONE}  # fmt: skip
 """Words of a reader for runs."""
 
@@ -109,7 +137,8 @@ VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
 RELATIONS = (
     (("plain_robot", "stiff_robot"), "final_distance", "lower", 1e-3),
     (("plain_robot", "loaded_robot"), "final_distance", "higher", 5e-4),
-    (("plain_robot", "stiff_loaded_robot"), "final_distance", "lower", 1e-3),
+    (("plain_robot", "stiff_robot"), "overshoot", "higher", 5e-3),
+    (("stiff_robot", "unlimited_robot"), "overshoot", "lower", 5e-3),
 )
 """How the second case of a pair compares with the first [m]; not fitted to a run."""
 
@@ -126,5 +155,11 @@ def parameters() -> dict[str, Any]:
     mixed = {"targets": MIXED.tolist(), "settings": asdict(ONE_START)}
     robot = {"joints": list(franka.JOINT_NAMES), "model": franka.FRANKA_MJCF}
     further = robot | {"order": list(ORDER), "hand_mass": HAND_MASS, "mixed": mixed}
-    further |= {"reset_after": RESET_AFTER, "spacing": SPACING, "counted": list(EXPECTED_MODEL)}
-    return inputs(CASES | COPIES, VIEW, **further)
+    further |= {"sweep": {"factors": list(FACTORS), "loads": list(LOADS)}}
+    further |= {
+        "restarted": RESTARTED.tolist(),
+        "reset_after": RESET_AFTER,
+        "spacing": SPACING,
+        "counted": list(EXPECTED_MODEL),
+    }
+    return inputs(CASES | COPIES | PRESSED, VIEW, **further)

@@ -13,7 +13,7 @@ from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import ask, reach, reset_some, start
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.batch import set_link_mass
-from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR
+from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR, IkAnswer
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joints import JointMap, resolve_joints
 
@@ -25,9 +25,24 @@ READINGS = {
 }
 """Counts, residuals and verdicts of a question with a target beyond reach, and masses of hands."""
 
+EQUALITY, READ = "equality", ("pressed_permuted", "pressed_alone", "one_start", "restarts")
+COMPARED = {"compared": "1", "differ": "1", "apart": "rad"}
+"""Of two runs: numbers that are compared, how many differ, largest difference of an arm joint."""
 
-def read_mixed(page: Any, robot: Any) -> None:
-    """Give a page residuals and verdicts of a question in which one target is beyond reach."""
+# Rounding decides how far runs in contact separate, so that another run need not repeat it.
+LECTURE_READINGS = {
+    EQUALITY: Readings(
+        {f"{claim}_{what}": unit for claim in READ for what, unit in COMPARED.items()},
+        "performance",
+    ),
+    "sweep_end": Readings(dict.fromkeys(spec.SWEEP.values(), "m")),
+    "sweep_overshoot": Readings(dict.fromkeys(spec.SWEEP.values(), "m")),
+}
+"""Comparisons without arrays, and of each robot of the sweep two distances from the target."""
+
+
+def read_mixed(page: Any, robot: Any) -> IkAnswer:
+    """Ask a question with a target beyond reach; give a page its residuals and verdicts."""
     world = replace(spec.FIRST, settings=spec.ONE_START)
     worlds = [replace(world, positions=target[None]) for target in spec.MIXED]
     answer = ask(robot, page.joints, worlds)
@@ -35,6 +50,7 @@ def read_mixed(page: Any, robot: Any) -> None:
     verdicts = kinematics.accepted(answer.q, answer.error, *spec.ONE_START.tolerances)
     page.readings["mixed"] = dict(zip(READINGS["mixed"].units, map(float, apart), strict=True))
     page.readings["mixed_accepted"] = dict(zip(spec.WORLDS, map(int, verdicts), strict=True))
+    return answer
 
 
 def residual(position: FloatArray, joints: JointMap) -> float:
@@ -89,6 +105,31 @@ def record_variants(page: Any, scene: Any, robot: Any) -> None:
     set_link_mass(robot, END_EFFECTOR, np.full(len(loaded), spec.HAND_MASS), loaded)
 
 
+def read_equality(page: Any, scene: Any, robot: Any, alone: Any, single: Any) -> None:
+    """Give a page the comparisons of `READ`: hands pressed on the floor, and equal questions."""
+    worlds, joints = list(spec.PRESSED.values()), resolve_joints(single, JOINT_NAMES)
+    rows = reach(scene, robot, page.joints, worlds)
+    ordered = reach(scene, robot, page.joints, [worlds[k] for k in spec.ORDER])
+    permuted = [(rows[k], ordered[j]) for j, k in enumerate(spec.ORDER)]
+    each = [(rows[k], reach(alone, single, joints, [worlds[k]])[0]) for k in spec.ENVS]
+    found = [compared(permuted), compared(each)]
+    for settings in (spec.ONE_START, spec.IK):
+        question = replace(spec.FIRST, positions=spec.RESTARTED, settings=settings)
+        q = ask(robot, page.joints, [question] * len(spec.ENVS)).q
+        differ = q[1:] != q[0]
+        found.append((differ.size, int(differ.sum()), float(np.abs(q[1:] - q[0]).max())))
+    values = [float(value) for of in found for value in of]
+    page.readings[EQUALITY] = dict(zip(LECTURE_READINGS[EQUALITY].units, values, strict=True))
+
+
+def compared(pairs: Sequence[tuple[Trace, Trace]]) -> tuple[int, int, float]:
+    """Return the values of `COMPARED` for some pairs of runs."""
+    counted = [entries_that_differ(*pair) for pair in pairs]
+    apart = max(largest_differences(*pair, slice(kinematics.ARM))["q"] for pair in pairs)
+    differ, of = (sum(column) for column in zip(*counted, strict=True))
+    return of, differ, apart
+
+
 def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
     """Return how many entries differ in the samples that two runs share, and how many these are."""
     differ = compared = 0
@@ -105,19 +146,19 @@ def largest_differences(one: Trace, other: Trace, joints: slice = slice(None)) -
 
     Args:
         one: a run.
-        other: a run of the same steps.
+        other: another one; only the samples that both have are compared.
         joints: of the nine joints, those that are compared.
 
     Returns:
         By array, the difference: of joints of the arm in rad, rad/s and N·m, of fingers in m, m/s
         and N.
     """
-    return {
-        name: float(
-            np.abs((getattr(one, name).astype(float) - getattr(other, name))[:, joints]).max()
-        )
-        for name in spec.SAME_RUN
-    }
+    found = {}
+    for name in spec.SAME_RUN:
+        a, b = (getattr(run, name)[:, joints].astype(float) for run in (one, other))
+        n = min(len(a), len(b))
+        found[name] = float(np.abs(a[:n] - b[:n]).max())
+    return found
 
 
 def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:

@@ -3,19 +3,15 @@
 Those about throughput are correct for every outcome, because elapsed times differ in each run.
 """
 
-from collections.abc import Iterable, Iterator
-from typing import Any
-
-import numpy as np
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.scene import DT, FloatArray
+from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.text import bullets, decimal, listed
-from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec, study
-from robo_genesis.lessons.l06.throughput import FITTED, GROUP
-from robo_genesis.sim.arm.kinematics import ARM
+from robo_genesis.lessons.l06.throughput import FITTED, GROUP, PARTS
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 from robo_genesis.sim.throughput import Model, fit
 
@@ -59,103 +55,90 @@ def row_table(run: Experiment) -> str:
     return tables.number_table("run", heads, rows)
 
 
-def alone_table(run: Experiment) -> str:
-    """Return the largest differences between each row and the same run alone.
-
-    A line of an environment is about the joints of the arm; the last line is about all fingers.
-    """
-    heads = {
-        "position [µrad]": 2,
-        "velocity [µrad/s]": 1,
-        "control force [mN·m]": 2,
-        "entries that differ [%]": 0,
-    }
-    pairs = {f"env_{k}": (run.traces[f"env_{k}"], run.traces[f"alone_{k}"]) for k in spec.ENVS}
-
-    def largest(pair: tuple[Trace, Trace], joints: slice) -> FloatArray:
-        found = study.largest_differences(*pair, joints).values()
-        return np.array([1e6, 1e6, 1e3]) * list(found)
-
-    rows: dict[str, list[Any]] = {}
-    for name, pair in pairs.items():
-        differ, compared = study.entries_that_differ(*pair)
-        rows[spec.LABELS[name]] = [*largest(pair, slice(ARM)), 100 * differ / compared]
-    fingers = np.max([largest(pair, slice(ARM, None)) for pair in pairs.values()], axis=0)
-    units = zip(fingers, ("µm", "µm/s", "mN"), strict=True)
-    rows["fingers of all four"] = [*(f"{decimal(value, 2)} {unit}" for value, unit in units), ""]
-    return tables.number_table("run", heads, rows)
+@tables.as_table
+def sweep_table(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return overshoot and distance at the end of the robots of the sweep without a load."""
+    for kp in reversed(spec.FACTORS):
+        row = {"KP ×": f"{kp:g}"}
+        for kv in spec.FACTORS:
+            name = spec.SWEEP[kp, kv, 0.0]
+            passed, end = (1e3 * run.readings[f"sweep_{of}"][name] for of in ("overshoot", "end"))
+            row[f"KV × {kv:g}"] = f"{passed:.0f} / {end:.0f}"
+        yield row
 
 
-def numbers(names: Iterable[str]) -> str:
+def ends(names: Iterable[str]) -> str:
     """Return the numbers of environments at the end of the names of runs as a list in prose."""
     return listed([name[-1] for name in names])
 
 
 CLAIMED = {
     "permuted": f"the worlds in the order {', '.join(map(str, spec.ORDER))}",
-    "beside": f"environments {numbers(spec.BESIDE)}, while {numbers(spec.AGAIN)} are reset and "
+    "beside": f"environments {ends(spec.BESIDE)}, while {ends(spec.AGAIN)} are reset and "
     f"commanded after {spec.RESET_AFTER * spec.FIRST.dt:g} s",
-    "again": f"environments {numbers(spec.AGAIN)} from their reset on, against their first start",
+    "again": f"environments {ends(spec.AGAIN)} from their reset on, against their first start",
     "plain": "the plain robot beside other gains and loads, against environment 0",
+    "alone": "each world alone, in free motion",
+    "pressed_permuted": "the other order, hands pressed on the floor",
+    "pressed_alone": "alone, hands pressed on the floor",
+    "one_start": "four equal questions to the solver in one call, with one start",
+    "restarts": "the same with up to 50 starts",
 }
+"""What is compared, by claim; `equality_table` has a row for each one that a page measured."""
 
 
-def equal_table(run: Experiment) -> str:
-    """Return how many entries differ where runs must be equal to the last bit."""
+def equality_table(run: Experiment) -> str:
+    """Return how many numbers differ, and by how much, where two runs could be equal."""
+    names = {**study.pairs(), "alone": [(f"env_{k}", f"alone_{k}") for k in spec.ENVS]}
+    found: dict[str, tuple[float, ...]] = {
+        claim: study.compared([(run.traces[one], run.traces[other]) for one, other in pairs])
+        for claim, pairs in names.items()
+    }
+    measured = run.readings.get(study.EQUALITY, {})
+    for claim in study.READ if measured else ():
+        found[claim] = (*(measured[f"{claim}_{what}"] for what in study.COMPARED),)
     rows = {}
-    for claim, names in study.pairs().items():
-        pairs = [(run.traces[one], run.traces[other]) for one, other in names]
-        counted = [study.entries_that_differ(*pair) for pair in pairs]
-        differ, compared = (sum(column) for column in zip(*counted, strict=True))
-        rows[CLAIMED[claim]] = f"{compared:,}".replace(",", " "), f"{differ}"
-    heads = {"numbers compared": 0, "that differ": 0}
-    return tables.number_table("what changed", heads, rows)
+    for claim, (numbers, differ, apart) in found.items():
+        counts = (f"{count:,.0f}".replace(",", " ") for count in (numbers, differ))
+        rows[CLAIMED[claim]] = *counts, three(1e6 * apart)
+    heads = ("numbers", "that differ", "largest difference of a joint [µrad]")
+    return tables.number_table("what changed", dict.fromkeys(heads, 0), rows)
 
 
 def variant_table(run: Experiment) -> str:
     """Return gains, mass, torques and distances of four robots with one target."""
     torques = [f"torque of joint{k + 1} (computed) [N·m]" for k in SHOWN_TORQUES]
     heads = {"KP of joint2 [N·m/rad]": 0, "mass of the hand [kg]": 2}
-    heads |= dict.fromkeys(torques, 2) | {"target to hand [mm]": 2}
+    heads |= dict.fromkeys(torques, 2) | {"ends from target [mm]": 2, "passes it by [mm]": 1}
     rows = {}
     for name, world in spec.VARIANTS.items():
         trace, m = run.traces[name], run.metrics[name]
         expected = mujoco_kinematics.gravity_effort(trace.q[-1].astype(float), world.load)
         pairs = [(trace.control_force[-1, k], expected[k]) for k in SHOWN_TORQUES]
         both = [f"{decimal(found, 2)} ({decimal(right, 2)})" for found, right in pairs]
-        mass = run.readings["hand_mass"][name]
-        rows[spec.LABELS[name]] = (world.kp[1], mass, *both, 1e3 * m.final_distance)
+        first = world.kp[1], run.readings["hand_mass"][name], *both
+        rows[spec.LABELS[name]] = *first, 1e3 * m.final_distance, 1e3 * m.overshoot
     return tables.number_table("robot", heads, rows)
-
-
-MOVED = (
-    "After the second command, the named environments moved by {named} mm or more, the others did "
-    "not move.",
-    "After the second command, the named environments moved by {named} mm or more, the others by "
-    "{others:.2g} µm or less.",
-)
-"""What the lab says if the other environments kept their place, and if they did not."""
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs."""
     m = run.metrics
-    accepted = numbers(name for name, is_ in run.readings["mixed_accepted"].items() if is_)
+    accepted = ends(name for name, is_ in run.readings["mixed_accepted"].items() if is_)
     named, others = (
         [m[f"env_{k}"].moved_later for k in spec.ENVS if (k in spec.LATER) == is_]
         for is_ in (True, False)
     )
-    apart = max(
-        study.largest_differences(run.traces[f"env_{k}"], run.traces[f"alone_{k}"], slice(ARM))["q"]
-        for k in spec.ENVS
-    )
+    pairs = [(run.traces[f"env_{k}"], run.traces[f"alone_{k}"]) for k in spec.ENVS]
     return bullets([
         f"One of the four targets is beyond reach. Rows {accepted} are accepted.",
-        MOVED[max(others) > 0].format(named=mm(min(named)), others=1e6 * max(others)),
+        f"After the second command, the named environments moved by {mm(min(named))} mm or more, "
+        f"the others by {1e6 * max(others):.2g} µm or less.",
         "Positions of arm joints in a row and in the same run alone differ by up to "
-        f"{1e6 * apart:.2f} µrad.",
+        f"{1e6 * study.compared(pairs)[2]:.2f} µrad.",
         *(
-            f"The hand stops {mm(m[name].final_distance)} mm from its target ({spec.LABELS[name]})."
+            f"{spec.LABELS[name]}: the hand passes the target by {mm(m[name].overshoot)} mm, ends "
+            f"{mm(m[name].final_distance)} mm from it."
             for name in spec.VARIANTS
         ),
     ])  # fmt: skip
@@ -204,53 +187,59 @@ def throughput_details(run: Experiment) -> str:
     return tables.timed_table("environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows)
 
 
-def fitted(run: Experiment) -> Model:
-    """Return the model of the time of a step, fitted on the sizes of `FITTED`."""
-    return fit(FITTED, [steps(run)[size] for size in FITTED])
+def fits(run: Experiment) -> list[Model]:
+    """Return the models of the time of a step, each fitted on three sizes of `FITTED`."""
+    found = steps(run)
+    return [fit(of, [found[size] for size in of]) for of in combinations(FITTED, 3)]
+
+
+def span(values: Sequence[float]) -> str:
+    """Return the least and the largest value with two digits each."""
+    least, most = (three(float(f"{of(values):.2g}")) for of in (min, max))
+    return f"{least} to {most}"
 
 
 def model_table(run: Experiment) -> str:
-    """Return measured time and model of each number of environments."""
-    model, rows = fitted(run), {}
+    """Return measured time and models of each number of environments."""
+    models, rows = fits(run), {}
     for size, step in steps(run).items():
-        expected, name = float(model.step_time(size)), f"{size}{', fitted' * (size in FITTED)}"
-        rows[name] = ms(step), ms(expected), step / expected
-    heads = {"measured [ms]": 0, "model [ms]": 0, "ratio": 2}
+        expected = [float(model.step_time(size)) for model in models]
+        name = f"{size}{', fitted' * (size in FITTED)}"
+        times, shares = [1e3 * of for of in expected], [step / of for of in expected]
+        rows[name] = ms(step), span(times), span(shares)
+    heads = {"measured [ms]": 0, "models [ms]": 0, "measured / model": 0}
     return tables.timed_table("B", heads, rows)
 
 
 def constants_table(run: Experiment) -> str:
-    """Return both constants of the model, and what follows from them."""
-    model = fitted(run)
+    """Return the range of both constants of the models, and what follows from them."""
+    models = fits(run)
     rows = {
-        "*a*, the fixed part of a step": f"{ms(model.fixed)} ms",
-        "*b*, the part of each environment": f"{three(1e6 * model.each)} µs",
-        "1/*b*, the limit of the throughput": f"{three(1 / model.each)} steps per second",
-        "*a*/*b*, with which the throughput is half of it": (
-            f"{three(model.fixed / model.each)} environments"
-        ),
+        "*a*, the fixed part of a step [ms]": span([1e3 * m.fixed for m in models]),
+        "*b*, the part of each environment [µs]": span([1e6 * m.each for m in models]),
+        "1/*b*, the limit of the throughput [steps per second]": span([1 / m.each for m in models]),
+        "*a*/*b*, environments for half of it": span([m.fixed / m.each for m in models]),
     }
-    return tables.timed_table("constant", {"fit": 0}, {name: (of,) for name, of in rows.items()})
+    return tables.timed_table("constant", {"models": 0}, {name: (of,) for name, of in rows.items()})
 
 
-def content_table(run: Experiment) -> str:
-    """Return the time of a step with a sphere and with the robot."""
-    rows = {}
-    for size in (1, 256):
-        sphere, robot = (run.readings[GROUP][f"step_{of}{size}"] for of in ("sphere_", ""))
-        rows[f"{size}"] = ms(sphere), ms(robot), three(robot / sphere)
-    return tables.timed_table("B", dict.fromkeys(("sphere [ms]", "robot [ms]", "ratio"), 0), rows)
+def parts_table(run: Experiment) -> str:
+    """Return both parts of a step from 1 and 256 environments, for other contents and substeps."""
+    found, rows = run.readings[GROUP], {}
+    for part, substeps in {"": SUBSTEPS, **PARTS}.items():
+        label = f"{part.partition('_')[0] or 'robot'}, substeps: {substeps}"
+        of = part and f"{part}_"
+        model = fit((1, 256), [found[f"step_{of}{size}"] for size in (1, 256)])
+        rows[label] = ms(model.fixed), three(1e6 * model.each)
+    return tables.timed_table("scene", dict.fromkeys(("*a* [ms]", "*b* [µs]"), 0), rows)
 
 
 def cache_table(run: Experiment) -> str:
-    """Compare one scene of 1024 environments with four of 256."""
+    """Compare one scene of 1024 environments with one of 1000 and with four of 256."""
     found = run.readings[GROUP]
-    one, four = found["step_1024"], found["step_four_scenes"]
-    grown = (found["memory_1024"] - found["memory_256"]) / (1024 - 256)
-    rows = {
-        "a step of one scene of 1024": f"{ms(one)} ms",
-        "a step of four scenes of 256, in turn": f"{ms(four)} ms",
-        "the first divided by the second": three(one / four),
-        "memory of each environment": f"{three(grown)} MiB",
-    }
-    return tables.timed_table("what", {"measured": 0}, {name: (of,) for name, of in rows.items()})
+    one = found["step_1024"]
+    others = {"one scene of 1000": "1000", "four scenes of 256, in turn": "four_scenes"}
+    rows = {"one scene of 1024": (ms(one), "")}
+    for name, step in ((name, found[f"step_{of}"]) for name, of in others.items()):
+        rows[name] = ms(step), three(one / step)
+    return tables.timed_table("a step of", {"time [ms]": 0, "1024 takes … times as long": 0}, rows)

@@ -35,9 +35,9 @@ Build = Callable[[int], tuple[Any, ...]]
 class Protocol:
     """What is timed.
 
-    `sizes` are numbers of environments, in the order in which their scenes are built. In
-    turn, each scene makes `warm_up` steps whose time is not used and `steps` steps, and all of
-    that is done `repeats` times. `others` are names of further scenes that are timed with them.
+    `sizes` are numbers of environments, in the order in which their scenes are built. In a new
+    order each time, each scene makes `warm_up` steps whose time is not used and `steps` steps, and
+    all of that is done `repeats` times. `others` are names of further scenes that are timed too.
     """
 
     sizes: tuple[int, ...]
@@ -62,11 +62,17 @@ class Protocol:
 
 
 PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
-DEEPER = Protocol((1, 4, 16, 64, 256, 512, 1024), ("sphere_1", "sphere_256", "four_scenes"))
-"""The same with one more size, with a sphere in place of the robot, and with four scenes of 256."""
+PARTS = {"sphere": 2, "robot_1": 1, "robot_4": 4}
+"""Scenes that are timed with 1 and 256 environments, by content, and their substeps."""
 
-FITTED = (1, 16, 64)
-"""Numbers of environments from which the model is fitted. It predicts the others."""
+DEEPER = Protocol(
+    (1, 4, 16, 60, 64, 250, 256, 1000, 1024),
+    (*(f"{of}_{size}" for of in PARTS for size in (1, 256)), "four_scenes"),
+)
+"""The same with sizes beside powers of two, and with other scenes."""
+
+FITTED = (1, 16, 60, 64)
+"""Numbers of environments from which the model is fitted, three at a time. It predicts others."""
 
 
 def start(robot: Any) -> None:
@@ -116,12 +122,24 @@ def measure(
     return found, {name: unequal(q) for name, q in ends.items()}
 
 
-def explanations(built: Mapping[int, Any], build: Build, sphere: Build) -> dict[str, Calls]:
-    """Return the further scenes of `DEEPER`, given scene and robot of each size."""
-    four = [calls_of(*built[256])]
-    for _ in range(3):
-        scene, robot, *_ = build(256)
-        start(robot)
-        four.append(calls_of(scene, robot))
-    spheres = {f"sphere_{n}": calls_of(*sphere(n)) for n in (1, 256)}
-    return spheres | {"four_scenes": timing.together(four)}
+def explanations(built: Mapping[int, Any], build: Callable[..., Any]) -> dict[str, Calls]:
+    """Return the further scenes of `DEEPER`.
+
+    Args:
+        built: scene and robot of each size.
+        build: makes a scene of a size, also with other substeps or with a `sphere`.
+    """
+
+    def calls(*given: Any) -> Calls:
+        scene, body, *_ = build(*given)
+        if "sphere" not in given:
+            start(body)
+        return calls_of(scene, body)
+
+    four = [calls_of(*built[256]), *(calls(256) for _ in range(3))]
+    parts = {
+        f"{of}_{size}": calls(size, substeps, of.partition("_")[0])
+        for of, substeps in PARTS.items()
+        for size in (1, 256)
+    }
+    return parts | {"four_scenes": timing.together(four)}

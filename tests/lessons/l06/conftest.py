@@ -10,6 +10,7 @@ from robot_runs import LINKS, answer, driven
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import checks, spec, study
+from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.pages import LECTURE
 from robo_genesis.lessons.l06.run import Environment
 
@@ -24,6 +25,19 @@ def run_of(world: Environment) -> Trace:
     return driven(world.commanding(targets), LINKS, world.load)
 
 
+def swept(runs) -> dict:
+    """Return readings of the sweep: those of recorded runs, plausible ones of others."""
+    m = {name: world_metrics(runs[name], spec.VARIANTS[name]) for name in spec.SWEPT}
+    readings = {"sweep_end": {}, "sweep_overshoot": {}}
+    for (kp, kv, load), row in spec.SWEEP.items():
+        recorded = m["stiff_robot" if kp > kv else "loaded_robot" if load else "plain_robot"]
+        share = 0.5 if kp > kv and load else 1.0
+        end = m["loaded_robot"].final_distance if share < 1 else recorded.final_distance
+        readings["sweep_end"][row] = share * end
+        readings["sweep_overshoot"][row] = recorded.overshoot
+    return readings
+
+
 @pytest.fixture(scope="session")
 def worlds(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
@@ -36,9 +50,10 @@ def worlds(joints) -> Experiment:
     for name, world in spec.COPIES.items():
         runs[name] = beginning(runs[f"env_{name[-1]}"], world.steps)
     masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}
+    equality = study.LECTURE_READINGS[study.EQUALITY].units
     residuals = [study.residual(position, joints) for position in spec.MIXED]
     return Experiment(
-        page=replace(LECTURE, checks=checks.WITHOUT_CAMERA),
+        page=replace(LECTURE, checks=(*checks.WITHOUT_CAMERA, *checks.LECTURE)),
         traces={name: runs[name] for name in LECTURE.runs},
         links=LINKS,
         readings={
@@ -46,7 +61,11 @@ def worlds(joints) -> Experiment:
             "mixed": dict(zip(study.READINGS["mixed"].units, residuals, strict=True)),
             "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
             "hand_mass": masses,
-        },
+            study.EQUALITY: dict(
+                zip(equality, [9, 0, 0, 9, 4, 1e-3, 9, 0, 0, 9, 9, 1], strict=True)
+            ),
+        }
+        | swept(runs),
         frames={},
         rendered=False,
         joints=joints,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
-from robo_genesis.lessons.l06 import spec
+from robo_genesis.lessons.l06 import checks, spec
 from robo_genesis.lessons.l06.laws import laws_of_motion
 from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.run import commands
@@ -37,8 +37,16 @@ CHANGES = [
     ("acceptance_per_row", trace(LOADED, target=shift(..., 1e-2))),
     ("arrived", moved_hand("alone_1", 0.05, slice(-1, None))),
     ("row_equals_alone", trace("alone_2", qd=shift(40, 1e-4))),
-    ("row_equals_alone", trace("alone_0", target=shift(..., 1e-7))),
+    ("row_equals_alone", trace("alone_0", target=shift(..., 1e-5))),
     ("permuted_rows", trace("permuted_3", q=shift(7, 1e-6))),
+    ("pressed_on_the_floor", reading("equality", "pressed_permuted_differ", 1)),
+    ("pressed_on_the_floor", reading("equality", "pressed_alone_apart", 1e-6)),
+    ("answers_depend_on_the_row", reading("equality", "one_start_differ", 1)),
+    ("answers_depend_on_the_row", reading("equality", "restarts_apart", 0.0)),
+    ("sweep_repeats_the_runs", reading("sweep_end", spec.SWEEP[1.0, 1.0, 0.0], 0.1)),
+    ("price_of_stiffness", reading("sweep_overshoot", spec.SWEEP[2.0, 1.0, 0.5], 0.0)),
+    ("price_of_stiffness", reading("sweep_end", spec.SWEEP[2.0, 1.0, 2.0], 0.1)),
+    ("price_of_stiffness", lambda run: swapped(run, STIFF, "unlimited_robot")),
     ("untouched_keep_their_state", moved_hand("env_0", 2e-5, slice(300, None))),
     # a neighbour that leaked into a row, and an environment without its second command
     ("untouched_keep_their_state", trace("beside_2", q=shift(35, 1e-6))),
@@ -72,7 +80,8 @@ def test_the_law_of_a_loaded_robot_knows_its_load(worlds, by):
 
 
 def test_the_lab_says_which_checks_fail_if_two_rows_are_swapped(worlds):
-    expected = {name for name, _ in CHANGES} - {"stamps", "mapping"}
+    passed = {"stamps", "mapping"} | {check.__name__ for check in checks.LECTURE}
+    expected = {name for name, _ in CHANGES} - passed
     assert failed(swapped(worlds, "env_0", "env_1")) == expected
 
 
@@ -90,6 +99,7 @@ def test_the_metrics_tell_when_a_hand_moved(worlds):
     m = worlds.metrics
     assert m["env_0"].moved_later < 1e-5 < 0.1 < m["env_1"].moved_later
     assert (m[PLAIN].moved_later, m[PLAIN].final_distance) == (None, m[PLAIN].first_distance)
+    assert m["unlimited_robot"].overshoot < 0.01 < m[STIFF].overshoot
     assert m["env_3"].first_distance < 0.02 > m["env_3"].final_distance
     empty = {"link_pos": np.zeros((361, 3, 3)), "link_quat": np.zeros((361, 3, 4))}
     few = replace(worlds.traces["env_0"], **empty)

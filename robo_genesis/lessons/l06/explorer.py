@@ -1,0 +1,61 @@
+"""The sweep as the data of an explorer: a map of the gains for each load."""
+
+from typing import Any
+
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.text import decimal
+from robo_genesis.lessons.l06 import spec
+
+MEASURES = False
+
+SHOWN = {
+    "sweep_end": ("distance at the end [mm]", "distance of the hand from its target at the end"),
+    "sweep_overshoot": ("overshoot [mm]", "distance by which the hand passes its target"),
+}
+"""Label and noun of each group of readings that the map shows."""
+
+
+def explored(run: Experiment) -> dict[str, Any]:
+    """Return the sweep as `site/figures/explorer.py` shows it: KP upwards, KV to the right."""
+    words = {"lower": "lower", "higher": "higher", "margin": 1.0, "within": "1 mm"}
+    measures = [{"label": label, "noun": noun} | words for label, noun in SHOWN.values()]
+    return {
+        "choices": ("In the hand", "Map shows"),
+        "maps": [_map(run, load) for load in spec.LOADS],
+        "measures": [measure | {"column": k} for k, measure in enumerate(measures)],
+        "columns": [label for label, _ in SHOWN.values()],
+        "notes": {"●": "●: the plain robot."},
+        "curves": {"drawn": []},
+        "without_script": "The map needs JavaScript. The table of the sweep shows a part of it.",
+    }
+
+
+def _map(run: Experiment, load: float) -> dict[str, Any]:
+    """Return the robots with one load."""
+    label = f"{load:g} kg" if load else "nothing"
+    return {
+        "label": label,
+        "setting": f"{label} in the hand",
+        "caption": "Factors of KP upwards, of KV to the right.",
+        "columns": [f"{kv:g}" for kv in spec.FACTORS],
+        "rows": [
+            {"label": f"{kp:g}", "cells": [_cell(run, kp, kv, load) for kv in spec.FACTORS]}
+            for kp in reversed(spec.FACTORS)
+        ],
+    }
+
+
+def _cell(run: Experiment, kp: float, kv: float, load: float) -> dict[str, Any]:
+    """Return one robot."""
+    numbers = [1000 * run.readings[group][spec.SWEEP[kp, kv, load]] for group in SHOWN]
+    ends, passed = texts = [decimal(number, 1 if number < 9.95 else 0) for number in numbers]
+    name = f"KP × {kp:g}, KV × {kv:g}"
+    return {
+        "name": name,
+        "tag": "●" * (kp == kv == 1),
+        "opens": (kp, kv, load) == spec.SWEPT["plain_robot"],
+        "sentence": f"{name}: passes the target by {passed} mm, ends {ends} mm from it.",
+        "values": [f"{text} mm" for text in texts],
+        "numbers": numbers,
+        "texts": texts,
+    }
