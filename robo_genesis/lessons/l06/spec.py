@@ -84,8 +84,9 @@ SWEPT |= {"loaded_robot": (1.0, 1.0, 1.0)}
 
 CASES = WORLDS | ALONE | VARIANTS
 
+INTO_THE_FLOOR = replace(FIRST, settings=replace(IK, clearance=-0.1), switch=STEPS, steps=STEPS)
 PRESSED = {
-    f"pressed_{k}": replace(FIRST, positions=read_only([[x, y, 0.05]]), switch=STEPS, steps=STEPS)
+    f"pressed_{k}": replace(INTO_THE_FLOOR, positions=read_only([[x, y, 0.05]]))
     for k, (x, y, _) in enumerate(TARGETS)
 }
 """Targets of the hand that put its fingers into the floor; the solver does not know the floor."""
