@@ -32,7 +32,8 @@ COMPARED = {"compared": "1", "differ": "1", "apart": "rad"}
 # Rounding decides how far runs in contact separate, so that another run need not repeat it.
 LECTURE_READINGS = {
     EQUALITY: Readings(
-        {f"{claim}_{what}": unit for claim in READ for what, unit in COMPARED.items()},
+        {f"{claim}_{what}": unit for claim in READ for what, unit in COMPARED.items()}
+        | {"pressed_height": "m"},
         "performance",
     ),
     "sweep_end": Readings(dict.fromkeys(spec.SWEEP.values(), "m")),
@@ -118,7 +119,8 @@ def read_equality(page: Any, scene: Any, robot: Any, alone: Any, single: Any) ->
         q = ask(robot, page.joints, [question] * len(spec.ENVS)).q
         differ = q[1:] != q[0]
         found.append((differ.size, int(differ.sum()), float(np.abs(q[1:] - q[0]).max())))
-    values = [float(value) for of in found for value in of]
+    height = min(row.link_pos[-1, kinematics.HAND, 2] for row in rows)
+    values = [*(float(value) for of in found for value in of), float(height)]
     page.readings[EQUALITY] = dict(zip(LECTURE_READINGS[EQUALITY].units, values, strict=True))
 
 

