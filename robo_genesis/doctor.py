@@ -160,8 +160,8 @@ def machine(engine: Any) -> dict[str, str]:
 
 def shareable(text: str) -> str:
     """Return a text without folders, which can name users; paths in the course stay relative."""
-    text = project.without_folders(text.replace(sys.prefix, "<environment>"))
-    return re.sub(r"(?<![\w.~>/-])/(?!usr/(?:share|lib)/)(?:[^/\s'\"]+/)+", "…/", text)
+    text = project.without_folders(text.replace(sys.prefix, "…"))
+    return re.sub(r"(?<![\w.~…/-])/(?!usr/(?:share|lib)/)(?:[^/\s'\"]+/)+", "…/", text)
 
 
 def recorded_machine(bundle: str) -> dict[str, str]:
