@@ -18,7 +18,7 @@ from robo_genesis.pipeline.pages.folder import NOTEBOOK
 from robo_genesis.pipeline.pages.printed import LOG
 from robo_genesis.site.course.sizes import HIDDEN
 
-MODULES = {"genesis", "numpy"}
+MODULES = {"genesis", "mujoco", "numpy"}
 FAILS = "raises-exception"  # A cell that shows an error; a script would end there
 NEXT = "next cell"  # What the script prints between two cells
 
