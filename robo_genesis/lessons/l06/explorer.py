@@ -37,9 +37,9 @@ def _map(run: Experiment, load: float) -> dict[str, Any]:
         "label": label,
         "setting": f"{label} in the hand",
         "caption": "Factors of KP upwards, of KV to the right.",
-        "columns": [f"{kv:g}" for kv in spec.FACTORS],
+        "columns": [f"{kv:g}".removeprefix("0") for kv in spec.FACTORS],
         "rows": [
-            {"label": f"{kp:g}", "cells": [_cell(run, kp, kv, load) for kv in spec.FACTORS]}
+            {"label": f"{kp:g}".removeprefix("0"), "cells": [_cell(run, kp, kv, load) for kv in spec.FACTORS]}
             for kp in reversed(spec.FACTORS)
         ],
     }
