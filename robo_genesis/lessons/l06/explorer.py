@@ -39,7 +39,10 @@ def _map(run: Experiment, load: float) -> dict[str, Any]:
         "caption": "Factors of KP upwards, of KV to the right.",
         "columns": [f"{kv:g}".removeprefix("0") for kv in spec.FACTORS],
         "rows": [
-            {"label": f"{kp:g}".removeprefix("0"), "cells": [_cell(run, kp, kv, load) for kv in spec.FACTORS]}
+            {
+                "label": f"{kp:g}".removeprefix("0"),
+                "cells": [_cell(run, kp, kv, load) for kv in spec.FACTORS],
+            }
             for kp in reversed(spec.FACTORS)
         ],
     }
