@@ -271,7 +271,7 @@ def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monk
     make_book(tmp_path, page=notebook(cell("1")))
     monkeypatch.setattr("robo_genesis.core.project.installed_version", lambda name: "0.0.1")
     said: list[str] = []
-    with pytest.raises(ProjectError, match=r"Installed is genesis-world 0\.0\.1, pinned"):
+    with pytest.raises(ProjectError, match=r"Installed is genesis-world 0\.0\.1, the course needs"):
         build(tmp_path, said)
     assert said == []
 

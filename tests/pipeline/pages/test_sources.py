@@ -177,14 +177,16 @@ TIMES = "throughput.measure("
 
 
 def test_a_page_that_runs_alone_records_elapsed_times():
-    alone = [page for page in PAGES if page.alone]
-    timed = {
-        p.docname: n for p in PAGES for n, code in enumerate(p.code.sources, 1) if TIMES in code
-    }
-    assert timed == {page.docname: page.alone for page in alone} != {}  # a misspelt tag is noticed
-    for page in alone:
-        groups = LESSONS[page.lesson].pages[page.page].groups(True).values()
-        assert any(group.kind == "performance" for group in groups), page.docname
+    alone = {page.docname: page for page in PAGES if page.alone}
+    timed = {p.docname for p in PAGES for code in p.code.sources if TIMES in code}
+    assert timed
+    assert timed <= {*alone}
+    for name, page in alone.items():  # a tag at another cell is noticed
+        code = page.code.sources[page.alone - 1]
+        assert any(word in code for word in (TIMES, "step_time(", "perf_counter()")), name
+    for name in timed:
+        groups = LESSONS[alone[name].lesson].pages[alone[name].page].groups(True).values()
+        assert any(group.kind == "performance" for group in groups), name
 
 
 def test_a_page_with_kernels_of_its_own_compiles_them_before_it_needs_those_of_the_build():
