@@ -7,7 +7,7 @@ CONFIGURED = {
     "time of the partial reset [s]": spec.RESET_AFTER * spec.FIRST.dt,
     "declared bound of a control force [N·m]": spec.SAME_RUN["control_force"],
     "position tolerance of the solver [mm]": 1000 * spec.IK.position_tolerance,
-    "time of the hands on the floor [s]": spec.STEPS * spec.FIRST.dt,
+    "duration of the run in contact [s]": spec.STEPS * spec.FIRST.dt,
     "time constant of a row, by hand [s]": 0.8,
     "mean residual of a question [mm]": 0.1,
     "difference of a row in a question [µrad]": 0.3,
