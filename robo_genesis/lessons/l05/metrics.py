@@ -17,6 +17,7 @@ from robo_genesis.sim.arm.kinematics import (
     fingertip,
     hand_pose,
     measured_hand,
+    passed_by,
 )
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
@@ -54,9 +55,9 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
         )
     target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
     end, found = measured_hand(trace, -1), {"final_speed": float(np.abs(trace.qd[-1]).max())}
-    path = measured_hand(trace, slice(None)).position - case.position
-    found["start_distance"] = float(np.linalg.norm(path[0]))
-    found["overshoot"] = max(0.0, float((path @ -path[0]).max()) / found["start_distance"])
+    path = measured_hand(trace, slice(None)).position
+    found["start_distance"] = float(np.linalg.norm(path[0] - case.position))
+    found["overshoot"] = passed_by(path, case.position)
     tips = fingertip(command) - fingertip(end)
     found["tip_tracking_distance"] = float(np.linalg.norm(tips))
     pairs = {"command": (target, command), "tracking": (command, end), "final": (target, end)}

@@ -54,9 +54,9 @@ RECORDED = replace(
 )
 LECTURE = replace(
     RECORDED,
-    runs={**RECORDED.runs, **runs_of(spec.FINER | {"unlimited": spec.FREE})},
+    runs={**RECORDED.runs, **runs_of(spec.MORE)},
     checks=checks.LECTURE,
-    parameters=lambda: spec.parameters() | {"finer": spec.FINE},
+    parameters=spec.lecture_parameters,
 )
 LAB = with_functions(RECORDED, "chain", "damped", "accept", "project", "back_project")
 

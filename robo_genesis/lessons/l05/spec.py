@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.experiment import inputs
+from robo_genesis.core.experiment import case_inputs, inputs
 from robo_genesis.core.scene import CAMERA, read_only
 from robo_genesis.lessons.l05.run import ReachCase, SolveCase
 from robo_genesis.sim.arm import franka, reaching
@@ -36,11 +36,12 @@ TARGET = read_only((0.45, 0.0, 0.35))
 """Target of the hand's origin in the world [m]."""
 
 BASELINE = ReachCase(TARGET, DOWN, IK, steps=180)
+KP_DOUBLED = replace(BASELINE, kp=2 * franka.KP_BASELINE)
 CASES = {
     "baseline": BASELINE,
-    "kp_doubled": replace(BASELINE, kp=2 * franka.KP_BASELINE),
+    "kp_doubled": KP_DOUBLED,
     "gravity_compensated": replace(BASELINE, compensated=True),
-    "kp_doubled_ramp": replace(BASELINE, kp=2 * franka.KP_BASELINE, ramp=100),
+    "kp_doubled_ramp": replace(KP_DOUBLED, ramp=100),
 }
 CASE_MARKS = dict(zip(CASES, ("baseline", "first", "second", "third"), strict=True))
 """The mark of each case in the palette."""
@@ -52,8 +53,8 @@ FINER = {
 }
 """Runs of the lecture with a smaller solver step."""
 
-FREE = replace(CASES["kp_doubled"], effort_limit=10 * franka.EFFORT_LIMIT)
-"""A run of the lecture in which no joint meets a force limit."""
+MORE = FINER | {"unlimited": replace(KP_DOUBLED, effort_limit=10 * franka.EFFORT_LIMIT)}
+"""The runs that the lecture has beside those of the lab; the last one never needs its limits."""
 
 LABELS = {
     name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ") for name in CASES
@@ -173,7 +174,14 @@ BEYOND_NEAREST = 0.01
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
     robot = {"joints": list(franka.JOINT_NAMES), "model": franka.FRANKA_MJCF}
-    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL), marker=MARKER_RADIUS, **robot)
+    asked = case_inputs(PRECISE | LOW) | {"stretched": NEARLY_STRETCHED.tolist()}
+    counted = list(EXPECTED_MODEL)
+    return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS, **robot)
+
+
+def lecture_parameters() -> dict[str, Any]:
+    """Return the inputs of the lecture, which has more runs than the lab."""
+    return parameters() | {"further": case_inputs(MORE)}
 
 
 def view_parameters() -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """Checks of the functions that a student writes in L06's lab; see `core/exercises.py`."""
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from types import SimpleNamespace
@@ -16,38 +15,23 @@ from robo_genesis.sim.arm.reaching import ANSWERS
 MEASURES = False
 
 
-ROWS = ANSWERS | {
-    "turned_too_far_about_x": ((8, 0.1), (0, 0, 0, 6e-3, 0, 0), False),
-    "turned_too_far_about_z": ((8, 0.1), (0, 0, 0, 0, 0, -6e-3), False),
-    "height_is_no_angle": ((8, 0.1), (0, 0, 4e-4, 0, 0, 4.99e-3), True),
-    "rotation_not_a_number": ((8, 0.1), (0, 0, 0, 0, math.nan, 0), False),
-    "middle_joint_not_a_number": ((4, math.nan), (0.0,) * 6, False),
-}
-"""Answers in which each kind of error occurs in another row."""
-
-
 @as_test
 def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` on rows (k, d) and (k, 6).
 
-    It returns one truth value for each row, (k,), and leaves its arguments as they are.
+    It returns one truth value for each row, (k,).
     """
-    names = list(ROWS)
+    names = list(ANSWERS)
     for label, rows in (("all", names), ("backwards", names[::-1]), ("one", names[3:4])):
-        changed = [ROWS[name][0] for name in rows]
+        changed = [ANSWERS[name][0] for name in rows]
         q = np.array([np.where(np.arange(9) == joint, value, 0.1) for joint, value in changed])
-        error = np.array([ROWS[name][1] for name in rows], dtype=float)
-        given = q.copy(), error.copy()
+        error = np.array([ANSWERS[name][1] for name in rows], dtype=float)
         found = np.asarray(accept(q, error, *spec.IK.tolerances))
         yield equal(f"{label}.shape", list(found.shape), [len(rows)])
         yield equal(f"{label}.type", found.dtype.name, "bool")
         if found.shape == (len(rows),):
             for name, value in zip(rows, found, strict=True):
-                yield equal(f"{label}.{name}", bool(value), ROWS[name][2])
-        same = [
-            np.array_equal(a, b, equal_nan=True) for a, b in zip(given, (q, error), strict=True)
-        ]
-        yield equal(f"{label}.arguments_are_unchanged", all(same), True)
+                yield equal(f"{label}.{name}", bool(value), ANSWERS[name][2])
     loose = accept(np.zeros((2, 9)), np.full((2, 6), 0.1), 0.2, 0.2)
     yield equal("looser_tolerances", np.asarray(loose, dtype=bool).tolist(), [True, True])
 

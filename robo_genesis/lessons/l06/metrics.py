@@ -5,11 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm.franka import LINK_PARENTS
-from robo_genesis.sim.arm.kinematics import HAND, Pose, distance_and_angle, hand_pose, measured_hand
+from robo_genesis.sim.arm.kinematics import (
+    HAND,
+    Pose,
+    distance_and_angle,
+    hand_pose,
+    measured_hand,
+    passed_by,
+)
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 
@@ -37,17 +43,6 @@ class WorldMetrics(CaseMetrics):
     moved_later: float | None = metric(
         "m", "motion after 1.8 s", "link_pos_m", noun="motion of the hand after 1.8 s"
     )
-
-
-def passed_by(hand: FloatArray, target: FloatArray) -> float:
-    """Return how far a hand passes its target along the line from its start [m].
-
-    Args:
-        hand: positions (n+1, 3) [m].
-        target: (3,) [m].
-    """
-    way = hand - target
-    return max(0.0, float((way @ -way[0]).max() / np.linalg.norm(way[0])))
 
 
 def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:

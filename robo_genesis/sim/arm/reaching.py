@@ -59,6 +59,7 @@ ANSWERS: dict[str, tuple[tuple[int, float], tuple[float, ...], bool]] = {
     "last_joint_infinite": ((8, -math.inf), (0.0,) * 6, False),
     "rotation_not_a_number": ((8, 0.1), (0, 0, 0, 0, math.nan, 0), False),
     "residual_not_a_number": ((8, 0.1), (math.nan, 0, 0, 0, 0, 0), False),
+    "height_is_no_angle": ((8, 0.1), (0, 0, 4e-4, 0, 0, 4.99e-3), True),
     "small": ((8, 0.1), (1e-6,) * 6, True),
 }
 """For exercises: a joint and its position, the residual, and whether `IK` lets it be commanded."""
