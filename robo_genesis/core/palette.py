@@ -5,6 +5,7 @@ Lines of measured data are solid, with names beside them or in a legend; targets
 dashes.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -72,6 +73,25 @@ def marks_of(cases: Sequence[str], declared: Mapping[str, str]) -> dict[str, str
     baseline, *coloured = CASE_CLASSES
     free = iter([mark for mark in (*coloured, baseline) if mark not in own.values()])
     return {case: own.get(case) or next(free) for case in cases}
+
+
+COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
+NAMED = re.compile(r'\b(?:fill|stroke)(?:: ?|=")(?!none|url|inherit|currentColor)([a-zA-Z]+)')
+VALID_COLOURS = (
+    "A page draws in the light colours of core/palette.py, which follow the reader's theme: "
+    f"{', '.join(f'{name} {mark.light}' for name, mark in (MARKS | PARTS).items())}. Take one by "
+    '`plotting.look("first")`, or add it there with its colour in the dark theme.'
+)
+
+
+def outside_the_palette(drawing: str) -> list[str]:
+    """Return the colours of an SVG drawing that no theme knows; one with a picture may have any."""
+    if "<image" in drawing:
+        return []
+    known = {mark.light for mark in (MARKS | PARTS).values()}
+    return sorted(
+        {each[2] for each in COLOUR.finditer(drawing)} - known | {*NAMED.findall(drawing)}
+    )
 
 
 def css_name(mark: str) -> str:

@@ -14,6 +14,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.rcsetup import cycler
 
 from robo_genesis.core.channels import Channel, Level
 from robo_genesis.core.palette import MARKS, PARTS, marks_of
@@ -26,6 +27,9 @@ WIDTH = 4.25  # Of each figure [inch]: about the width of a phone's page
 
 LINE: dict[str, Any] = {"color": PARTS["line"].light, "linewidth": 0.9, "zorder": 1}
 """A thin solid line for a target or for zero."""
+
+CYCLE = ("first", "second", "third", "other", "further", "baseline")
+"""The marks of lines that name none, in their order."""
 
 BAND = PARTS["band"].light
 
@@ -62,6 +66,7 @@ def use_course_style() -> None:
             "axes.edgecolor": line,
             "axes.grid": True,
             "axes.labelcolor": text,
+            "axes.prop_cycle": cycler("color", [MARKS[name].light for name in CYCLE]),
             "axes.spines.right": False,
             "axes.spines.top": False,
             "axes.titlesize": "medium",
@@ -70,9 +75,11 @@ def use_course_style() -> None:
             "font.size": 10.5,
             "grid.color": PARTS["grid"].light,
             "image.interpolation": "none",
+            "hatch.color": text,
             "legend.fontsize": "medium",
             "legend.frameon": False,
             "lines.linewidth": 1.7,
+            "patch.edgecolor": text,
             "svg.fonttype": "path",
             "svg.hashsalt": "robo-genesis",
             "text.color": text,

@@ -15,7 +15,7 @@ from robo_genesis.core.files import json_digest
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.html.sphinx_process import read_again
-from robo_genesis.pipeline.pages.book import docnames
+from robo_genesis.pipeline.pages.book import page_files
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import RECORD
 
@@ -42,13 +42,8 @@ def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
             it.
         root: the checkout.
     """
-    names = [name.removesuffix(".md") for name in docnames(book / "_toc.yml")]
-    sources = {name: book / f"{name}.md" for name in names}
-    pages = {
-        name: sha256(path.read_bytes()).hexdigest()
-        for name, path in sources.items()
-        if path.is_file()
-    }
+    sources = page_files(book)
+    pages = {name: sha256(path.read_bytes()).hexdigest() for name, path in sources.items()}
     # A page's record has digests of all files that its run left.
     records = [(folder / RECORD).read_bytes() for folder in built.folders.values()]
     runs = [built.model_dump(mode="json"), [sha256(record).hexdigest() for record in records]]

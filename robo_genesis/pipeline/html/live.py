@@ -24,7 +24,7 @@ from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.serve import SiteFile, listen
 from robo_genesis.pipeline.html.sphinx_process import EXECUTED, HTML, SphinxProcess
-from robo_genesis.pipeline.pages.book import Page, code_digest, docnames, find_pages
+from robo_genesis.pipeline.pages.book import Page, code_digest, find_pages, page_files
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
 from robo_genesis.pipeline.pages.folder import PageRefused, read_record
 from robo_genesis.pipeline.pages.store import folders, places
@@ -84,8 +84,7 @@ class Live:
         """Render after some files changed; return whether there is a new state to show."""
         try:
             built = self.built(find_pages(self.book))
-            known = {name.removesuffix(".md") for name in docnames(self.book / "_toc.yml")}
-            names = [name for name in known if self.book / f"{name}.md" in paths]
+            names = [name for name, path in page_files(self.book).items() if path in paths]
             ended = self.sphinx is None or self.sphinx.process.poll() is not None
             if ended or len(names) < len(paths) or built != self.runs:
                 self.restart(built)

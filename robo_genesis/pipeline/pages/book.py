@@ -1,7 +1,8 @@
 """The executed pages of the book and their code cells."""
 
 import pickle
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import lru_cache
@@ -13,9 +14,22 @@ from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.core.files import derived, json_digest
-from robo_genesis.core.project import ProjectError
+from robo_genesis.core.files import NO_SOURCE, derived, files_below, json_digest
+from robo_genesis.core.project import PUBLISHED, ROOT, ProjectError
+from robo_genesis.pipeline.pages.page_rules import Problem, declared, file_problems, page_problems
 from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
+
+LAB, WORK_SHEET = "lab", "worksheet.md"
+"""The name of a lesson's lab, and the file with its work sheet."""
+
+TOC = "_toc.yml"
+CREATE = "Pages are .md files: create it, or remove its name here."
+PAGES = (".md", ".markdown", ".rst", ".ipynb")
+STRAY = (
+    "no line of _toc.yml names this file, so no reader finds it. Add it there as a .md file, or "
+    "move it out of the book or into a folder whose name begins with _."
+)
+TWICE = "the front matter declares {}/{}, as {} does. Declare another page of the lesson."
 
 
 class PageError(ProjectError):
@@ -67,6 +81,8 @@ class Page:
 def find_pages(book: Path) -> list[Page]:
     """Return the executed pages of a book, in the order of its table of contents.
 
+    Whatever can be refused before a page is executed is refused here, for all commands.
+
     Args:
         book: the folder with `_toc.yml`.
 
@@ -74,59 +90,94 @@ def find_pages(book: Path) -> list[Page]:
         The MyST text notebooks among the pages that the table of contents names.
 
     Raises:
-        PageError: `_toc.yml` or pages cannot be read, a named file is missing, or a front matter
-            is incomplete or not allowed; the message names every such page.
+        PageError: naming file, line and cure of each problem of the book's and the package's files.
     """
+    own = sorted(files_below(book, (PUBLISHED, f".{PUBLISHED}"), NO_SOURCE))
+    others = [*files_below(ROOT / PACKAGE, left_out=NO_SOURCE), ROOT / "README.md"]
+    _refuse(_said(path, file_problems(path)) for path in [*own, *others])
+    files = page_files(book)
+    found = [_said(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)]
+    sheets = [path for path in own if path.name == WORK_SHEET]
+    found += [_said(path, page_problems(path.read_text("utf8"), None)) for path in sheets]
     pages: list[Page] = []
-    problems: list[str] = []
-    for docname in docnames(book / "_toc.yml"):
+    measuring: dict[tuple[str | None, str | None], Path] = {}
+    for name, path in files.items():
         try:
-            pages += _read(book, docname)
+            notebook = _read(path, name, book / TOC)
         except PageError as error:
-            problems.append(str(error))
-    if problems:
-        raise PageError("\n".join(problems))
+            found.append(str(error))
+            continue
+        if notebook is None:
+            continue
+        measures = declared(notebook) or (None, None)
+        other = measuring.setdefault(measures, path) if measures[0] else path
+        if other != path:
+            line = _line_of(f"{PACKAGE}:", path)
+            found.append(_said(path, [(line, TWICE.format(*measures, other))]))
+        pages.append(Page(name, path, notebook, *measures))
+    _refuse(found)
     return pages
 
 
-def docnames(toc: Path) -> list[str]:
-    """Return the names of all pages in the order of the table of contents."""
+def _read(path: Path, name: str, toc: Path) -> NotebookNode | None:
+    """Return a page that has code cells; raise PageError with all that it may not contain."""
+    if not path.is_file():
+        raise PageError(_said(toc, [(_line_of(name, toc), f"there is no {path}. {CREATE}")]))
+    notebook = read_notebook(path)
+    _refuse([_said(path, page_problems(path.read_text("utf8"), notebook))])
+    return notebook
+
+
+def page_files(book: Path) -> dict[str, Path]:
+    """Return the file of each page by its name, in the order of the table of contents."""
+    toc = book / TOC
     try:
         site_map = parse_toc_yaml(toc)
     except (OSError, ValueError, yaml.YAMLError, MalformedError) as error:
-        raise PageError(
-            f"The table of contents {toc} cannot be read: {error}\nCorrect that file."
-        ) from error
+        raise PageError(_said(toc, [(1, f"it cannot be read: {error}\nCorrect it.")])) from error
     if site_map.globs():
         raise PageError(f"_toc.yml uses globs {sorted(site_map.globs())}. List every page instead.")
-    return [str(docname) for docname in site_map]
+    names = [str(docname).removesuffix(".md") for docname in site_map]
+    return {name: book / f"{name}.md" for name in names}
 
 
-def _read(book: Path, docname: str) -> Iterator[Page]:
-    """Yield the page if it is executed."""
-    name = docname.removesuffix(".md")
-    path = (book / name).with_name(Path(name).name + ".md")
-    if not path.is_file():
-        raise PageError(f"_toc.yml names {docname!r}, but there is no {path}. Pages are .md files.")
-    notebook = read_notebook(path, name)
-    if notebook is None:
-        return
-    if "name" not in notebook.metadata.get("kernelspec", {}):
-        raise PageError(f"{name}: front matter needs `kernelspec: {{name: python3}}`.")
-    if notebook.metadata.get("execution", {}).get("allow_errors"):
-        raise PageError(
-            f"{name}: `execution: allow_errors` would publish failing cells. Tag the one cell "
-            "`raises-exception`, and name the exception with `expects`."
-        )
-    yield Page(name, path, notebook, *_declared(name, notebook))
+def _is_stray(path: Path, book: Path, files: Mapping[str, Path]) -> bool:
+    """Whether a file looks like a page and is none: no folder's name begins with `_`."""
+    hidden = any(part.startswith("_") for part in path.relative_to(book).parts)
+    is_text = path.suffix.lower() in PAGES and path.name != WORK_SHEET
+    return is_text and not hidden and path not in files.values()
 
 
-def read_notebook(path: Path, name: str = "") -> NotebookNode | None:
+def _line_of(word: str, path: Path) -> int:
+    """Return the number of the first line of a file with a word."""
+    lines = path.read_text("utf8").split("\n")
+    return 1 + next((n for n, line in enumerate(lines) if word in line), 0)
+
+
+def _line_of_error(error: Exception, path: Path) -> int:
+    """Return the line of what the reader of a page, of YAML or of notebooks does not accept."""
+    if found := re.search(r"at line (\d+)", str(error)):
+        return int(found[1])
+    if found := re.search(r"line (\d+), column", str(error)):
+        return int(found[1]) + 1  # of the front matter
+    name = [*getattr(error, "path", [""])][-1]
+    return _line_of(f"{name}: {getattr(error, 'instance', '')}", path)
+
+
+def _said(path: Path, problems: Iterable[Problem]) -> str:
+    """Return a line for each problem of a file."""
+    name = str(path).removeprefix(f"{ROOT}/")
+    return "\n".join(f"{name}:{line}: {what}" for line, what in problems)
+
+
+def _refuse(problems: Iterable[str]) -> None:
+    """Raise PageError if there is any problem."""
+    if said := "\n".join(filter(None, problems)):
+        raise PageError(said)
+
+
+def read_notebook(path: Path) -> NotebookNode | None:
     """Return the parsed page, None if it has no code cells.
-
-    Args:
-        path: of the page.
-        name: of the page in messages.
 
     Raises:
         PageError: it cannot be read.
@@ -136,10 +187,8 @@ def read_notebook(path: Path, name: str = "") -> NotebookNode | None:
         # Parse first: MyST-NB mistakes a notebook with a broken front matter for plain text.
         notebook = deepcopy(_parsed(path, text)) if text.startswith("---") else None
     except Exception as error:  # the parser raises exceptions of many types
-        raise PageError(
-            f"{name}: the page cannot be read: {error}\nCorrect {path}. Front matter and the "
-            "options of cells (`:name: value`) are YAML."
-        ) from error
+        why = f"the page cannot be read: {error}\nFront matter and options of cells are YAML."
+        raise PageError(_said(path, [(_line_of_error(error, path), why)])) from error
     return notebook if _is_notebook(text) else None
 
 
@@ -156,22 +205,6 @@ def _parsed(path: Path, text: str) -> NotebookNode:
         "parsed", [text.encode()], lambda: pickle.dumps(myst_nb_reader_plugin(str(path)))
     )
     return cast(NotebookNode, pickle.loads(read))
-
-
-def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:
-    """Return lesson and page from the front matter; both are None without a declaration."""
-    declared = notebook.metadata.get(PACKAGE)
-    if declared is None:
-        return None, None
-    given = dict(declared) if isinstance(declared, dict) else {}
-    parts = [given.get(key) for key in ("lesson", "page")]
-    words = all(isinstance(part, str) and part.isidentifier() for part in parts)
-    if not words or given.keys() - {"lesson", "page"}:
-        raise PageError(
-            f"{name}: front matter has `{PACKAGE}: {declared!r}`. "
-            f"Valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words."
-        )
-    return parts[0], parts[1]
 
 
 def code_of(notebook: NotebookNode) -> Code:

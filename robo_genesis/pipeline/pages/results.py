@@ -11,11 +11,13 @@ from typing import Literal
 from nbformat import NotebookNode
 
 from robo_genesis.core.checks import CheckFailed
+from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
 from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
 from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.guards import contradicted
+from robo_genesis.pipeline.pages.page_rules import first_line
 
 LOG_LINES = 15
 Status = Literal["executed", "reused", "taken over", "failed"]
@@ -23,8 +25,27 @@ PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 KINDS = PICTURES | {"text/plain", "text/markdown"}
 """What a cell may put out. HTML could hide or imitate what the site says about its evidence."""
 
+INSTEAD = (
+    "Show a table as `Markdown(tables.markdown(rows))` of robo_genesis.core, with the rows "
+    "`frame.to_dict('records')` of pandas; frames and arrays in a figure, as `plotting.stacked` "
+    "does; and a motion by the directive {replay}."
+)
+TAG_IT = "Tag it figure, and describe the picture in the option `mystnb: {image: {alt: …}}`."
+MOST_LINES, MOST_LETTERS, MOST_IN_PICTURE = 1_000, 100_000, 2_000_000
+LESS = (
+    f"A page shows at most {MOST_LINES:,} lines and {MOST_LETTERS:,} characters of a cell, and "
+    f"{MOST_IN_PICTURE:,} of a picture. Print a summary, or draw fewer points."
+)
+ANEW = (
+    "It differs in each run, or is a command for a terminal. Print names and values; a semicolon "
+    "at the end of the last line hides the value of a call."
+)
 GLUED = "application/papermill.record/"
 """Begins the kind of an output that is kept for another place of its page."""
+CHANGING = re.compile(
+    r"\bat 0x[0-9a-f]+|\b0x[0-9a-f]{9,}|\S*/(?:tmp|robo-)[a-z0-9_]{8}\b\S*|[\0-\x08\x0e-\x1f\x7f]"
+)
+"""Addresses and temporary folders, which differ in each run, and characters for terminals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +125,7 @@ def missing_bundle(left: Path, page: Page, run_id: str) -> Failure | None:
 
 
 def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
-    """Return the first cell without its figure, with another exception, or with a wrong output.
+    """Return the first cell with another exception than expected, or with a wrong output.
 
     Args:
         page: the page now; tags and `expects` are read here, because a stored notebook keeps those
@@ -116,36 +137,46 @@ def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
     places = [index for index, cell in enumerate(source.cells) if cell.cell_type == "code"]
     for index, cell in zip(places, ran, strict=True):
         metadata = source.cells[index].metadata
-        kinds = {kind for out in cell.outputs for kind in out.get("data", {})}
-        if "figure" in metadata.get("tags", []) and not kinds & PICTURES:
-            reason = "the cell is tagged figure, but shows none."
-            return at_cell(page, index, "FigureMissing", reason)
-        if odd := sorted({kind.removeprefix(GLUED) for kind in kinds} - KINDS):
-            valid = f"Valid are {', '.join(sorted(KINDS))}. Display Markdown or a figure."
-            return at_cell(
-                page, index, "OutputKind", f"the cell puts out {', '.join(odd)}. {valid}"
-            )
+        if wrong := _wrong_output(metadata.get("tags", []), cell.outputs):
+            return at_cell(page, index, *wrong)
         raised = [out for out in cell.outputs if out.output_type == "error"]
         if contradiction := _contradiction(metadata, raised):
             return at_cell(page, index, "ExpectedException", contradiction, cell)
     return None
 
 
+def _wrong_output(tags: Sequence[str], outputs: Sequence[NotebookNode]) -> tuple[str, str] | None:
+    """Return the name of the first rule that the outputs of a cell break, with reason and cure."""
+    data = [item for out in outputs for item in out.get("data", {}).items()]
+    shown = PICTURES.intersection(kind for kind, _ in data)
+    data = [(kind.removeprefix(GLUED), content) for kind, content in data]
+    odd = ", ".join(sorted({kind for kind, _ in data} - KINDS))
+    pictures = [content for kind, content in data if kind in PICTURES]
+    colours = ", ".join(sorted({each for of in pictures for each in outside_the_palette(of)}))
+    texts = [out.get("text", out.get("evalue", "")) for out in outputs]
+    texts += [content for kind, content in data if kind.startswith("text/")]
+    lines, size = sum(text.count("\n") + 1 for text in texts), sum(map(len, texts))
+    too_long = lines > MOST_LINES or size > MOST_LETTERS
+    changing = CHANGING.search("\n".join(texts))
+    rules = (
+        ("FigureMissing", "figure" in tags and not shown, "is tagged figure, but shows none."),
+        ("OutputKind", odd, f"puts out {odd}. {INSTEAD}"),
+        ("FigureUntagged", shown and "figure" not in tags, f"shows a picture. {TAG_IT}"),
+        ("FigureOfInputs", pictures and "inputs" in tags, "has the tag inputs, for tables alone."),
+        ("Colour", colours, f"draws in {colours}. {VALID_COLOURS}"),
+        ("OutputSize", too_long, f"puts out {lines:,} lines, {size:,} characters. {LESS}"),
+        ("OutputSize", any(len(of) > MOST_IN_PICTURE for of in pictures), f"draws more. {LESS}"),
+        ("OutputChanges", changing, f"puts out {changing and changing[0]!r}. {ANEW}"),
+    )
+    return next(((name, f"the cell {why}") for name, broken, why in rules if broken), None)
+
+
 def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> str | None:
     """Return how a cell's exception contradicts its metadata, None if it does not."""
-    tags, expects = metadata.get("tags", []), metadata.get("expects")
+    expects = metadata.get("expects")
     happened = f"{raised[-1].ename}: {raised[-1].evalue}" if raised else "no exception"
-    if "skip-execution" in tags:
-        return "the tag skip-execution is not allowed; show code that is not run in a plain fence."
-    if "raises-exception" not in tags:
-        if raised:
-            return f"the cell raised {happened}, but is not tagged raises-exception."
-        return "the cell has `expects` without the tag raises-exception." if expects else None
     if not expects:
-        return (
-            "the cell is tagged raises-exception but does not say what it expects; "
-            f'it raised {happened}. Add the option `expects: "ValueError: part of the message"`.'
-        )
+        return f"it raised {happened}, and is not tagged raises-exception." if raised else None
     name, _, text = str(expects).partition(":")
     if raised and raised[-1].ename == name.strip() and text.strip() in raised[-1].evalue:
         return None
@@ -164,7 +195,9 @@ def at_cell(
         message: its whole message.
         ran: the cell with its outputs; the traceback among them names the failing line.
     """
-    cells = page.notebook.cells
+    cells, text = page.notebook.cells, []
+    with suppress(OSError, UnicodeError):  # the page may have been edited since it was read
+        text = page.path.read_text("utf8").split("\n")
     lines = cells[index].source.splitlines() or [""]
     same = ran and ran.source == cells[index].source  # no comment was added after the run
     failing = min(_failing_line(ran), len(lines)) if same else 1
@@ -175,7 +208,7 @@ def at_cell(
         error,
         message,
         cell=[cell.cell_type for cell in cells[: index + 1]].count("code"),
-        line=_first_line(page, index) + failing - 1,
+        line=first_line(text, page.notebook, index) + failing - 1,
         source=lines[failing - 1].strip(),
     )
 
@@ -195,19 +228,6 @@ def _failing_line(ran: NotebookNode) -> int:
     # IPython counts from the first line that is not empty.
     empty = len(ran.source) - len(ran.source.lstrip("\n"))
     return int(found[-1]) + empty if found else 1
-
-
-def _first_line(page: Page, index: int) -> int:
-    """Return the number of a cell's first line of code in the page's source, counted from 1.
-
-    The source map has the line after the fence, where options of the cell may be.
-    """
-    code, begin = page.notebook.cells[index].source.splitlines(), page.notebook.metadata.source_map
-    text: list[str] = []
-    with suppress(OSError, UnicodeError):  # the page may have been edited since it was read
-        text = page.path.read_text("utf8").splitlines()
-    places = range(begin[index], len(text))
-    return 1 + next((n for n in places if text[n : n + len(code)] == code), begin[index])
 
 
 def last_lines(text: str) -> tuple[str, ...]:

@@ -55,7 +55,7 @@ def read_code(cells: Iterable[str]) -> Code:
     texts = list(cells)
 
     def make() -> dict[str, list[str]]:
-        sources = [_plain_python(text) for text in texts]
+        sources = [plain_python(text) for text in texts]
         return {
             "sources": sources,
             "digests": [cell_digest(source) for source in sources],
@@ -65,7 +65,8 @@ def read_code(cells: Iterable[str]) -> Code:
     return Code(**derived_value("code", texts, make))
 
 
-def _plain_python(cell: str) -> str:
+def plain_python(cell: str) -> str:
+    """Return the code of a cell as Python, its magics translated."""
     from IPython.core.inputtransformer2 import TransformerManager  # which no verification loads
 
     try:

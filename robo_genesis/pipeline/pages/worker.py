@@ -1,6 +1,7 @@
 """Execute one page in a process of its own, and put it into the store if it did not fail."""
 
 import os
+import re
 import tempfile
 import time
 from collections.abc import Callable, Mapping
@@ -92,10 +93,16 @@ def work(run: PageRun, connection: Connection) -> None:
     connection.send((time.monotonic() - begin, failure))
 
 
+CELL_FILE = re.compile(r"\S*/ipykernel_\d+/\d+\.py")
+"""What a warning names in the place of a file: a temporary one with the number of the process."""
+
+
 class LoggingClient(nbclient.NotebookClient):
     """Writes what cells print to this process's standard output, which is the page's log.
 
-    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal.
+    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal. Of each line,
+    what follows its last carriage return stays. Text of a cell far beyond the limit is dropped, so
+    that no loop fills memory and disk; the page is refused at its end.
     """
 
     def process_message(
@@ -103,8 +110,11 @@ class LoggingClient(nbclient.NotebookClient):
     ) -> NotebookNode | None:
         """Keep one message of the kernel in the notebook, and write its text."""
         if msg["msg_type"] == "stream":
-            msg["content"]["text"] = ANSI.sub("", msg["content"]["text"])
-            os.write(1, msg["content"]["text"].encode("utf8", errors="replace"))
+            if sum(len(out.get("text", "")) for out in cell.outputs) > 10 * results.MOST_LETTERS:
+                return None
+            text = CELL_FILE.sub("cell", ANSI.sub("", msg["content"]["text"]))
+            msg["content"]["text"] = text
+            os.write(1, text.encode("utf8", errors="replace"))
         return super().process_message(msg, cell, cell_index)
 
 
@@ -141,6 +151,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
                 kernel_manager_class=kernels.CleanKernelManager,
                 extra_arguments=kernels.ARGUMENTS,
                 record_timing=False,
+                coalesce_streams=True,
                 on_cell_execute=cell_starts,
                 on_cell_executed=cell_ends,
             ).execute()

@@ -21,8 +21,9 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
 from robo_genesis.core.text import listed
+from robo_genesis.pipeline.pages.book import LAB
 from robo_genesis.site.course.facts import MINUTES
-from robo_genesis.site.course.sizes import LAB, Minutes
+from robo_genesis.site.course.sizes import Minutes
 from robo_genesis.site.evidence.plain_nodes import bullets, html, marked, paragraph
 from robo_genesis.site.pages import PageDirective, PageRole
 

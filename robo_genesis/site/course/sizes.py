@@ -10,8 +10,8 @@ from myst_parser.parsers.directives import parse_directive_text
 from nbformat import NotebookNode
 from nbformat.v4 import new_markdown_cell, new_notebook
 
-from robo_genesis.pipeline.pages.book import Page, read_notebook
-from robo_genesis.site.takeaways import plain_markdown
+from robo_genesis.pipeline.pages.book import LAB, WORK_SHEET, Page, read_notebook
+from robo_genesis.pipeline.pages.page_rules import ADMONITIONS, DIRECTIVE, PARSER
 from robo_genesis.site.takeaways.plain_markdown import excerpt
 from robo_genesis.site.text.left_out import without_docstrings
 
@@ -26,8 +26,6 @@ MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
 STUB = "raise NotImplementedError"  # Occurs in a cell with a function that the reader writes
 HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
 """Tags of cells whose code is not visible."""
-LAB, WORK_SHEET = "lab", "worksheet.md"
-"""The name of a lesson's lab, and the file with its work sheet."""
 
 COLUMN = 80  # Most characters in a line of an excerpt that the column shows without scrolling
 
@@ -46,13 +44,12 @@ LIMITS = {
 }
 """The largest numbers by kind of page: the first word of its name."""
 
-SHOWN_AS_PROSE = {*plain_markdown.ADMONITIONS, "admonition", "seealso"}
+SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
 INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
-THOUGHT = re.compile(f"{plain_markdown.ANSWER.pattern}|diagnosis", re.IGNORECASE)
-"""The title of a fold that a reader opens after an own answer."""
-FOLD = re.compile(r"^ *[`:]{3,}\{dropdown\} *(.*)", re.MULTILINE)
+THOUGHT = re.compile(r"^ *[`:]{3,}\{dropdown\} *(?:answer|diagnosis)", re.MULTILINE | re.IGNORECASE)
+"""The beginning of a fold that a reader opens after an own answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +91,7 @@ def _minutes(notebook: NotebookNode, file: Path) -> Minutes:
     work += functions * MINUTES_A_FUNCTION + bool(functions) * MINUTES_A_RUN
     for text in texts:
         work += len(QUESTION.findall(text)) * MINUTES_A_QUESTION
-        work += len([*filter(THOUGHT.match, FOLD.findall(text))]) * MINUTES_A_CHECKPOINT
+        work += len(THOUGHT.findall(text)) * MINUTES_A_CHECKPOINT
     sheet = file.stem == LAB and file.with_name(WORK_SHEET).is_file()
     read = max(1, round(sum(map(count_words, texts)) / WORDS_A_MINUTE))
     return Minutes(read, round(work + sheet * MINUTES_A_SHEET), sheet)
@@ -134,8 +131,8 @@ def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
 def count_words(text: str) -> int:
     """Return the number of words of running text: no folds, tables, captions, code or formulas."""
     words, in_table = 0, False
-    for token in plain_markdown.PARSER.parse(text):
-        directive = plain_markdown.DIRECTIVE.match(token.info.strip())
+    for token in PARSER.parse(text):
+        directive = DIRECTIVE.match(token.info.strip())
         if token.type in ("table_open", "table_close"):
             in_table = token.type == "table_open"
         elif token.type == "inline" and not in_table:

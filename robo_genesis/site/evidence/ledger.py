@@ -14,7 +14,7 @@ from sphinx.application import Sphinx
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.files import write_whole
-from robo_genesis.pipeline.pages.book import docnames
+from robo_genesis.pipeline.pages.book import page_files
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
@@ -85,7 +85,7 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
     """Return the table of all items on the pages, in the order of the pages."""
     env, runs = app.env, all_runs(Path(app.srcdir))
     rows, anchors = [], []
-    order = docnames(Path(app.srcdir) / "_toc.yml")
+    order = page_files(Path(app.srcdir))
     for item in (item for name in order for item in env.metadata[name][ITEMS]):
         place = app.builder.get_relative_uri(docname, item.docname)
         word, file = item.file.rpartition(".")[2].upper(), f"{DOWNLOADS}/{item.file}"

@@ -89,8 +89,6 @@ def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Elemen
 
 def _problem(keys: tuple[str, ...] | None, is_table: bool) -> str | None:
     """Return why a table or picture cannot be listed."""
-    if keys == () and not is_table:
-        return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."
     if keys == NO_BUNDLE:
         what = "table" if is_table else "picture"
         return (

@@ -15,7 +15,7 @@ from bs4 import BeautifulSoup
 from bs4.element import PreformattedString
 from PIL import Image
 
-from robo_genesis.core.palette import MARKS, PARTS, css_name
+from robo_genesis.core.palette import COLOUR, MARKS, PARTS, css_name
 
 VARIABLES = {
     **{mark.light: f"var(--{css_name(name)}, {mark.light})" for name, mark in MARKS.items()},
@@ -27,7 +27,6 @@ WIDE = 480
 """Width above which a drawing is not made for a phone: it scrolls sideways there [CSS px]."""
 
 DRAWING = re.compile(r"\.svg$")
-COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
 DROPPED = re.compile(
     r'(?is)<!--.*?-->|<(metadata|style|title|script|foreignObject)\b.*?</\1\s*>|\s+xmlns:\w+="[^"]*"'
 )
@@ -106,9 +105,6 @@ def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
         drawing: the content of an SVG file.
         prefix: of its identifiers, which are unique on the page.
         attributes: of the element.
-
-    Raises:
-        ValueError: the drawing has a colour that is not in the palette.
     """
     drawing = DROPPED.sub("", drawing[drawing.index("<svg") :]).replace("xlink:href", "href")
     used = {*REFERENCE.findall(drawing)}
@@ -117,22 +113,7 @@ def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
     )
     drawing = REFERENCE.sub(lambda found: prefix + found[0], drawing)
     drawing = FRACTION.sub(r"\1", drawing)
-    drawing = COLOUR.sub(lambda found: found[1] + variable(found[2]), drawing)
+    drawing = COLOUR.sub(lambda found: found[1] + VARIABLES[found[2]], drawing)
     start, rest = drawing.split(">", 1)
     given = "".join(f' {name}="{escape(value)}"' for name, value in attributes.items())
     return f"{SIZE.sub('', start)}{given}>{rest.strip()}"
-
-
-def variable(colour: str) -> str:
-    """Return the variable of a colour.
-
-    Raises:
-        ValueError: it is not in the palette.
-    """
-    if colour not in VARIABLES:
-        raise ValueError(
-            f"A drawing has the colour {colour}, which would not follow the theme. Valid are the "
-            f"light colours of core/palette.py: {', '.join(VARIABLES)}. Draw with one of them, or "
-            "add it to PARTS with its colour in the dark theme."
-        )
-    return VARIABLES[colour]

@@ -12,9 +12,9 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.command import ANSI
-from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.course.sizes import WORK_SHEET
-from robo_genesis.site.takeaways.plain_markdown import SOLUTION, Writer, plain
+from robo_genesis.pipeline.pages.book import WORK_SHEET, Page
+from robo_genesis.pipeline.pages.page_rules import SOLUTION
+from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
 

@@ -11,17 +11,13 @@ from pathlib import Path
 from urllib.parse import urljoin
 
 from docutils.parsers.rst.directives.misc import TestDirective
-from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
-from myst_parser.config.main import MdParserConfig
 from myst_parser.parsers.directives import parse_directive_text
-from myst_parser.parsers.mdit import create_md_parser
 from sphinx.config import Config
 from sphinx.directives.code import LiteralInclude, LiteralIncludeReader
 
-SOLUTION = "solution"  # The tag of a code cell and the class of a directive that contain a solution
+from robo_genesis.pipeline.pages.page_rules import ADMONITIONS, DIRECTIVE, PARSER, SOLUTION
 
-ADMONITIONS = ("note", "tip", "hint", "important", "attention", "caution", "warning", "danger")
 UNTITLED = {
     "numref": "the figure", "eq": "the equation", "ref": "the section", "doc": "the site",
 }  # fmt: skip
@@ -33,14 +29,9 @@ BLOCKS = (
 )  # fmt: skip
 """Tokens of the blocks that are not running text."""
 
-DIRECTIVE = re.compile(r"\{([\w:-]+)\}\s*(.*)")
-ANSWER = re.compile(r"(?:our |a )?(?:answer|solution)", re.IGNORECASE)
 ROLE = re.compile(r"\{([a-z][\w:-]*)\}(`+)(.+?)\2", re.DOTALL)
 TITLED = re.compile(r"(.+?)\s*<[^<>]+>", re.DOTALL)
 LINK = re.compile(r"!?\[([^\]]*)\]\((?!https?:|mailto:)([^)\s]*)\)")
-PARSER = create_md_parser(
-    MdParserConfig(enable_extensions={"amsmath", "colon_fence", "dollarmath"}), RendererHTML
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,17 +47,9 @@ class Writer:
 
 
 def plain(text: str, writer: Writer) -> str:
-    """Return MyST prose, of a cell or a directive, as plain Markdown without solutions.
-
-    Raises:
-        ValueError: a fold is written as HTML, in which a solution cannot be recognized.
-    """
+    """Return MyST prose, of a cell or a directive, as plain Markdown without solutions."""
     lines, written, at = text.splitlines(), [], 0
     for token in PARSER.parse(text):
-        if token.type == "html_block" and "<details" in token.content.lower():
-            raise ValueError(
-                "a fold is written as <details>. Write a dropdown: `:::{dropdown} Title`."
-            )
         first, last = token.map or (0, 0)
         if token.type in BLOCKS and first >= at:
             indent = re.match(r"\s*", lines[first])[0]  # type: ignore[index] # matches any line
@@ -89,7 +72,7 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
     found = parse_directive_text(TestDirective, first_line, content)  # takes any option
     argument, body, options = " ".join(found.arguments), "\n".join(found.body), found.options
     classes = f"{name} {options.get('class')} {options.get('class-container')}".split()
-    if SOLUTION in classes or (name == "dropdown" and ANSWER.match(argument)):
+    if SOLUTION in classes:
         return ""
     if name in ADMONITIONS:
         argument, body = name.capitalize(), f"{argument}\n{body}"

@@ -15,10 +15,10 @@ from sphinx.directives.code import LiteralInclude
 from sphinx.transforms import SphinxTransform
 
 from robo_genesis.core.project import solutions_shown
+from robo_genesis.pipeline.pages.page_rules import SOLUTION
 from robo_genesis.pipeline.pages.syntax import is_text
-from robo_genesis.site.takeaways.plain_markdown import ANSWER, SOLUTION
 
-TAG = f"tag_{SOLUTION}"  # The class that a code cell has from its tag
+MARKS = {SOLUTION, f"tag_{SOLUTION}"}  # The second is the class that a code cell has from its tag
 
 LEFT_OUT = "\0"  # Marks a line of a docstring; no Python contains it
 
@@ -61,21 +61,15 @@ def without_docstrings(code: str) -> str:
 
 
 class LeaveOutSolutions(SphinxTransform):
-    """Remove cells and folds that contain a solution, before anything refers to them."""
+    """Remove what is marked as a solution, before anything refers to it."""
 
     default_priority = 200
 
     def apply(self, **kwargs: object) -> None:
         """Remove them from the page."""
-        for node in [node for node in self.document.findall(nodes.container) if is_solution(node)]:
-            node.parent.remove(node)
-
-
-def is_solution(node: nodes.Element) -> bool:
-    """Whether a container is a code cell or a fold that contains a solution."""
-    classes = {*node["classes"], *node.get("container_classes", ())}
-    is_answer = node.get("design_component") == "dropdown" and ANSWER.match(node[0].astext())
-    return bool(classes & {SOLUTION, TAG} or is_answer)
+        for node in [*self.document.findall(nodes.Element)]:
+            if MARKS.intersection((*node["classes"], *node.get("container_classes", ()))):
+                node.parent.remove(node)
 
 
 def hide_sources(app: Sphinx, config: Config) -> None:
