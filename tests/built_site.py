@@ -20,14 +20,14 @@ from bs4 import BeautifulSoup
 from robo_genesis.core.project import BOOK, CACHE, ROOT, STORE
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.html.archive import ARCHIVE, FOLDER
-from robo_genesis.pipeline.pages.book import docnames, find_pages
+from robo_genesis.pipeline.pages.book import find_pages, page_files
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.store import places, stored_result
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-PAGES = tuple(docnames(BOOK / "_toc.yml"))  # Every page of the book in reading order
+PAGES = tuple(page_files(BOOK))  # Every page of the book in reading order
 
 EXECUTED = {page.docname: (page.lesson, page.page) for page in find_pages(BOOK)}
 LESSON_PAGES = {

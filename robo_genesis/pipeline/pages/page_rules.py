@@ -223,7 +223,7 @@ def _of_text(text: str, line: int) -> Iterator[Problem]:
         elif token.type in ("inline", "html_block"):
             shown = re.sub(r"`[^`]*`", "", token.content)
             yield from ((at, HTML.format(found[0])) for found in HIDDEN.finditer(shown))
-            if "$$" in shown:
+            if shown.count("$$") % 2:
                 yield at, FORMULA
 
 
@@ -232,7 +232,8 @@ def _of_block(token: Token, lines: Sequence[str], at: int) -> Iterator[Problem]:
     first, last = token.map or (0, 0)
     mark, found = token.markup, DIRECTIVE.match(token.info.strip())
     another = re.compile(rf" *{mark}{mark[0]}* *[^\s{mark[0]}]")
-    if not _ends(lines[last - 1], mark) or any(map(another.match, lines[first + 1 : last - 1])):
+    inner, end = lines[first + 1 : last - 1], lines[first + 1 : last][-1:]
+    if not any(_ends(line, mark) for line in end) or any(map(another.match, inner)):
         yield at, UNCLOSED.format(mark + token.info, mark)
     elif found and found[1] in ("code-cell", "raw-cell"):
         yield at, NOT_RUN

@@ -43,7 +43,7 @@ ANEW = (
 GLUED = "application/papermill.record/"
 """Begins the kind of an output that is kept for another place of its page."""
 CHANGING = re.compile(
-    r"\bat 0x[0-9a-f]+|\b0x[0-9a-f]{9,}|\S*/(?:tmp|robo-)[a-z0-9_]{8}\b\S*|[\0-\x08\x0e-\x1f\x7f]"
+    r"\bat 0x[0-9a-f]+|\b0x[0-9a-f]{9,}|/(?:tmp|robo-)[a-z0-9_]{8}\b|[\0-\x08\x0e-\x1f\x7f]"
 )
 """Addresses and temporary folders, which differ in each run, and characters for terminals."""
 
@@ -155,7 +155,7 @@ def _wrong_output(tags: Sequence[str], outputs: Sequence[NotebookNode]) -> tuple
     colours = ", ".join(sorted({each for of in pictures for each in outside_the_palette(of)}))
     texts = [out.get("text", out.get("evalue", "")) for out in outputs]
     texts += [content for kind, content in data if kind.startswith("text/")]
-    lines, size = sum(text.count("\n") + 1 for text in texts), sum(map(len, texts))
+    lines, size = sum(len(text.splitlines()) for text in texts), sum(map(len, texts))
     too_long = lines > MOST_LINES or size > MOST_LETTERS
     changing = CHANGING.search("\n".join(texts))
     rules = (
@@ -176,7 +176,8 @@ def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> st
     expects = metadata.get("expects")
     happened = f"{raised[-1].ename}: {raised[-1].evalue}" if raised else "no exception"
     if not expects:
-        return f"it raised {happened}, and is not tagged raises-exception." if raised else None
+        but = "but is not tagged raises-exception."
+        return f"the cell raised {happened}, {but}" if raised else None
     name, _, text = str(expects).partition(":")
     if raised and raised[-1].ename == name.strip() and text.strip() in raised[-1].evalue:
         return None

@@ -93,29 +93,44 @@ def work(run: PageRun, connection: Connection) -> None:
     connection.send((time.monotonic() - begin, failure))
 
 
-CELL_FILE = re.compile(r"\S*/ipykernel_\d+/\d+\.py")
+CELL_FILE = re.compile(rf"{re.escape(tempfile.gettempdir())}/ipykernel_\d+/\d+\.py")
 """What a warning names in the place of a file: a temporary one with the number of the process."""
 
 
 class LoggingClient(nbclient.NotebookClient):
     """Writes what cells print to this process's standard output, which is the page's log.
 
-    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal. Of each line,
-    what follows its last carriage return stays. Text of a cell far beyond the limit is dropped, so
-    that no loop fills memory and disk; the page is refused at its end.
+    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal. It becomes
+    one text for each stream, because kernels flush at random moments, with the last state of each
+    line. nbclient does the same, in a time that grows with the square of a line's length. Text far
+    beyond the limit is dropped, so that no loop fills memory and disk; then the page is refused.
     """
 
     def process_message(
         self, msg: dict[str, Any], cell: NotebookNode, cell_index: int
     ) -> NotebookNode | None:
         """Keep one message of the kernel in the notebook, and write its text."""
-        if msg["msg_type"] == "stream":
-            if sum(len(out.get("text", "")) for out in cell.outputs) > 10 * results.MOST_LETTERS:
-                return None
-            text = CELL_FILE.sub("cell", ANSI.sub("", msg["content"]["text"]))
-            msg["content"]["text"] = text
-            os.write(1, text.encode("utf8", errors="replace"))
-        return super().process_message(msg, cell, cell_index)
+        if msg["msg_type"] != "stream":
+            return super().process_message(msg, cell, cell_index)
+        if sum(len(out.get("text", "")) for out in cell.outputs) > 10 * results.MOST_LETTERS:
+            return None
+        text = CELL_FILE.sub("cell", ANSI.sub("", msg["content"]["text"]))
+        os.write(1, text.encode("utf8", errors="replace"))
+        for out in cell.outputs:
+            if out.get("name") == msg["content"]["name"] and not self.clear_before_next_output:
+                out.text = last_states(out.text + text)
+                return out
+        msg["content"]["text"] = last_states(text)
+        found = super().process_message(msg, cell, cell_index)
+        if [out.get("name") for out in cell.outputs[-2:]] == ["stderr", "stdout"]:
+            cell.outputs[-2:] = cell.outputs[:-3:-1]  # their order is random, too
+        return found
+
+
+def last_states(text: str) -> str:
+    """Return a text with each line as a terminal shows it, after its last carriage return."""
+    lines = ([state for state in line.split("\r") if state] for line in text.split("\n"))
+    return "\n".join(states[-1] if states else "" for states in lines) + "\r" * text.endswith("\r")
 
 
 def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None:
@@ -151,7 +166,6 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
                 kernel_manager_class=kernels.CleanKernelManager,
                 extra_arguments=kernels.ARGUMENTS,
                 record_timing=False,
-                coalesce_streams=True,
                 on_cell_execute=cell_starts,
                 on_cell_executed=cell_ends,
             ).execute()

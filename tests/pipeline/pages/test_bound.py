@@ -278,7 +278,8 @@ SVG("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'/>")"""
 
 
 def test_each_digit_that_a_page_puts_out_is_compared_with_its_bundle(tmp_path):
-    cells = cell(PRINTS, ":prints: {1: a.b mm}\n"), raising("1 / 0 + 25", "ZeroDivisionError: div")
+    options = ":prints: {1: a.b mm}\n:tags: [figure]\n:mystnb: {image: {alt: A box}}\n"
+    cells = cell(PRINTS, options), raising("1 / 0 + 25", "ZeroDivisionError: div")
     book = make_book(tmp_path, lab=notebook(cell(WRITE_BUNDLE), *cells, front=LAB_FRONT))
     (result,) = execute_pages(find_pages(book), places(find_pages(book), tmp_path / "store"))
     found = exported_folders(tmp_path / "store")

@@ -25,7 +25,11 @@ for number in range(20):
     print(f"\\x1b[31mengine line {number}\\x1b[0m", file=sys.stderr)
 class CheckFailed(Exception): pass"""
 
-GREEN = "print('\\x1b[32mtwo\\x1b[0m')"
+GREEN = """\
+for k in range(2000): print(f"{k} %", end="\\r")
+print("\\x1b[32mtwo\\x1b[0m")
+import warnings
+warnings.warn("old")"""
 
 # The kernel passes on what is written to its file descriptors; a moment lets it do so.
 LAST_WORDS = """\
@@ -43,10 +47,10 @@ BROKEN = {
     ),
     "dead": notebook(cell(LAST_WORDS)),
     "slow": notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"),
-    "bundle": notebook(cell("5 + 1"), front=LAB_FRONT),
-    "kernel": notebook(cell("6 + 1")).replace("python3", "some-users-kernel"),
+    "bundle": notebook(cell("5 + 1"), front=LAB_FRONT.replace("lab", "more")),
     "link": notebook(cell(LINKED), front=LAB_FRONT),
     "killed": notebook(cell(KILLS)),
+    "long": notebook(cell("for k in range(40): print('x' * 99_999)")),
     "twin": notebook(cell(GREEN)),  # the code of `good`
 }
 
@@ -72,7 +76,9 @@ def test_all_pages_are_tried_and_only_good_ones_are_stored(broken):
     assert {result.status for result in results.values()} == {"executed", "failed"}
     stored = {path.parts[-3]: path for path in (broken[0] / "store").rglob("*.ipynb")}
     assert sorted(stored) == ["good", "twin"]
-    assert nbformat.read(stored["good"], 4).cells[0].outputs[0].text == "two\n"  # without colour
+    printed, warned = nbformat.read(stored["good"], 4).cells[0].outputs
+    assert printed.text == "two\n"  # without colour, and without what a terminal overwrites
+    assert warned.text == 'cell:4: UserWarning: old\n  warnings.warn("old")\n'
 
 
 def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
@@ -94,9 +100,9 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     [
         ("dead", "DeadKernelError", "last words", 1),
         ("slow", "CellTimeoutError", "2 seconds", 1),
-        ("bundle", "BundleMissing", "the run left no l04/lab/<backend>/manifest.json", None),
-        ("kernel", "NoSuchKernel", "some-users-kernel", None),
+        ("bundle", "BundleMissing", "the run left no l04/more/<backend>/manifest.json", None),
         ("link", "NotStored", "files: outputs/cpu/log.txt is a link or device", None),
+        ("long", "OutputSize", "the cell puts out ", 1),
         ("killed", "WorkerDied", "ended in cell 1 with status -9", None),
     ],
 )

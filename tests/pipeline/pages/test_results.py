@@ -1,6 +1,5 @@
 """Checks of executed cells; whole pages are executed in test_execute."""
 
-import re
 from pathlib import Path
 
 import nbformat
@@ -17,52 +16,65 @@ from robo_genesis.pipeline.pages.store import places
 RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}
 
 
-def picture(kind):
-    return new_output("display_data", data={kind: "<svg/>"})
+def picture(kind, content="<svg/>"):
+    return new_output("display_data", data={kind: content})
 
 
 def raised(name, message):
     return new_output("error", ename=name, evalue=message, traceback=[])
 
 
-@pytest.mark.parametrize(
-    ("metadata", "outputs", "said"),
-    [
-        ({"tags": ["figure"]}, [picture("text/plain")], "FigureMissing tagged figure, but shows"),
-        ({"tags": ["figure"]}, [picture("image/svg+xml")], None),
-        (
-            {},
-            [picture("text/html")],
-            "OutputKind the cell puts out text/html. Valid are image/jpeg",
-        ),
-        ({}, [picture(f"{GLUED}text/html")], "OutputKind the cell puts out text/html. Valid are"),
-        ({}, [], None),
-        ({}, [raised("KeyError", "kp")], "raised KeyError: kp, but is not tagged raises-exception"),
-        (RAISES, [raised("ValueError", "no way")], None),
-        (RAISES, [], "expected was 'ValueError: no', but the cell raised no exception."),
-        (RAISES, [raised("ValueError", "maybe")], "but the cell raised ValueError: maybe."),
-        (
-            {"tags": ["raises-exception"]},
-            [raised("ValueError", "no")],
-            "it raised ValueError: no. Add the option `expects:",
-        ),
-        ({"expects": "ValueError: no"}, [], "without the tag raises-exception"),
-        ({"tags": ["skip-execution"]}, [], "skip-execution is not allowed"),
-    ],
-)
-def test_a_cell_has_its_figure_and_its_expected_exception_or_fails_its_page(
-    metadata, outputs, said
-):
+def prints(text):
+    return new_output("stream", text=text)
+
+
+FIGURE, SVG = {"tags": ["figure"]}, "image/svg+xml"
+WRONG = (
+    (FIGURE, [picture("text/plain")], "FigureMissing", "tagged figure, but shows none"),
+    ({}, [picture(SVG)], "FigureUntagged", "shows a picture. Tag it figure, and describe"),
+    ({"tags": ["inputs"]}, [picture(f"{GLUED}{SVG}")], "FigureOfInputs", "for tables alone"),
+    (FIGURE, [picture(SVG, '<p fill="#1f77b4"/>')], "Colour", "draws in #1f77b4. A page draws in"),
+    (FIGURE, [picture("image/png", "A" * 2_000_001)], "OutputSize", "draw fewer points"),
+    ({}, [prints("x\n" * 1_001)], "OutputSize", "puts out 1,001 lines, 2,002 characters. A page"),
+    ({}, [picture("text/markdown", "x" * 100_001)], "OutputSize", "puts out 1 lines, 100,001 c"),
+    ({}, [picture("text/html")], "OutputKind", "puts out text/html. Show a table as `Markdown("),
+    ({}, [picture(f"{GLUED}text/html")], "OutputKind", "frames and arrays in a figure"),
+    ({}, [picture("video/mp4")], "OutputKind", "a motion by the directive {replay}"),
+    ({}, [picture("text/plain", "<Line2D at 0x7f5a>")], "OutputChanges", "'at 0x7f5a'. It differs"),
+    ({}, [prints("140052334563712 0x7f2d9b7a7200")], "OutputChanges", "'0x7f2d9b7a7200'"),
+    ({}, [prints("a /tmp/tmp8ykmu1dh/b")], "OutputChanges", "'/tmp8ykmu1dh'"),
+    ({}, [prints("3\x08 4")], "OutputChanges", r"'\x08'"),
+    ({}, [raised("KeyError", "kp")], "ExpectedException", "raised KeyError: kp, but is not tagged"),
+    (RAISES, [], "ExpectedException", "was 'ValueError: no', but the cell raised no exception."),
+    (RAISES, [raised("ValueError", "hm")], "ExpectedException", "the cell raised ValueError: hm."),
+)  # fmt: skip
+
+
+def outcome(metadata, outputs):
     book = new_notebook(cells=[new_code_cell("draw()", metadata=metadata, outputs=outputs)])
     book.metadata.source_map = [3]
-    failure = unexpected_outcome(Page("page", Path("deleted.md"), book), book)
-    if said is None:
-        assert failure is None
-    else:
-        assert (failure.cell, failure.line, failure.source) == (1, 4, "draw()")
-        error = re.match("FigureMissing |OutputKind |", said)[0]
-        assert said.removeprefix(error) in failure.message
-        assert failure.error == (error.strip() or "ExpectedException")
+    return unexpected_outcome(Page("page", Path("deleted.md"), book), book)
+
+
+@pytest.mark.parametrize(("metadata", "outputs", "error", "said"), WRONG)
+def test_what_a_page_cannot_show_fails_it_in_its_cell(metadata, outputs, error, said):
+    failure = outcome(metadata, outputs)
+    assert (failure.cell, failure.line, failure.source) == (1, 4, "draw()")
+    assert failure.error == error
+    assert said in failure.message
+
+
+@pytest.mark.parametrize(
+    ("metadata", "outputs"),
+    [
+        (FIGURE, [picture(SVG)]),
+        (FIGURE, [picture(SVG, '<image/><p fill="#1f77b4"/>')]),
+        ({}, [picture(f"{GLUED}{SVG}"), prints("0x1f of /tmp/demo, at once\n" * 99)]),
+        (RAISES, [raised("ValueError", "no way")]),
+    ],
+)
+def test_what_a_page_can_show_passes(metadata, outputs):
+    assert outcome(metadata, outputs) is None
 
 
 HELPER = "def helper():\n    raise ValueError('in another cell')"

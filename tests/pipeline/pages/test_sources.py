@@ -164,7 +164,6 @@ def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):
         (f"{CODE};", True),  # hides the output of the cell
         (f"{CODE}; # quiet", True),
         (f"{CODE}\n'shown'", True),
-        (f"{CODE}\n1 +", True),
     ],
 )
 def test_a_changed_cell_counts_and_a_comment_does_not(root, page, code, counts):

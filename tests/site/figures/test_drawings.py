@@ -3,7 +3,7 @@
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis.site.figures.drawings import element, inline_drawings
+from robo_genesis.site.figures.drawings import inline_drawings
 from robo_genesis.site.frame.accessibility import stack_tables
 
 SVG = """<?xml version="1.0"?><svg width="90pt" height="60pt" viewBox="0 0 90 60">
@@ -43,11 +43,6 @@ def test_camera_frames_and_missing_files_stay_images(tmp_path):
     page = inlined(tmp_path, "a.svg", "gone.svg")
     assert len(page.select("img")) == 2
     assert not page.select("svg")
-
-
-def test_a_colour_outside_the_palette_is_refused():
-    with pytest.raises(ValueError, match=r"has the colour #123456, which would not follow the th"):
-        element(SVG.replace("#0072b2", "#123456"), "a-", {})
 
 
 WORD, LONG = "twelve chars", "unbreakable_" * 3

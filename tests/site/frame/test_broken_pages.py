@@ -24,9 +24,8 @@ TEXT = {
 """What stands alone on the page, and what is said of its line."""
 
 IMPORTS = """\
-from IPython.display import SVG, Markdown
+from IPython.display import Markdown
 from myst_nb import glue
-drawn = SVG("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'/>")
 table = Markdown("| read |\\n| --- |\\n| 7 |")"""
 INPUTS = ":tags: [inputs]\n"
 LAB = """
@@ -50,14 +49,12 @@ CELLS = (
     cell("Markdown('<table><tr><td>7</td></tr></table>')"),
     cell("Markdown('a <b style=\"position: fixed\">7</b>')"),
     cell("glue('number', 7, display=False)"),
-    cell("drawn", INPUTS),
 )
 OTHERS = {
     "lab": [
         "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
         "a cell outputs <b> as raw HTML",
         "a cell's text 7 is glued into a sentence",
-        "a cell tagged inputs shows a picture",
         "a page may not set the class evidence-badge",
         "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
         "the picture innocent.svg lies below evidence/",

@@ -20,7 +20,7 @@ PUBLIC, SECRET = "public_line = 1", "secret_line = 2"
 SOLVED = (
     cell(PUBLIC),
     cell(SECRET, ":tags: [solution]\n"),
-    f"\n:::{{dropdown}} Answer\nIt is `{SECRET}`.\n:::\n",
+    f"\n:::{{admonition}} Answer\n:class: tip solution\nIt is `{SECRET}`.\n:::\n",
     f"\n:::{{dropdown}} Why?\n:class-container: solution\nBecause `{SECRET}`.\n:::\n",
 )
 

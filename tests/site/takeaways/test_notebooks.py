@@ -13,13 +13,14 @@ from robo_genesis.site.takeaways.plain_markdown import Writer
 
 FOLD = "\n:::{dropdown} Answer\n:class-container: solution\nSECRET prose\n:::\n"
 PROSE = "\nIt was {measured}`l04/lab G1.rise_time`.\n" + FOLD
+FIGURE = "{image: {alt: A plot}, figure: {caption: 'Drawn by {term}`plot`.'}}"
 CELLS = (
     cell("x = 1"),
     PROSE,
     cell("print('SECRET code')", ":tags: [hide-cell, solution]\n"),
     cell("log()", ":tags: [hide-output]\n"),
     cell("show(text)", ":tags: [hide-cell, after-yours]\n"),
-    cell("plot()", ":tags: [figure]\n:mystnb: {figure: {caption: 'Drawn by {term}`plot`.'}}\n"),
+    cell("plot()", f":tags: [figure]\n:mystnb: {FIGURE}\n"),
     '\n+++ {"tags": ["site-only"]}\n\nOnly on the site.\n',
 )
 COMMANDS = ("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab")
