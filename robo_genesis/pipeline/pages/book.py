@@ -18,6 +18,7 @@ from robo_genesis.core.files import NO_SOURCE, derived, files_below, json_digest
 from robo_genesis.core.project import PUBLISHED, ROOT, ProjectError
 from robo_genesis.pipeline.pages.page_rules import Problem, declared, file_problems, page_problems
 from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
+from robo_genesis.pipeline.up_to_date import FILES
 
 LAB, WORK_SHEET = "lab", "worksheet.md"
 """The name of a lesson's lab, and the file with its work sheet."""
@@ -93,7 +94,7 @@ def find_pages(book: Path) -> list[Page]:
         PageError: naming file, line and cure of each problem of the book's and the package's files.
     """
     own = sorted(files_below(book, (PUBLISHED, f".{PUBLISHED}"), NO_SOURCE))
-    others = [*files_below(ROOT / PACKAGE, left_out=NO_SOURCE), ROOT / "README.md"]
+    others = [*files_below(ROOT / PACKAGE, left_out=NO_SOURCE), *(ROOT / name for name in FILES)]
     _refuse(_said(path, file_problems(path)) for path in [*own, *others])
     files = page_files(book)
     found = [_said(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)]

@@ -39,6 +39,7 @@ VERBATIM = {"code", "code-block", "csv-table", "literalinclude", "math", "source
 
 DIRECTIVE = re.compile(r"\{([\w:-]+)\}\s*(.*)")
 ANSWER = re.compile(r"\b(?:answer|solution)s?\b", re.IGNORECASE)
+INLINE_CODE = re.compile(r"`[^`]*`")
 HIDDEN = re.compile(r"<details\b|\{[^}]*\.solution\b", re.IGNORECASE)
 OPENED = re.compile(r"\bopen_page\(\s*[\"'](\w+)[\"'],\s*[\"'](\w+)[\"']")
 
@@ -67,7 +68,8 @@ PARSER = create_md_parser(
 )
 
 TEXT_FILES = (
-    ".css", ".html", ".js", ".json", ".md", ".py", ".svg", ".tmpl", ".toml", ".xml", ".yml",
+    ".css", ".csv", ".html", ".js", ".json", ".lock", ".md", ".py", ".svg", ".tmpl", ".toml",
+    ".urdf", ".xml", ".yml",
 )  # fmt: skip
 CONFLICT = re.compile(r"^(?:<{7}|={7}|>{7}|\|{7})(?=\s|$)", re.MULTILINE)  # as git finds them
 ODD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ufeff]|\r(?!\n)")
@@ -79,7 +81,7 @@ Problem = tuple[int, str]
 
 def file_problems(path: Path) -> list[Problem]:
     """Return why a text file of the checkout cannot be meant as it is."""
-    if path.suffix not in TEXT_FILES:
+    if path.suffix not in TEXT_FILES or not path.is_file():
         return []
     found = _of_bytes(path.read_bytes())
     if path.suffix == ".svg" and path.parent.name != "_static" and not found:
@@ -99,9 +101,7 @@ def _of_bytes(content: bytes) -> list[Problem]:
     if odd := ODD.search(text):
         found = [(odd, f"the character U+{ord(odd[0]):04X}. Remove it; save as UTF-8 without BOM.")]
     if mark := CONFLICT.search(text):
-        found += [
-            (mark, f"the mark {mark[0]} of a merge conflict. Keep one version, without marks.")
-        ]
+        found += [(mark, f"the mark {mark[0]} of a merge conflict. Keep one version alone.")]
     return [(text.count("\n", 0, at.start()) + 1, f"the file has {why}") for at, why in found]
 
 
@@ -221,7 +221,7 @@ def _of_text(text: str, line: int) -> Iterator[Problem]:
         elif token.type == "hr" and at == 1:
             yield at, NO_END
         elif token.type in ("inline", "html_block"):
-            shown = re.sub(r"`[^`]*`", "", token.content)
+            shown = INLINE_CODE.sub("", token.content)
             yield from ((at, HTML.format(found[0])) for found in HIDDEN.finditer(shown))
             if shown.count("$$") % 2:
                 yield at, FORMULA
@@ -238,9 +238,7 @@ def _of_block(token: Token, lines: Sequence[str], at: int) -> Iterator[Problem]:
     elif found and found[1] in ("code-cell", "raw-cell"):
         yield at, NOT_RUN
     elif found and found[1] not in VERBATIM:
-        nested = mark[0] == ":" and token.content.startswith(
-            mark[:3]
-        )  # no option, as MyST reads it
+        nested = token.type[0] == "c" and token.content.startswith(":::")  # as MyST recognizes it
         content = "\n" * nested + token.content
         yield from _of_directive(found[1], found[2], content, at - nested)
 
@@ -257,7 +255,7 @@ def _of_directive(name: str, title: str, content: str, at: int) -> Iterator[Prob
         yield at, INCLUDED
     options = [parsed.options.get(f"class{part}") for part in ("", "-container", "-card")]
     classes = " ".join(map(str, options)).split()
-    named = name in TITLED and ANSWER.search(title)
+    named = ANSWER.search(f"{name} {title}" if name in TITLED else name)
     marked = {SOLUTION, EXPLANATION}.intersection(classes)
     if not marked and (named or FOLDS.intersection([name, *classes])):
         yield at, UNMARKED.format(name, title, "class-container" if name == "dropdown" else "class")

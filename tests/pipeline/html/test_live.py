@@ -100,9 +100,10 @@ def test_a_changed_page_is_shown_and_nothing_is_published(live):
     [
         ("text.md", TEXT + "\n{doc}`nowhere`\n", "nowhere"),
         ("text.md", "---\na: [\n---\n" + TEXT, "text"),
-        ("_toc.yml", "root: [", "_toc.yml cannot be read"),
+        ("_toc.yml", "root: [", "_toc.yml:1: it cannot be read"),
+        ("page.md", notebook(cell(SYNTAX_ERROR)), "page.md:10: SyntaxError: "),
     ],
-    ids=["link", "front matter", "broken contents"],
+    ids=["link", "front matter", "broken contents", "code"],
 )
 def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, content, said):
     path, before = live.book / file, live.article()
@@ -120,14 +121,14 @@ def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, conten
 @pytest.mark.parametrize(
     ("where", "file", "content", "said"),
     [
-        ("live", "book/page.md", notebook(cell(SYNTAX_ERROR)), "EXECUTE=1 runs it"),
-        ("executing", "book/page.md", notebook(cell(SYNTAX_ERROR)), "line 10: def f(:\n"),
+        ("live", "book/page.md", notebook(cell("1 / 0")), "EXECUTE=1 runs it"),
+        ("executing", "book/page.md", notebook(cell("1 / 0")), "line 10: 1 / 0\n"),
         ("executing", f"{MODULES}/core/printed.py", SYNTAX_ERROR, "(printed.py, line 1)"),
         ("executing", f"{MODULES}/pipeline/html/sphinx_process.py", SYNTAX_ERROR, "Sphinx stopped"),
     ],
     ids=["cell", "executed cell", "module of a page", "module of the site"],
 )
-def test_after_a_syntax_error_the_last_outputs_are_shown(request, where, file, content, said):
+def test_after_an_error_in_code_the_last_outputs_are_shown(request, where, file, content, said):
     live = request.getfixturevalue(where)
     path, before, begin = live.folder / file, live.article("page.html"), len(live.output())
     good, last = path.read_text(), "Shown: " if "Sphinx" not in said else "keeps the last good"

@@ -56,7 +56,7 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     # solutions
     (fold("One possible solution"), 3, "{dropdown} “One possible solution” does not say whether"),
     (fold("More", ":class-container: solutions\n"), 3, "Add `:class-container: solution`, or `e"),
-    (fold("", kind="toggle"), 3, "does not say"),
+    *((fold("", kind=kind), 3, "does not say") for kind in ("toggle", "solution-start")),
     (fold("Model answer", kind="admonition"), 3, "does not say whether it is a solution. Add"),
     (fold("Look", ":class: tip dropdown\n", "admonition"), 3, "does not say"),
     ("# T\n\n::::{tab-set}\n:::{tab-item} Answer\nIt.\n:::\n::::\n", 4, "does not say"),
@@ -162,7 +162,6 @@ def test_each_file_that_a_site_is_made_from_is_examined(tmp_path, monkeypatch, p
         monkeypatch.setattr("robo_genesis.pipeline.pages.book.ROOT", tmp_path)
         path = tmp_path / PACKAGE / "lessons/l07/text.py"
         path.parent.mkdir(parents=True)
-        (tmp_path / "README.md").touch()
     path.write_text("\n>>>>>>> theirs\n")
     with pytest.raises(PageError, match=f"{path.name}:2: the file has the mark >>>>>>>"):
         find_pages(book)
