@@ -41,7 +41,7 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     (notebook(OPENED), 10, "opens l04/lab, which the front matter does not declare"),
     (notebook(OPENED, front="robo_genesis: {lesson: l04, page: more}\n"), 11, "opens l04/lab, wh"),
     # tags, options and code of a cell
-    (notebook(cell("1", ":tags: [soluton]\n")), 9, "'soluton' of this cell is unknown. Is it s"),
+    (notebook(cell("1", ":tags: [solutions]\n")), 9, "'solutions' of this cell is unknown. Is"),
     (notebook(cell("1", ":tags: [skip-execution]\n")), 9, "unknown. Valid: after-yours, alone"),
     (notebook(cell("1", ":tags: solution\n")), 10, "'solution' is not of type 'array'"),
     (notebook(cell("1", ":tag: [solution]\n")), 9, "option 'tag' of this cell is unknown. Is"),
