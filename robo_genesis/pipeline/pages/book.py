@@ -16,7 +16,13 @@ from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
 from robo_genesis.core.files import NO_SOURCE, derived, files_below, json_digest
 from robo_genesis.core.project import PUBLISHED, ROOT, ProjectError
-from robo_genesis.pipeline.pages.page_rules import Problem, declared, file_problems, page_problems
+from robo_genesis.pipeline.pages.page_rules import (
+    Problem,
+    declared,
+    file_problems,
+    page_problems,
+    sheet_problems,
+)
 from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
 from robo_genesis.pipeline.up_to_date import FILES
 
@@ -99,7 +105,7 @@ def find_pages(book: Path) -> list[Page]:
     files = page_files(book)
     found = [_said(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)]
     sheets = [path for path in own if path.name == WORK_SHEET]
-    found += [_said(path, page_problems(path.read_text("utf8"), None)) for path in sheets]
+    found += [_said(path, sheet_problems(path.read_text("utf8"))) for path in sheets]
     pages: list[Page] = []
     measuring: dict[tuple[str | None, str | None], Path] = {}
     for name, path in files.items():

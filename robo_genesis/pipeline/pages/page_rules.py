@@ -59,6 +59,7 @@ UNCLOSED = (
 INCLUDED = "no rule reads what {include} brings. Write the text in this page."
 FORMULA = "the formula that begins with $$ is not closed. Close it with $$ in a line of its own."
 NOT_RUN = f"nothing runs this code cell. Move it out of other blocks; it needs {FRONT_MATTER}."
+SHEET = "a work sheet is plain Markdown, and students get it as it is. Remove the directive."
 NO_END = "the front matter has no end. Close it with a line `---`."
 HTML = f"nothing leaves out {{!r}} with solutions. Write {DROPDOWN}."
 UNMARKED = f"{{{{{{}}}}}} “{{}}” does not say whether it is a solution. Add `:{{}}{MARK}."
@@ -113,6 +114,12 @@ def page_problems(text: str, notebook: NotebookNode | None) -> list[Problem]:
         notebook: the page as it is executed, None if its front matter is not that of a notebook.
     """
     return derived_value("page-rules", text, lambda: sorted({*_of_page(text, notebook)}))
+
+
+def sheet_problems(text: str) -> list[Problem]:
+    """Return what a work sheet may not contain, which students get as it is."""
+    begins = (n for n, line in enumerate(text.split("\n"), 1) if re.match("[ >]*[`:~]{3,}{", line))
+    return [*_of_text(text, 1), *((n, SHEET) for n in begins)]
 
 
 def _of_page(text: str, notebook: NotebookNode | None) -> Iterator[Problem]:

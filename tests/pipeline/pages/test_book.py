@@ -121,7 +121,7 @@ def test_one_report_names_all_bad_pages(tmp_path):
     (book / "gone.md").unlink()
     for name in ("draft.MD", "draft.ipynb"):
         (book / name).touch()
-    (book / "worksheet.md").write_text("# Sheet\n\n```\n")
+    (book / "worksheet.md").write_text(fold("Answer", MARKED) + "\n```\n")
     with pytest.raises(PageError) as refused:
         find_pages(book)
     said = ("no line of _toc.yml names this file", "there is no ", f"as {book}/first.md does")
@@ -129,7 +129,15 @@ def test_one_report_names_all_bad_pages(tmp_path):
     places = {
         line.partition(": ")[0] for line in str(refused.value).splitlines() if "/book/" in line
     }
-    names = ("draft.MD:1", "draft.ipynb:1", "worksheet.md:3", "one.md:9", "two.md:1", "second.md:4")
+    names = (
+        "draft.MD:1",
+        "draft.ipynb:1",
+        "worksheet.md:3",
+        "worksheet.md:8",
+        "one.md:9",
+        "two.md:1",
+        "second.md:4",
+    )
     assert places == {f"{book}/{name}" for name in (*names, "_toc.yml:5")}
 
 
