@@ -16,13 +16,7 @@ from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
 from robo_genesis.core.files import NO_SOURCE, derived, files_below, json_digest
 from robo_genesis.core.project import PUBLISHED, ROOT, ProjectError
-from robo_genesis.pipeline.pages.page_rules import (
-    Problem,
-    declared,
-    file_problems,
-    page_problems,
-    sheet_problems,
-)
+from robo_genesis.pipeline.pages import page_rules as rules
 from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
 from robo_genesis.pipeline.up_to_date import FILES
 
@@ -101,11 +95,11 @@ def find_pages(book: Path) -> list[Page]:
     """
     own = sorted(files_below(book, (PUBLISHED, f".{PUBLISHED}"), NO_SOURCE))
     others = [*files_below(ROOT / PACKAGE, left_out=NO_SOURCE), *(ROOT / name for name in FILES)]
-    _refuse(_said(path, file_problems(path)) for path in [*own, *others])
+    _refuse(_said(path, rules.file_problems(path)) for path in [*own, *others])
     files = page_files(book)
     found = [_said(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)]
     sheets = [path for path in own if path.name == WORK_SHEET]
-    found += [_said(path, sheet_problems(path.read_text("utf8"))) for path in sheets]
+    found += [_said(path, rules.sheet_problems(path.read_text("utf8"))) for path in sheets]
     pages: list[Page] = []
     measuring: dict[tuple[str | None, str | None], Path] = {}
     for name, path in files.items():
@@ -116,7 +110,7 @@ def find_pages(book: Path) -> list[Page]:
             continue
         if notebook is None:
             continue
-        measures = declared(notebook) or (None, None)
+        measures = rules.declared(notebook) or (None, None)
         other = measuring.setdefault(measures, path) if measures[0] else path
         if other != path:
             line = _line_of(f"{PACKAGE}:", path)
@@ -131,7 +125,7 @@ def _read(path: Path, name: str, toc: Path) -> NotebookNode | None:
     if not path.is_file():
         raise PageError(_said(toc, [(_line_of(name, toc), f"there is no {path}. {CREATE}")]))
     notebook = read_notebook(path)
-    _refuse([_said(path, page_problems(path.read_text("utf8"), notebook))])
+    _refuse([_said(path, rules.page_problems(path.read_text("utf8"), notebook))])
     return notebook
 
 
@@ -171,7 +165,7 @@ def _line_of_error(error: Exception, path: Path) -> int:
     return _line_of(f"{name}: {getattr(error, 'instance', '')}", path)
 
 
-def _said(path: Path, problems: Iterable[Problem]) -> str:
+def _said(path: Path, problems: Iterable[rules.Problem]) -> str:
     """Return a line for each problem of a file."""
     name = str(path).removeprefix(f"{ROOT}/")
     return "\n".join(f"{name}:{line}: {what}" for line, what in problems)
