@@ -148,5 +148,5 @@ def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder)
 def test_a_broken_book_is_named(command, recorded, monkeypatch):
     monkeypatch.undo()
     monkeypatch.setattr(command, "BOOK", recorded.parents[2])
-    with pytest.raises(ProjectError, match=r"^The table of contents"):
+    with pytest.raises(ProjectError, match=r"_toc.yml:1: it cannot be read"):
         command.main()

@@ -83,7 +83,7 @@ def test_another_backend_than_expected_is_refused(expected, actual, said):
 NO_CAMERA = lab("cuda").replace('"camera" if camera', '"skip" if camera')
 BY_HAND = lab("cuda").replace('["ROBO_GENESIS_COMMAND"]', '["HOME"]')
 STOPPED = {"verify": Mock(side_effect=KeyboardInterrupt)}
-RELABELLED = lab("amdgpu", more='\nfolder.rename(folder.with_name("cuda"))')
+RELABELLED = lab("amdgpu", more='\nfolder.rename(folder.with_name("cuda"));')
 
 
 @pytest.mark.parametrize(

@@ -53,6 +53,7 @@ Here it stands in a sentence, {glue}`inline`.
 | 7 |
 """
 REMOVED, INPUTS = ":tags: [remove-cell]\n", ":tags: [inputs]\n"
+FIGURE = ":tags: [figure]\n:mystnb: {image: {alt: A drawing}}\n"
 OF_RUN = "No accepted evidence: cpu-refused. ledger"
 CHOSEN = "Chosen, not measured. ledger"
 
@@ -69,9 +70,9 @@ def show_drawn(name):
 AS_MEASURED = (
     cell(SHOW), cell("glue('md table', table('md'), display=False)", REMOVED),
     cell("table('chosen')", INPUTS), cell("show('measured')"), cell("table('printed')"),
-    cell("show('one')\ntable('of both')"), cell("drawn('printed, too')"),
+    cell("show('one')\ntable('of both')"), cell("drawn('printed, too')", FIGURE),
     raising("print('2.5 mm')\n1 / 0", "ZeroDivisionError: division"),
-    cell("show_drawn('measured, too')"), "\n```{glue:md} md table\n:format: gfm\n```\n",
+    cell("show_drawn('measured, too')", FIGURE), "\n```{glue:md} md table\n:format: gfm\n```\n",
 )  # fmt: skip
 AS_PRINTED = (
     cell(GLUE, REMOVED), cell("table('chosen')", INPUTS), cell("table('read')"),
