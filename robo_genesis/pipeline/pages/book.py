@@ -122,7 +122,7 @@ def find_pages(book: Path) -> list[Page]:
 
 def _read(path: Path, name: str, toc: Path) -> NotebookNode | None:
     """Return a page that has code cells; raise PageError with all that it may not contain."""
-    if not path.is_file():
+    if ".." in name or not path.is_file():
         raise PageError(_said(toc, [(_line_of(name, toc), f"there is no {path}. {CREATE}")]))
     notebook = read_notebook(path)
     _refuse([_said(path, rules.page_problems(path.read_text("utf8"), notebook))])

@@ -3,11 +3,13 @@
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
+from xml.etree import ElementTree
 
+import yaml
 from docutils.parsers.rst.directives.misc import TestDirective
 from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
@@ -40,27 +42,25 @@ VERBATIM = {"code", "code-block", "csv-table", "literalinclude", "math", "source
 DIRECTIVE = re.compile(r"\{([\w:-]+)\}\s*(.*)")
 ANSWER = re.compile(r"\b(?:answer|solution)s?\b", re.IGNORECASE)
 INLINE_CODE = re.compile(r"`[^`]*`")
-HIDDEN = re.compile(r"<details\b|\{[^}]*\.solution\b", re.IGNORECASE)
+HIDDEN = re.compile(
+    r"<details\b|(?:\{[^}]*\.|class=[^>]*\b)(?:solution|dropdown|toggle)\b", re.IGNORECASE
+)
 OPENED = re.compile(r"\bopen_page\(\s*[\"'](\w+)[\"'],\s*[\"'](\w+)[\"']")
 
-FRONT_MATTER = "a front matter with `file_format: mystnb` and `kernelspec: {name: python3}`"
 MARK = f": {SOLUTION}`, or `{EXPLANATION}` if a site without solutions may show it"
 DROPDOWN = f"`:::{{{{dropdown}}}} Title` with `:class-container{MARK}"
-UNKNOWN = "the {} {!r} of this cell is unknown.{} Valid: {}."
-TWICE = "the cell has the option {} twice, and the last one alone counts. Join them."
-PROMPT = f"a solution is behind {{!r}}. Add the tag {SOLUTION} to the cell, or use other words."
-RAISES = '`raises-exception` and `expects: "ValueError: some words"` belong together. Give both.'
-ALT = "a figure needs a text for those who do not see it: `mystnb: {image: {alt: …}}`."
 OTHER_PAGE = "the cell opens {}/{}, which the front matter does not declare. Write both alike."
 UNCLOSED = (
     "the block {} has no end of its own. Close it before the next one with {}. An outer block has "
     "more of these marks than an inner one; a code cell is inside no other block."
 )
-INCLUDED = "no rule reads what {include} brings. Write the text in this page."
-FORMULA = "the formula that begins with $$ is not closed. Close it with $$ in a line of its own."
-NOT_RUN = f"nothing runs this code cell. Move it out of other blocks; it needs {FRONT_MATTER}."
+UNREAD = ("class", "container", "div", "eval-rst", "include", "rst-class")
+NOT_READ = "no rule reads what {{{}}} does to a solution. Write Markdown, or a {{dropdown}}."
+NOT_RUN = (
+    "nothing runs this code cell. Move it out of other blocks; the page begins with a front matter "
+    "that has `file_format: mystnb` and `kernelspec: {name: python3}`."
+)
 SHEET = "a work sheet is plain Markdown, and students get it as it is. Remove the directive."
-NO_END = "the front matter has no end. Close it with a line `---`."
 HTML = f"nothing leaves out {{!r}} with solutions. Write {DROPDOWN}."
 UNMARKED = f"{{{{{{}}}}}} “{{}}” does not say whether it is a solution. Add `:{{}}{MARK}."
 
@@ -72,6 +72,9 @@ TEXT_FILES = (
     ".css", ".csv", ".html", ".js", ".json", ".lock", ".md", ".py", ".svg", ".tmpl", ".toml",
     ".urdf", ".xml", ".yml",
 )  # fmt: skip
+READERS: dict[str, Callable[[str], object]] = {
+    ".yml": yaml.safe_load, ".svg": ElementTree.fromstring
+}  # fmt: skip
 CONFLICT = re.compile(r"^(?:<{7}|={7}|>{7}|\|{7})(?=\s|$)", re.MULTILINE)  # as git finds them
 ODD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ufeff]|\r(?!\n)")
 """Characters that an editor does not show, or that end a line for some programs only."""
@@ -84,7 +87,7 @@ def file_problems(path: Path) -> list[Problem]:
     """Return why a text file of the checkout cannot be meant as it is."""
     if path.suffix not in TEXT_FILES or not path.is_file():
         return []
-    found = _of_bytes(path.read_bytes())
+    found = _of_bytes(path.read_bytes(), path.suffix)
     if path.suffix == ".svg" and path.parent.name != "_static" and not found:
         colours = ", ".join(outside_the_palette(path.read_text("utf8")))
         return [(1, f"the drawing has {colours}. {VALID_COLOURS}")] if colours else []
@@ -92,7 +95,7 @@ def file_problems(path: Path) -> list[Problem]:
 
 
 @lru_cache(maxsize=1024)
-def _of_bytes(content: bytes) -> list[Problem]:
+def _of_bytes(content: bytes, suffix: str) -> list[Problem]:
     try:
         text = content.decode()
     except UnicodeDecodeError as error:
@@ -103,6 +106,11 @@ def _of_bytes(content: bytes) -> list[Problem]:
         found = [(odd, f"the character U+{ord(odd[0]):04X}. Remove it; save as UTF-8 without BOM.")]
     if mark := CONFLICT.search(text):
         found += [(mark, f"the mark {mark[0]} of a merge conflict. Keep one version alone.")]
+    try:
+        _ = found or READERS.get(suffix, str)(text)
+    except (yaml.YAMLError, ElementTree.ParseError) as error:
+        at, why = re.findall(r"line (\d+)", str(error)) or ["1"], " ".join(str(error).split())
+        return [(int(at[-1]), f"it cannot be read: {why}. Correct it.")]
     return [(text.count("\n", 0, at.start()) + 1, f"the file has {why}") for at, why in found]
 
 
@@ -187,17 +195,19 @@ def _of_metadata(cell: NotebookNode, head: Sequence[str]) -> Iterator[str]:
     for what, names, choices in (("tag", tags, known), ("option", given, valid)):
         for name in (str(name) for name in names if name not in choices):
             near = "".join(f" Is it {each}?" for each in get_close_matches(name, choices, 1, 0.7))
-            yield UNKNOWN.format(what, name, near, ", ".join(choices))
+            yield f"the {what} {name!r} is unknown.{near} Valid: {', '.join(choices)}."
     names = Counter(re.findall(r"^:?([\w-]+):", "\n".join(head), re.MULTILINE))
-    yield from (TWICE.format(name) for name, count in names.items() if count > 1)
-    prompts = (text for text in mystnb.values() if isinstance(text, str) and ANSWER.search(text))
-    if SOLUTION not in tags:
-        yield from map(PROMPT.format, prompts)
+    twice = ", ".join(name for name, count in names.items() if count > 1)
+    if twice:
+        yield f"the cell has {twice} twice, and the last one alone counts. Join them."
+    prompts = " ".join(text for text in mystnb.values() if isinstance(text, str))
+    if SOLUTION not in tags and ANSWER.search(prompts):
+        yield f"a solution is behind {prompts!r}. Add the tag {SOLUTION}, or use other words."
     image = mystnb.get("image")
     if "figure" in tags and not (isinstance(image, dict) and image.get("alt")):
-        yield ALT
+        yield "a figure needs a text for those who do not see it: `mystnb: {image: {alt: …}}`."
     if ("raises-exception" in tags) != ("expects" in given):
-        yield RAISES
+        yield "the tag raises-exception needs `expects: 'ValueError: some words'`, and vice versa."
 
 
 def _of_code(cell: NotebookNode, page: tuple[str, str] | None) -> Iterator[Problem]:
@@ -226,12 +236,12 @@ def _of_text(text: str, line: int) -> Iterator[Problem]:
         if token.type in ("fence", "colon_fence"):
             yield from _of_block(token, lines, at)
         elif token.type == "hr" and at == 1:
-            yield at, NO_END
+            yield at, "the front matter has no end. Close it with a line `---`."
         elif token.type in ("inline", "html_block"):
             shown = INLINE_CODE.sub("", token.content)
             yield from ((at, HTML.format(found[0])) for found in HIDDEN.finditer(shown))
             if shown.count("$$") % 2:
-                yield at, FORMULA
+                yield at, "the formula that begins with $$ is not closed. Close it with $$."
 
 
 def _of_block(token: Token, lines: Sequence[str], at: int) -> Iterator[Problem]:
@@ -258,8 +268,8 @@ def _ends(line: str, mark: str) -> bool:
 
 def _of_directive(name: str, title: str, content: str, at: int) -> Iterator[Problem]:
     parsed = parse_directive_text(TestDirective, title, content)
-    if name == "include":
-        yield at, INCLUDED
+    if name in UNREAD:
+        yield at, NOT_READ.format(name)
     options = [parsed.options.get(f"class{part}") for part in ("", "-container", "-card")]
     classes = " ".join(map(str, options)).split()
     named = ANSWER.search(f"{name} {title}" if name in TITLED else name)

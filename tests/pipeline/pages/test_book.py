@@ -36,23 +36,23 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     (notebook().replace("{name: python3}", "python3"), 3, "'python3' is not of type 'object'"),
     (notebook(front="title: [a\n"), 4, "cannot be read"),
     ("---\ntitle: x\n\n# T\n", 1, "the front matter has no end"),
-    ("# T\n\n```{code-cell}\n1\n```\n", 3, "it needs a front matter with `file_format"),
-    (f"\n{notebook(cell('1'))}", 10, "it needs a front matter with `file_format"),
+    ("# T\n\n```{code-cell}\n1\n```\n", 3, "the page begins with a front matter that"),
+    (f"\n{notebook(cell('1'))}", 10, "the page begins with a front matter that"),
     (notebook(OPENED), 10, "opens l04/lab, which the front matter does not declare"),
     (notebook(OPENED, front="robo_genesis: {lesson: l04, page: more}\n"), 11, "opens l04/lab, wh"),
     # tags, options and code of a cell
-    (notebook(cell("1", ":tags: [solutions]\n")), 9, "'solutions' of this cell is unknown. Is"),
+    (notebook(cell("1", ":tags: [solutions]\n")), 9, "the tag 'solutions' is unknown. Is it so"),
     (notebook(cell("1", ":tags: [skip-execution]\n")), 9, "unknown. Valid: after-yours, alone"),
     (notebook(cell("1", ":tags: solution\n")), 10, "'solution' is not of type 'array'"),
-    (notebook(cell("1", ":tag: [solution]\n")), 9, "option 'tag' of this cell is unknown. Is"),
-    (notebook(cell("1", ":tags: [solution]\n:tags: [inputs]\n")), 9, "has the option tags twice"),
+    (notebook(cell("1", ":tag: [solution]\n")), 9, "the option 'tag' is unknown. Is it tags"),
+    (notebook(cell("1", ":tags: [solution]\n:tags: [inputs]\n")), 9, "the cell has tags twice"),
     (notebook(cell("1", ":tags: [a\n")), 9, "cannot be read"),
     (notebook(cell("1", ":mystnb: {code_prompt_show: A solution}\n")), 9, "is behind 'A solution'"),
     (notebook(cell("1", ":tags: [figure]\n")), 9, "a figure needs a text"),
-    (notebook(cell("1", ":tags: [raises-exception]\n")), 9, "belong together"),
-    (notebook(cell("1", ':expects: "KeyError: a"\n')), 9, "belong together"),
+    (notebook(cell("1", ":tags: [raises-exception]\n")), 9, "the tag raises-exception needs"),
+    (notebook(cell("1", ':expects: "KeyError: a"\n')), 9, "the tag raises-exception needs"),
     (notebook(cell("one = 1\ntwo = = 2", ":tags: [inputs]\n")), 12, "SyntaxError: invalid syntax"),
-    (notebook() + '+++ {"tags": ["solution"]}\n\nText.\n', 8, "the tag 'solution' of this cell"),
+    (notebook() + '+++ {"tags": ["solution"]}\n\nText.\n', 8, "the tag 'solution' is unknown"),
     # solutions
     (fold("One possible solution"), 3, "{dropdown} “One possible solution” does not say whether"),
     (fold("More", ":class-container: solutions\n"), 3, "Add `:class-container: solution`, or `e"),
@@ -63,7 +63,8 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     ("# T\n\n- a\n\n  ```{dropdown} Answer\n  It.\n  ```\n", 5, "does not say"),
     ("# T\n\n<details>\nIt.\n</details>\n", 3, "nothing leaves out '<details'"),
     ("# T\n\nThe [answer]{.solution}.\n", 3, "nothing leaves out '{.solution'"),
-    ("# T\n\n```{include} other.md\n```\n", 3, "no rule reads what {include} brings"),
+    ("# T\n\n<p class='a toggle'>It.</p>\n", 3, "nothing leaves out \"class='a toggle\" with"),
+    ("# T\n\n```{include} other.md\n```\n", 3, "no rule reads what {include} does"),
     # blocks without an end
     *((f"# T\n\n{block}\nx\n", 3, f"the block {block} has no end")
       for block in ("```python", "~~~", ":::{note}", ":::")),
@@ -142,6 +143,7 @@ def test_one_report_names_all_bad_pages(tmp_path):
 
 
 GLOBS = "format: jb-book\nroot: index\nchapters:\n- glob: '*'\n"
+LACKING = "format: jb-book\nroot: index\nchapters:\n- file: {}\n"
 TWICE = "format: jb-book\nroot: index\nchapters:\n- file: a\n- file: a\n"
 
 
@@ -149,6 +151,8 @@ TWICE = "format: jb-book\nroot: index\nchapters:\n- file: a\n- file: a\n"
     ("text", "reason"),
     [
         *((text, "_toc.yml:1: it cannot be read") for text in ("format: [", "- a list\n", "")),
+        (LACKING.format("gone"), "_toc.yml:4: there is no "),
+        (LACKING.format("../book/index"), "_toc.yml:4: there is no "),
         ("root: index\nnoise: 1\n", "_toc.yml:1: it cannot be read"),
         (TWICE, "_toc.yml:1: it cannot be read"),
         (GLOBS, "List every page"),
@@ -159,6 +163,26 @@ def test_a_bad_table_of_contents_is_refused(tmp_path, text, reason):
     book = make_book(tmp_path)
     (book / "_toc.yml").write_text(text)
     with pytest.raises(PageError, match=reason):
+        find_pages(book)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("_config.yml", "title: a\nauthor: b: c\n", "2: it cannot be read: mapping values are not"),
+        ("a.svg", "<svg>\n<path></svg>", "2: it cannot be read: mismatched tag"),
+        (
+            "b.svg",
+            '<svg fill="none" stroke="#123456"/>',
+            "1: the drawing has #123456. A page draws",
+        ),
+        ("c.svg", '<svg fill="red"/>', "1: the drawing has red. A page draws in"),
+    ],
+)
+def test_a_file_that_sphinx_reads_later_is_read_at_once(tmp_path, name, text, said):
+    book = make_book(tmp_path)
+    (book / name).write_text(text)
+    with pytest.raises(PageError, match=f"^{book / name}:{said}"):
         find_pages(book)
 
 
@@ -173,11 +197,3 @@ def test_each_file_that_a_site_is_made_from_is_examined(tmp_path, monkeypatch, p
     path.write_text("\n>>>>>>> theirs\n")
     with pytest.raises(PageError, match=f"{path.name}:2: the file has the mark >>>>>>>"):
         find_pages(book)
-
-
-def test_a_drawing_of_the_book_has_the_palette_s_colours(tmp_path):
-    book = make_book(tmp_path)
-    for colour in ("#123456", "red"):
-        (book / "a.svg").write_text(f'<svg fill="none" stroke="{colour}"/>')
-        with pytest.raises(PageError, match=f"a.svg:1: the drawing has {colour}. A page draws in"):
-            find_pages(book)

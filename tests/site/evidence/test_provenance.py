@@ -76,7 +76,7 @@ AS_MEASURED = (
 )  # fmt: skip
 AS_PRINTED = (
     cell(GLUE, REMOVED), cell("table('chosen')", INPUTS), cell("table('read')"),
-    cell("drawn('alone')"), GLUED,
+    cell("drawn('alone')", FIGURE), GLUED,
 )  # fmt: skip
 
 
