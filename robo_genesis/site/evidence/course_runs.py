@@ -64,9 +64,16 @@ class CourseProcessors(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return a paragraph."""
         runs = all_runs(Path(self.env.srcdir)).values()
-        found = {run.predicate.host.cpu for run in runs if run.predicate and not run.recorded}
-        once = [f"Each page was executed once, on {listed(sorted(found))}."] if found else []
-        return [nodes.paragraph("", " ".join(built_pages().agreed or once))]
+        agreed = built_pages().agreed or [executed_once(runs)]
+        return [nodes.paragraph("", " ".join(agreed))]
+
+
+def executed_once(runs: Iterable[PageRun]) -> str:
+    """Return the processors of this build's runs; recorded runs are left out."""
+    found = {run.predicate.host.cpu for run in runs if run.predicate and not run.recorded}
+    if not found:
+        return "No run of this build was accepted."
+    return f"Each page was executed once, on {listed(sorted(found))}."
 
 
 class CourseStatus(MapDirective):
