@@ -116,7 +116,9 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     assert builds == [book := making(JOBS["book"], "book")]
     assert "if" not in JOBS["book"]
     assert book["env"]["RELEASE"] == "1"
-    assert making(FLOWS["release"]["jobs"]["book"], "book")["env"]["RELEASE"] == "1"
+    released = making(FLOWS["release"]["jobs"]["book"], "book")
+    assert released["env"]["RELEASE"] == "1"
+    assert {one["env"]["SOLUTIONS"] for one in (book, released)} == {"${{ vars.SOLUTIONS }}"}
     assert book["env"]["SITE_URL"] == "${{ vars.SITE_URL || needs.address.outputs.url }}"
     events = 'contains(fromJSON(\'["push", "workflow_dispatch"]\'), github.event_name)'
     assert events in JOBS["address"]["steps"][0]["if"]
