@@ -34,8 +34,8 @@ VERDICTS = {
 class PageSpecification:
     """What a lesson declares about the runs of one of its pages.
 
-    `metrics` gives the required metrics of each case; `tolerances` is unit or metric →
-    (atol, rtol).
+    `metrics` gives the required metrics of each case; `tolerances` is unit, metric, group of
+    metrics or array → (atol, rtol).
     """
 
     metrics: Mapping[str, tuple[str, ...]]
@@ -174,7 +174,8 @@ def values(old: Side, new: Side, spec: PageSpecification, kind: str) -> Iterator
             yield Row(EQUAL if a.value == b.value else DIFFERS, name, *text)
         else:
             here, there = (np.array(float(value)) for value in (a.value, b.value))
-            yield _largest(name, name.split(".")[-1], here, there, a.unit, limits)
+            group, _, metric = name.partition(".")
+            yield _largest(name, (metric, group), here, there, a.unit, limits)
 
 
 def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
@@ -193,12 +194,12 @@ def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
             elif np.array_equal(a, b):
                 yield Row(EQUAL, what, str(a.shape), str(b.shape))
             else:
-                yield _largest(what, name, a, b, unit, spec.tolerances)
+                yield _largest(what, (name,), a, b, unit, spec.tolerances)
 
 
 def _largest(
     what: str,
-    name: str,
+    names: tuple[str, ...],
     a: np.ndarray,
     b: np.ndarray,
     unit: str | list[str],
@@ -208,7 +209,8 @@ def _largest(
 
     Args:
         what: the text of the row; the place in an array is added.
-        name: of the metric or array, for its own tolerance.
+        names: of the metric and its group, or of the array. The first with a tolerance of its own
+            decides, else the unit.
         a: those of the old side.
         b: those of the new side, of the same shape.
         unit: a list if the last axis has DOFs.
@@ -216,7 +218,8 @@ def _largest(
     """
     units = np.broadcast_to(np.array(unit), a.shape)
     declared = {} if np.issubdtype(a.dtype, np.integer) else tolerances
-    each = [declared.get(name, declared.get(str(u), (0.0, 0.0))) for u in units.flat]
+    own = next((declared[name] for name in names if name in declared), None)
+    each = [own or declared.get(str(u), (0.0, 0.0)) for u in units.flat]
     limits = np.reshape(each, (*a.shape, 2))
     here, there = a.astype(np.float64), b.astype(np.float64)
     delta, room = there - here, allowed(here, there, limits[..., 0], limits[..., 1])
