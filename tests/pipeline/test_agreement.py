@@ -47,9 +47,13 @@ def machines(tmp_path):
 @pytest.mark.parametrize(
     ("files", "run", "said"),
     [
-        (FILES | {"outputs/shape.npz": b"t"}, {}, r"lessons/lab: outputs/shape\.npz differ, and"),
-        ({"outputs/shape.npz": b"s"}, {}, r"arrays/a\.npz differ, and both ran on a processor w"),
-        (FILES | {"outputs/b.npz": b"b"}, {}, r"lessons/lab: outputs/b\.npz differ"),
+        (
+            FILES | {"outputs/shape.npz": b"t"},
+            {},
+            r"lessons/lab: 1 of 2 archives differ\. .*shape\.npz m",
+        ),
+        ({"outputs/shape.npz": b"s"}, {}, r"cpu/arrays/a\.npz must be equal on a processor w"),
+        (FILES | {"outputs/b.npz": b"b"}, {}, r"1 of 3 archives .* outputs/b\.npz"),
         (FILES, {"run_id": "1" * 32}, "lessons/lab: both are run 11111111, expected two"),
         (FILES, {"fingerprint": "g"}, "lessons/lab: their fingerprints are f and g, expected"),
         (None, {}, r"lessons/lab is not in .*/second\. Execute it: make"),
@@ -88,6 +92,11 @@ flipped_check = check(0, passed=False)
 impossible = rewrite("G2", internal_force=lambda force: force + 1)
 
 
+def other_shape(folder):
+    """Leave another shape of the robot beside the bundle."""
+    (folder.parent / "shape.npz").write_bytes(b"s")
+
+
 @pytest.fixture
 def twice(folder, tmp_path):
     """Execute L04's lab twice; the second run is spoiled."""
@@ -98,6 +107,8 @@ def twice(folder, tmp_path):
         for name, bundle in (("first", folder), ("second", other)):
             place = executed(tmp_path / name, LAB, {}, read_manifest(bundle).predicate.run_id)
             shutil.copytree(bundle, place / "outputs" / "cpu")
+            for shape in bundle.parent.glob("*.npz"):
+                shutil.copy(shape, place / "outputs")
         return tmp_path / "first", tmp_path / "second"
 
     return run
@@ -118,7 +129,11 @@ def test_rounding_on_another_processor_is_accepted_and_the_largest_is_named(twic
 @pytest.mark.parametrize(
     ("spoilers", "said"),
     [
-        ([], r"lab: outputs/cpu/arrays/G1\.npz, .*G3.* differ, and both ran on a CPU, which must"),
+        ([], r"lab: 4 of 4 archives differ\. .*G1\.npz must be equal on a CPU\. "),
+        (
+            [another_processor, other_shape],
+            r"1 of 5 .* outputs/shape\.npz must be equal on B and a",
+        ),
         ([another_processor, impossible], r"lab: motion: .*G2: internal_force"),
         ([another_processor, flipped_check], rf"lab: a CPU and B .*{CHECKS[0]}: passed → FAILED"),
     ],
