@@ -110,10 +110,11 @@ def _executions(name: str, folder: Path | None) -> dict[str, Execution]:
 
 
 def _difference(one: Execution, other: Execution, verify: Verify) -> Row | None:
-    """Return the largest difference of two executions, None if their arrays are equal.
+    """Return the difference that is the largest share of its tolerance, None if arrays are equal.
 
     Raises:
-        ProjectError: the executions do not agree.
+        ProjectError: arrays differ on equal processors, a difference exceeds its tolerance, or a
+            check or an ordering changed.
         BundleRefused: a bundle is not valid.
     """
     here, there = one.record, other.record
@@ -127,32 +128,23 @@ def _difference(one: Execution, other: Execution, verify: Verify) -> Row | None:
     files = sorted({*one.archives, *other.archives})
     apart = [name for name in files if one.archives.get(name) != other.archives.get(name)]
     processors = sorted({one.processor, other.processor})
-    exact = [name for name in apart if len(processors) == 1 or OF_BUNDLE not in name]
+    may_round = len(processors) == 2 and NAMELESS not in processors
+    exact = [name for name in apart if not may_round or OF_BUNDLE not in name]
     if exact:
         raise ProjectError(
             f"{len(exact)} of {len(files)} archives differ. For example, {exact[0]} must be equal "
-            f"on {listed(processors)}. Execute the page again; if they still differ, report it with "
-            "both manifests."
+            f"on {listed(processors)}. Execute the page again. If they still differ, report "
+            "it with both manifests."
         )
-    return _within_tolerances(one, other, verify) if apart else None
-
-
-def _within_tolerances(one: Execution, other: Execution, verify: Verify) -> Row:
-    """Return the difference that is the largest share of its tolerance.
-
-    Raises:
-        ProjectError: a difference exceeds its tolerance, or a check or an ordering changed.
-        BundleRefused: a bundle is not valid.
-    """
-    assert one.bundle is not None
-    assert other.bundle is not None
-    verify(one.bundle, one.record.run_id)
-    verify(other.bundle, other.record.run_id)
+    if not (apart and one.bundle and other.bundle):
+        return None
+    verify(one.bundle, here.run_id)
+    verify(other.bundle, there.run_id)
     compared = compare(one.bundle, other.bundle)
     if compared.axis != "repeat" or compared.state not in (EQUAL, WITHIN):
         raise ProjectError(
-            f"{one.processor} and {other.processor} may differ within the tolerances of the "
-            f"lesson, but they differ more.\n{report.summary(compared)}"
+            f"{listed(processors)} may differ within the tolerances of the lesson, but they differ "
+            f"more.\n{report.summary(compared)}"
         )
     rows = (row for section in compared.sections for row in section.rows)
     return max(rows, key=lambda row: row.weight)
