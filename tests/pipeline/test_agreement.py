@@ -135,7 +135,7 @@ def test_rounding_on_another_processor_is_accepted_and_the_largest_is_named(twic
             r"1 of 5 .* outputs/shape\.npz must be equal on B and a",
         ),
         ([another_processor, impossible], r"lab: motion: .*G2: internal_force"),
-        ([another_processor, flipped_check], rf"lab: a CPU and B .*{CHECKS[0]}: passed → FAILED"),
+        ([another_processor, flipped_check], rf"lab: B and a CPU .*{CHECKS[0]}: passed → FAILED"),
     ],
 )
 def test_any_other_difference_is_refused_by_name(twice, spoilers, said):
@@ -146,6 +146,6 @@ def test_any_other_difference_is_refused_by_name(twice, spoilers, said):
 def test_another_processor_must_stay_within_the_tolerances(twice, monkeypatch):
     monkeypatch.setattr(l04, "TOLERANCES", {})
     with pytest.raises(
-        ProjectError, match=r"(?s)lab: a CPU and B .*arrays: differs\n +baseline int"
+        ProjectError, match=r"(?s)lab: B and a CPU .*arrays: differs\n +baseline int"
     ):
         agree(*twice(another_processor))
