@@ -149,3 +149,9 @@ def test_another_processor_must_stay_within_the_tolerances(twice, monkeypatch):
         ProjectError, match=r"(?s)lab: B and a CPU .*arrays: differs\n +baseline int"
     ):
         agree(*twice(another_processor))
+
+
+def test_another_backend_is_not_a_second_execution(twice):
+    folders = twice(another_processor, part("backend", actual="cuda", actual_at_end="cuda"))
+    with pytest.raises(ProjectError, match="(?s)but they differ more.*backend cpu → cuda"):
+        agree(*folders, verify=lambda *of: None)
