@@ -153,5 +153,5 @@ def test_another_processor_must_stay_within_the_tolerances(twice, monkeypatch):
 
 def test_another_backend_is_not_a_second_execution(twice):
     folders = twice(another_processor, part("backend", actual="cuda", actual_at_end="cuda"))
-    with pytest.raises(ProjectError, match="(?s)but they differ more.*backend cpu → cuda"):
+    with pytest.raises(ProjectError, match=r"(?s)but they differ more.*backend cpu → cuda"):
         agree(*folders, verify=lambda *of: None)
