@@ -125,7 +125,7 @@ compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder
 
 # FIRST and SECOND reach the script as environment variables.
 .PHONY: agree
-agree: $(ENVIRONMENT) ## require equal arrays from two machines (FIRST=folder SECOND=folder, each from make execute)
+agree: $(ENVIRONMENT) ## require that two executions agree (FIRST=folder SECOND=folder, each from make execute)
 	@"$(PY)" build_scripts/agree.py
 
 .PHONY: home-picture

@@ -1,7 +1,7 @@
-"""Require equal arrays from two machines: `make agree FIRST=folder SECOND=folder`.
+"""Require that two executions of pages agree: `make agree FIRST=folder SECOND=folder`.
 
 Environment: FIRST and SECOND, folders that `make execute` filled on two machines.
-Exit status: 0 equal, 1 different or not comparable, 130 interrupted.
+Exit status: 0 they agree, 1 they differ or cannot be compared, 130 interrupted.
 """
 
 import sys

@@ -131,9 +131,12 @@ def served(site: Path, handler: type[QuietHandler] = QuietHandler) -> Iterator[s
 
 
 @pytest.fixture(scope="session")
-def address(site) -> Iterator[str]:
-    with served(site) as address:
-        yield address
+def address(site, tmp_path_factory) -> Iterator[str]:
+    """The site's address in a folder of its server, as most schools publish a course."""
+    root = tmp_path_factory.mktemp("server")
+    (root / "course").symlink_to(site)
+    with served(root) as address:
+        yield f"{address}/course"
 
 
 @pytest.fixture(scope="module")

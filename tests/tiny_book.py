@@ -51,7 +51,10 @@ facts = dict(
 (folder / "log.txt").write_text("new")"""
 
 LAB_FRONT = "robo_genesis: {lesson: l04, page: lab}\n"
-SETTINGS = ("RENDER", "RELEASE", "JOBS", "SITE_URL", "EXECUTED", "PAGE", "TO", "LESSON", "BACKEND")
+SETTINGS = (
+    "RENDER", "RELEASE", "JOBS", "SITE_URL", "EXECUTED", "SECOND", "PAGE", "TO", "LESSON",
+    "BACKEND",
+)  # fmt: skip
 
 
 def cell(code: str, options: str = "") -> str:

@@ -28,7 +28,7 @@ class Lesson:
     | `spec.MINIMUM_HARDWARE` | the backend whose evidence a release requires |
     | `spec.CASES` | the runs of the lab by name |
     | `spec.RESOLUTION` | by unit, the difference below which two values count as equal |
-    | `spec.TOLERANCES` | by unit or metric, (atol, rtol) between engine versions or backends |
+    | `spec.TOLERANCES` | by unit, metric, group, case or array, (atol, rtol) of a value elsewhere |
     | `spec.RELATIONS` | the orderings that the lesson claims |
     """
 

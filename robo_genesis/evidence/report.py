@@ -38,11 +38,11 @@ def summary(comparison: BundleComparison) -> str:
         state = part.state if part.rows else part.empty
         lines.append(f"  {part.title.lower()}: {state}")
         worst = [f for f in part.rows if f.state in (DIFFERS, INCONCLUSIVE)]
-        lines += [f"    {_words(f)}" for f in worst]
+        lines += [f"    {words(f)}" for f in worst]
     return "\n".join(map(printable, [*lines, *comparison.notes]))
 
 
-def _words(row: Row) -> str:
+def words(row: Row) -> str:
     """Return a row as one line: what, both values, and the difference beside its limit."""
     limit = f", allowed {row.allowed}" if row.allowed else ""
     more = f" (difference {row.delta}{limit})" if row.delta else limit

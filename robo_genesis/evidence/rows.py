@@ -34,8 +34,8 @@ VERDICTS = {
 class PageSpecification:
     """What a lesson declares about the runs of one of its pages.
 
-    `metrics` gives the required metrics of each case; `tolerances` is unit or metric →
-    (atol, rtol).
+    `metrics` gives the required metrics of each case; `tolerances` is unit, metric, group of
+    metrics, case or array → (atol, rtol).
     """
 
     metrics: Mapping[str, tuple[str, ...]]
@@ -174,14 +174,15 @@ def values(old: Side, new: Side, spec: PageSpecification, kind: str) -> Iterator
             yield Row(EQUAL if a.value == b.value else DIFFERS, name, *text)
         else:
             here, there = (np.array(float(value)) for value in (a.value, b.value))
-            yield _largest(name, name.split(".")[-1], here, there, a.unit, limits)
+            group, _, metric = name.partition(".")
+            yield _largest(name, (metric, group), here, there, a.unit, limits)
 
 
 def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Arrays have the same shape, and their values agree within atol + rtol · the larger magnitude.
 
-    A tolerance is declared by the name of an array or by a unit; without one, and for counts,
-    values must be equal. The row names the value that exceeds its tolerance most.
+    A tolerance is declared by the name of a case or an array or, except for counts, by a unit;
+    without one, values must be equal. The row names the value that exceeds its tolerance most.
     """
     for case in [name for name in old.traces if name in new.traces]:
         for field, (name, *_) in old.traces[case].arrays().items():
@@ -193,12 +194,12 @@ def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
             elif np.array_equal(a, b):
                 yield Row(EQUAL, what, str(a.shape), str(b.shape))
             else:
-                yield _largest(what, name, a, b, unit, spec.tolerances)
+                yield _largest(what, (case, name), a, b, unit, spec.tolerances)
 
 
 def _largest(
     what: str,
-    name: str,
+    names: tuple[str, ...],
     a: np.ndarray,
     b: np.ndarray,
     unit: str | list[str],
@@ -208,22 +209,25 @@ def _largest(
 
     Args:
         what: the text of the row; the place in an array is added.
-        name: of the metric or array, for its own tolerance.
+        names: of the metric and its group, or of the case and the array. The first with a tolerance
+            of its own decides, else the unit.
         a: those of the old side.
         b: those of the new side, of the same shape.
         unit: a list if the last axis has DOFs.
         tolerances: by name or unit.
     """
     units = np.broadcast_to(np.array(unit), a.shape)
-    declared = {} if np.issubdtype(a.dtype, np.integer) else tolerances
-    each = [declared.get(name, declared.get(str(u), (0.0, 0.0))) for u in units.flat]
+    own = next((tolerances[name] for name in names if name in tolerances), None)
+    by_unit = {} if np.issubdtype(a.dtype, np.integer) else tolerances
+    each = [own or by_unit.get(str(u), (0.0, 0.0)) for u in units.flat]
     limits = np.reshape(each, (*a.shape, 2))
     here, there = a.astype(np.float64), b.astype(np.float64)
     delta, room = there - here, allowed(here, there, limits[..., 0], limits[..., 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(delta == 0, 0.0, np.abs(delta) / room)  # infinite without a tolerance
-    over = np.argmax(shares if np.isfinite(shares).all() else np.where(room, 0, np.abs(delta)))
-    at = np.unravel_index(over, a.shape)
+    unbound = np.isinf(shares)
+    rank = np.where(unbound, np.abs(delta), 0) if unbound.any() else shares
+    at = np.unravel_index(np.argmax(rank if rank.any() else np.abs(delta)), a.shape)
     state = DIFFERS if shares[at] > 1 else WITHIN if delta[at] else EQUAL
     place = f"[{', '.join(map(str, at))}]" if at else ""
     old, new, apart, limit = (

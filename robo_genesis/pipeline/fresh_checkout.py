@@ -28,8 +28,8 @@ SHARED = ("derived", COMPILED, "npm", STORE)
 """Caches whose folders are named by their inputs; a release shares what is compiled alone."""
 
 OUTER = (
-    "GENESIS", "PYTHON", "BUNDLE", "RELEASE", "EXECUTED", "MAKEFLAGS", "MFLAGS", "MAKELEVEL",
-    "PYTEST_ADDOPTS",
+    "GENESIS", "PYTHON", "BUNDLE", "RELEASE", "EXECUTED", "SECOND", "MAKEFLAGS", "MFLAGS",
+    "MAKELEVEL", "PYTEST_ADDOPTS",
 )  # fmt: skip
 """Variables of the outer make that a make in another checkout must not get: a new pin makes
 recorded bundles stale, which a release would refuse."""
@@ -50,16 +50,15 @@ autocrlf = false
 the owner of the checkout, which git would refuse."""
 
 
-def release(
-    arguments: Sequence[str], cache: Path, root: Path = ROOT, executed: Path | None = None
-) -> int:
+def release(arguments: Sequence[str], cache: Path, root: Path = ROOT, **handed: Path | None) -> int:
     """Build the last commit in a fresh checkout, and return the exit status of its build.
 
     Args:
         arguments: of `build_scripts/book.py` there.
         cache: the folder of the caches.
         root: the checkout whose HEAD is built.
-        executed: the folder of pages that other machines executed at this commit.
+        handed: `executed` is the folder of pages that other machines executed at this commit,
+            `second` that of a second execution.
 
     Raises:
         ProjectError: the tree has changes, git failed, or another release runs here.
@@ -68,7 +67,7 @@ def release(
         raise ProjectError("\n".join(["RELEASE=1 cannot be met.", *problems]))
     with locked(cache / "release.lock", "Another release"):
         work = check_out(root, cache / FOLDER, cache, (COMPILED,))
-        status = _build(work, [*arguments], release_environment(work, executed))
+        status = _build(work, [*arguments], release_environment(work, **handed))
         if status == 0:
             shutil.rmtree(cache / FOLDER)
         return status
@@ -119,12 +118,12 @@ def environment(work: Path, *without: str) -> dict[str, str]:
     return kept | {"PYTHONPATH": str(work)}
 
 
-def release_environment(work: Path, executed: Path | None = None) -> dict[str, str]:
+def release_environment(work: Path, **handed: Path | None) -> dict[str, str]:
     """Return the whole environment of a release's build: of this process's, only listed names.
 
     Args:
         work: the fresh checkout.
-        executed: see `release`.
+        handed: see `release`.
     """
     names = {*SETTINGS, *NETWORK, *(name.lower() for name in NETWORK)}
     kept = users_variables() | {
@@ -139,7 +138,7 @@ def release_environment(work: Path, executed: Path | None = None) -> dict[str, s
         "PYTHONNOUSERSITE": "1",
         "PYDANTIC_DISABLE_PLUGINS": "__all__",
     }
-    return kept | own | ({"EXECUTED": str(executed.absolute())} if executed else {})
+    return kept | own | {n.upper(): str(path.absolute()) for n, path in handed.items() if path}
 
 
 def _build(work: Path, arguments: Sequence[str], environment: Mapping[str, str]) -> int:

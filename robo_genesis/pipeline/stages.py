@@ -16,6 +16,7 @@ from robo_genesis.core import project
 from robo_genesis.core.files import locked, put, settle, settle_below
 from robo_genesis.core.git import git, unclean
 from robo_genesis.pipeline import npm, up_to_date
+from robo_genesis.pipeline.agreement import agree
 from robo_genesis.pipeline.bundles.of_build import verify_results
 from robo_genesis.pipeline.bundles.status import refused_records
 from robo_genesis.pipeline.bundles.verify import verify_bundle
@@ -47,8 +48,9 @@ class Build:
     `jobs` pages run at once; `verify` None is the course's own verification. `release` demands a
     clean tree and every lesson's required evidence, and reuses no executed page of the cache;
     `fresh_checkout` calls it so. `executed` holds all pages as another machine executed them; then
-    none is executed here. `to` is the book that gets the site, by default `book`. `command` is the
-    command that bundles name. `sphinx` loads Sphinx, by default a process that the build starts.
+    none is executed here. `second` holds a second execution, which must agree with it. `to` is the
+    book that gets the site, by default `book`. `command` is the command that bundles name. `sphinx`
+    loads Sphinx, by default a process that the build starts.
     """
 
     root: Path = project.ROOT
@@ -59,6 +61,7 @@ class Build:
     verify: Verify | None = None
     release: bool = False
     executed: Path | None = None
+    second: Path | None = None
     to: Path | None = None
     command: str = "make book"
     sphinx: SphinxProcess | None = None
@@ -90,9 +93,13 @@ def run_build(build: Build) -> list[str]:
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         manifests: dict[str, Any] = {}
+        agreed: list[str] = []
         if build.executed:
             progress("execute", f"no page: all are taken from {build.executed}")
             results = handed_over(build.executed, pages, into)
+            if build.second:
+                agreed = agree(build.executed, build.second, verify)
+                progress("agree", agreed[0])
             manifests = _accepted(build, verify, results, progress)
         else:
             results = _execute(build, pages, into, environment, progress, verify)
@@ -105,7 +112,7 @@ def run_build(build: Build) -> list[str]:
 
         progress("render", "all pages")
         kept = None if from_nothing else build.cache / project.KEPT
-        draft = render(sphinx, staging, BuiltPages.of(results), kept, meanwhile=accept)
+        draft = render(sphinx, staging, BuiltPages.of(results, agreed), kept, meanwhile=accept)
         with ThreadPoolExecutor(1) as beside:  # compression runs beside Python
             packing = beside.submit(draft.pack)
             site = Site(draft.html, site_root())
@@ -131,7 +138,7 @@ def run_build(build: Build) -> list[str]:
         html = publish(target, draft.folder, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
         ran = sum(result.status == "executed" for result in results)
-        return [f"Site: {html / 'index.html'}", *summary(executed=ran)]
+        return [f"Site: {html / 'index.html'}", *summary(executed=ran), *agreed]
 
 
 def export_one(name: str, to: Path | None, build: Build) -> list[str]:

@@ -237,6 +237,15 @@ def test_arrays_without_a_tolerance_are_equal(compared, monkeypatch):
     assert {row.state for row in others} == {"equal"}
 
 
+def test_a_case_may_have_no_bound_and_its_largest_difference_is_named(compared, monkeypatch):
+    monkeypatch.setattr(l04, "TOLERANCES", l04.TOLERANCES | {"G1": (np.inf, 0.0)})
+    faster = value("G1", "peak_speed", lambda v: v + 2 * limit(v))
+    comparison = compared(rewrite(q=added((7, 3), 1)), faster)
+    assert comparison.state == "within tolerance"
+    assert rows(comparison, "Values")[0].what == "G1.peak_speed"
+    assert rows(comparison, "Arrays")[0].what == "G1 q_rad_or_m[7, 3]"
+
+
 @pytest.mark.parametrize(
     ("spoiler", "said"),
     [

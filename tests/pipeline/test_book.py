@@ -258,6 +258,7 @@ def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left
         ({"JOBS": "0"}, "JOBS='0' is not valid. Give a number"),
         ({"RELEASE": "1", "RENDER": "0"}, "RENDER='0' is not valid with RELEASE=1"),
         ({"RELEASE": "1"}, "is not valid with RELEASE=1, which builds the commit's book."),
+        ({"SECOND": "a"}, "SECOND is valid only with EXECUTED, whose pages it has once more."),
         ({"SITE_URL": "example.org/course"}, "SITE_URL='example.org/course' is not valid. Give an"),
     ],
 )

@@ -46,9 +46,9 @@ def root(tmp_path) -> Path:
     return root
 
 
-def built(root: Path, status: int = 0, executed: Path | None = None) -> dict:
+def built(root: Path, status: int = 0, **handed: Path) -> dict:
     """Release a checkout and return what its build found."""
-    assert release([str(root.parent)], root / ".cache", root, executed) == status
+    assert release([str(root.parent)], root / ".cache", root, **handed) == status
     return json.loads((root.parent / "found.json").read_text())
 
 
@@ -127,8 +127,9 @@ def test_a_release_reuses_what_the_engine_compiled_and_gets_only_listed_variable
     monkeypatch.setenv("SITE_URL", "https://example.org/")
     monkeypatch.setenv("https_proxy", "http://proxy")
     monkeypatch.chdir(root.parent)
-    given = built(root, executed=Path("executed"))["environment"]
+    given = built(root, executed=Path("executed"), second=Path("again"))["environment"]
     assert given["EXECUTED"] == str(root.parent / "executed")
+    assert given["SECOND"] == str(root.parent / "again")
     assert "SECRET" not in given
     assert given["SITE_URL"] == "https://example.org/"
     assert given["https_proxy"] == "http://proxy"
@@ -169,5 +170,5 @@ def test_a_release_of_executed_pages_runs_nothing_and_shows_what_they_printed(
         return check_out(root, folder, cache, [*shared, "npm"])
 
     monkeypatch.setattr(fresh_checkout, "check_out", with_npm)
-    assert release(["--to", str(book)], cache, root, executed) == 0
+    assert release(["--to", str(book)], cache, root, executed=executed) == 0
     assert said.strip() in (book / "_build/html/page.html").read_text()

@@ -39,7 +39,10 @@ VIEW = CAMERA | {"pos": (0.75, -0.75, 0.5), "lookat": (0.0, 0.0, 0.32), "fov": 3
 RESOLUTION = {"m": 1e-6, "s": DT / 2, "1": 0.5}
 """By unit, the difference below which two values count as equal."""
 
-TOLERANCES = {"m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "s": (0.0, 0.0), "link_quat_wxyz": (1e-6, 0.0)}
+TOLERANCES = {
+    "m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "rad/s": (1e-6, 0.0), "s": (0.0, 0.0),
+    "link_quat_wxyz": (1e-6, 0.0),
+}  # fmt: skip
 """By unit or array, (atol, rtol) of one value between engine versions or backends."""
 
 RELATIONS = ()

@@ -256,5 +256,8 @@ def nearest() -> tuple[FloatArray, FloatArray]:
         least_squares(left, start, bounds=spec.ARM_LIMITS, ftol=1e-6)
         for start in spec.RANDOM_STARTS[:8, :ARM]
     )
-    best = min(searches, key=lambda search: search.cost).x
+    near = min(searches, key=lambda search: search.cost).x
+    # Rounding decides where such a search stops. On each processor, the last one ends at one value.
+    fine = dict.fromkeys(("ftol", "xtol", "gtol"), 1e-14)
+    best = least_squares(left, near, bounds=spec.ARM_LIMITS, **fine).x
     return best, error(best)

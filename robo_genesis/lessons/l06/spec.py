@@ -20,7 +20,10 @@ MINIMUM_HARDWARE = "cpu"
 # What lessons about reaches have alike, under the names of a specification.
 IK, ONE_START, DOWN = reaching.IK, reaching.ONE_START, reaching.DOWN
 BEYOND_REACH, MARKER_RADIUS = reaching.BEYOND_REACH, reaching.MARKER_RADIUS
-RESOLUTION, TOLERANCES, REACHED = reaching.RESOLUTION, reaching.TOLERANCES, reaching.REACHED
+RESOLUTION, REACHED = reaching.RESOLUTION, reaching.REACHED
+TOLERANCES = reaching.TOLERANCES | {"sweep_end": (0.1, 0.0)}
+"""As in `reaching`. A robot with little damping still swings at the end of the sweep; between two
+processors it was up to 24 mm elsewhere."""
 SAME_POSE, SAME_RESIDUAL = reaching.SAME_POSE, reaching.SAME_RESIDUAL
 
 EXPECTED_MODEL = franka.MODEL_COUNTS

@@ -25,17 +25,19 @@ class BuiltPages(Strict):
 
     `folders` has the folder in the store of each executed page by name, and `outputs` the files
     that the run of each measuring page left, by `lesson/page`. `states` is a folder that keeps the
-    states of runs for the next render; None keeps nothing.
+    states of runs for the next render; None keeps nothing. `agreed` is what a second execution of
+    the pages showed; see `pipeline.agreement`.
     """
 
     folders: dict[str, Path] = Field(default_factory=dict)
     outputs: dict[str, Path] = Field(default_factory=dict)
     states: Path | None = None
+    agreed: list[str] = Field(default_factory=list)
 
     @classmethod
-    def of(cls, results: Iterable[PageResult]) -> Self:
+    def of(cls, results: Iterable[PageResult], agreed: Sequence[str] = ()) -> Self:
         """Return the pages of a build from their results, of which none failed."""
-        found = cls()
+        found = cls(agreed=[*agreed])
         for result in results:
             found.add(result.page, result.folder)
         return found

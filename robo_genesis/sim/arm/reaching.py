@@ -27,9 +27,9 @@ RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
 TOLERANCES = {
     "m": (1e-5, 1e-3), "rad": (1e-5, 1e-3), "rad/s": (1e-3, 1e-3), "N·m": (1e-2, 1e-3),
     "N": (1e-2, 1e-3), "kg": (1e-6, 0.0), "pixel": (1e-6, 0.0), "1": (1e-6, 0.0),
-    "link_quat_wxyz": (1e-4, 0.0),
+    "m/s": (1e-3, 1e-3), "s": (0.0, 0.0), "link_quat_wxyz": (1e-4, 0.0),
 }  # fmt: skip
-"""By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
+"""By unit, or by array: (atol, rtol) of a value between engine versions, backends or processors."""
 
 REACHED = (0.02, 0.05)
 """The hand counts as arrived within these distances of its target [m] and [rad]."""

@@ -4,6 +4,7 @@
 |---|---|
 | {course-measured} (directive) | a line: engine version and dates of this build's runs |
 | {course-status} (directive) | the state of the runs of each published lesson |
+| {course-processors} (directive) | processors of this build's runs, and whether two runs agree |
 """
 
 from collections.abc import Iterable
@@ -14,6 +15,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.text import listed
+from robo_genesis.pipeline.pages.built import built_pages
 from robo_genesis.site.course.course_map import MapDirective, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, status_list
@@ -56,6 +58,24 @@ def measured_line(runs: Iterable[PageRun]) -> str:
     return line
 
 
+class CourseProcessors(SphinxDirective):
+    """Show the processors of this build's runs, and what a second execution showed."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return a paragraph."""
+        runs = all_runs(Path(self.env.srcdir)).values()
+        agreed = built_pages().agreed or [executed_once(runs)]
+        return [nodes.paragraph("", " ".join(agreed))]
+
+
+def executed_once(runs: Iterable[PageRun]) -> str:
+    """Return the processors of this build's runs; recorded runs are left out."""
+    found = {run.predicate.host.cpu for run in runs if run.predicate and not run.recorded}
+    if not found:
+        return "No run of this build was accepted."
+    return f"Each page was executed once, on {listed(sorted(found))}."
+
+
 class CourseStatus(MapDirective):
     """Show the state of the runs of each published lesson's lab."""
 
@@ -75,3 +95,4 @@ def setup(app: Sphinx) -> None:
     """Register the directives."""
     app.add_directive("course-measured", CourseMeasured)
     app.add_directive("course-status", CourseStatus)
+    app.add_directive("course-processors", CourseProcessors)

@@ -95,18 +95,21 @@ def test_pages_from_elsewhere_are_published_as_they_are_without_a_run(
     monkeypatch.setattr(f"{stages}.execute_pages", None)  # whoever calls it fails
     monkeypatch.setattr(f"{stages}.unclean", lambda root: [])
     monkeypatch.setattr(f"{stages}.missing_for_release", lambda *given: [])
+    monkeypatch.setattr(f"{stages}.agree", lambda *of: [f"Executed in {of[0].name}, {of[1].name}."])
     book, store = make_book(tmp_path, **PAGES, page="# A\n\n[lost](nowhere.html)\n"), "cache/pages"
 
     def build(verify=accept) -> list[str]:
-        given = {"verify": verify, "say": [].append, "release": release, "executed": executed}
+        given = {"verify": verify, "say": [].append, "release": release}
+        given |= {"executed": executed, "second": tmp_path / "again"}
         return run_build(Build(book=book, cache=tmp_path / "cache", **given))
 
     for verify, said in ((refuse, "refused: metrics: "), (accept, "nowhere")):
         with pytest.raises(ProjectError, match=said):
             build(verify)
         assert not (tmp_path / store).exists()  # later builds would find the pages there
-    (book / "page.md").write_text("# A\n")
-    assert "Pages: 0 executed, 2 reused." in build()
+    (book / "page.md").write_text("# A\n\n```{course-processors}\n```\n")
+    assert {"Pages: 0 executed, 2 reused.", "Executed in executed, again."} <= {*build()}
+    assert "Executed in executed, again." in (book / "_build/html/page.html").read_text()
     assert contents(book / "_build/evidence/l04/cpu") == contents(executed / "lab/outputs/cpu")
     assert "cpu make book" in (book / "_build/html/contract.html").read_text()
     for name in PAGES:

@@ -6,10 +6,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from built_site import LESSON_PAGES
+from built_site import LESSON_PAGES, MEASURING_PAGES
 
 from robo_genesis.core import project
-from robo_genesis.lessons import LESSONS, find_page
+from robo_genesis.evidence.compare import read_side
+from robo_genesis.evidence.rows import Side
+from robo_genesis.lessons import LESSONS, find_lesson, find_page
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.html.archive import SUMS
 
@@ -102,8 +104,27 @@ def test_published_anchors_stay_and_new_ones_are_kept_from_now_on(parsed_pages):
     assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
 
 
+def test_every_value_and_array_has_a_tolerance(site):
+    """A run on another processor differs by its last digits."""
+    bundles = [path.parent for path in sorted(site.parent.glob("*/**/manifest.json"))]
+    assert len(bundles) >= len(MEASURING_PAGES)
+    lacking = {bundle: without_tolerance(read_side(bundle)) for bundle in bundles}
+    assert {bundle: names for bundle, names in lacking.items() if names} == {}
+
+
+def without_tolerance(side: Side) -> list[str]:
+    declared = find_lesson(side.manifest.predicate.lesson).spec.TOLERANCES.keys()
+    units = {name: {metric.unit} for name, metric in side.numbers.items() if metric.kind == "value"}
+    for case in side.arrays.cases.values():
+        for name, array in case.variables.items():
+            if array.dtype.startswith("float"):
+                units[name] = {array.unit} if isinstance(array.unit, str) else {*array.unit}
+    return [n for n, of in units.items() if not (declared & n.split(".") or of <= declared)]
+
+
 def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(parsed_pages):
     page = parsed_pages["evidence/index"]
     assert page.select(".measured")
+    assert "Each page was executed once, on " in page.article.get_text()
     links = {a["href"] for a in page.select("article a[href]")}
     assert {"ledger.html", "trust.html", "recording.html"} <= links

@@ -8,7 +8,7 @@ import pytest
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import page_outputs
-from robo_genesis.site.evidence.course_runs import measured_line
+from robo_genesis.site.evidence.course_runs import executed_once, measured_line
 from robo_genesis.site.evidence.ledger_data import PageRun
 
 
@@ -37,6 +37,8 @@ def test_the_line_names_versions_and_dates_of_the_accepted_runs_of_this_build(ac
     assert measured_line([one, one, elsewhere]) == line
     assert measured_line([one, missing]) == f"{line} 1 of 2 runs were not accepted."
     assert measured_line([missing]) == "No run of this build was accepted."
+    assert executed_once([one, missing, one]) == "Each page was executed once, on a CPU."
+    assert executed_once([elsewhere, missing]) == "No run of this build was accepted."
     assert measured_line([later, one]) == (
         "Measured on CPU with Genesis 1.3.3 and 1.4.5 from 2026-11-22 to 2026-11-24."
     )
