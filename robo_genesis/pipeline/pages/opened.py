@@ -4,11 +4,12 @@ import atexit
 import os
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
+from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, PACKAGES, ROOT
 from robo_genesis.sim.compiler import spare_repeated_work
 
 SYSTEM = (
@@ -19,6 +20,12 @@ SYSTEM = (
 FONTS = (".ttf", ".otf", ".ttc", ".afm")
 """Matplotlib lists all fonts of the machine; the figures use its own."""
 
+MODELS = (
+    ".xml", ".mjcf", ".urdf", ".xacro", ".mjb", ".obj", ".mtl", ".stl", ".dae", ".glb", ".gltf",
+    ".ply", ".msh", ".usd", ".usda", ".usdz",
+)  # fmt: skip
+"""Models of robots and their meshes; the only ones outside of the course are those of the engine."""
+
 RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")
 OWN = os.O_TRUNC | os.O_EXCL  # The flags of a file that the process makes or empties
@@ -28,7 +35,7 @@ def start() -> None:
     """Prepare a kernel, and note from now on each file that its Python opens for reading.
 
     What the process itself made or emptied is not noted. What compiled code or a child process
-    opens is not seen.
+    opens is not seen, except the models that MuJoCo reads, also for the engine.
     """
     # ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run
     # last: one that is registered right after them runs right before them, after the engine's, and
@@ -45,7 +52,34 @@ def start() -> None:
             seen.add(path)
             os.write(notes, b"" if flags & OWN else os.fsencode(path) + b"\0")
 
+    _note_models(lambda path: note("open", (path, None, os.O_RDONLY)))
     sys.addaudithook(note)
+
+
+def _note_models(note: Callable[[str], None]) -> None:
+    """Note all files of a model before MuJoCo reads it, because compiled code opens them."""
+    import mujoco
+
+    text = Path(os.environ[RUNTIME], "model.xml")
+
+    def noting(load: Callable[..., Any], from_text: bool) -> Any:
+        def noted(*given: Any, **named: Any) -> Any:
+            model = next(iter((*given, *named.values())))
+            if from_text:
+                text.write_bytes(model if isinstance(model, bytes) else model.encode())
+            with suppress(mujoco.FatalError):  # which the loader reports
+                for path in mujoco.mju_getXMLDependencies(str(text if from_text else model)):
+                    note(path)
+            return load(*given, **named)
+
+        return staticmethod(noted)
+
+    for kind, names in (
+        (mujoco.MjModel, ("from_xml_path", "from_xml_string")),
+        (mujoco.MjSpec, ("from_file", "from_string")),
+    ):
+        for name in names:
+            setattr(kind, name, noting(getattr(kind, name), name.endswith("string")))
 
 
 def _notes() -> Path:
@@ -57,19 +91,23 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
     """Return the noted files on which no key depends, and which the page did not make itself.
 
     The innermost known folder of a file decides: files of the system, of Python, of packages and of
-    the engine's caches are accepted, others in the checkout or at home are not.
+    the engine's caches are accepted, others in the checkout or at home are not. Of `MODELS` only
+    those of the engine are, and what the page wrote.
 
     Args:
         keyed: the files of the checkout that the page's fingerprint covers.
     """
-    accepted = [*SYSTEM, sys.prefix, sys.base_prefix, str(CACHE / "derived")]
+    own = [*filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))]
+    own += map(str, Path(PACKAGES).glob("genesis"))
+    accepted = [*own, *SYSTEM, sys.prefix, sys.base_prefix, str(CACHE / "derived")]
     accepted += map(str, ROOT.glob("*.egg-info"))  # which lists the package for importlib.metadata
-    accepted += filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))
     places = {form: True for each in accepted for form in (each, os.path.realpath(each))}
     places |= {"": False, str(ROOT): False, str(Path.home()): False}
+    for_models = {form for each in own for form in (each, os.path.realpath(each))}
 
     def is_accepted(path: str) -> bool:
-        return places[max((each for each in places if path.startswith(f"{each}/")), key=len)]
+        place = max((each for each in places if path.startswith(f"{each}/")), key=len)
+        return place in for_models or (places[place] and not path.lower().endswith(MODELS))
 
     names = os.fsdecode(_notes().read_bytes()).split("\0")
     found = {BYTECODE.sub(r"\1.py", name) for name in names if not name.endswith(FONTS)}
