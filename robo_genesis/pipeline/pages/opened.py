@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, PACKAGES, ROOT
+from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
 from robo_genesis.sim.compiler import spare_repeated_work
 
 SYSTEM = (
@@ -22,9 +22,10 @@ FONTS = (".ttf", ".otf", ".ttc", ".afm")
 
 MODELS = (
     ".xml", ".mjcf", ".urdf", ".xacro", ".mjb", ".obj", ".mtl", ".stl", ".dae", ".glb", ".gltf",
-    ".ply", ".msh", ".usd", ".usda", ".usdz",
+    ".ply", ".msh", ".usd",
 )  # fmt: skip
-"""Models of robots and their meshes; the only ones outside of the course are those of the engine."""
+"""Ends of the names of robots' models and their meshes."""
+ALL, NONE = ("",), ()  # The same, of every file and of no file
 
 RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")
@@ -91,23 +92,24 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
     """Return the noted files on which no key depends, and which the page did not make itself.
 
     The innermost known folder of a file decides: files of the system, of Python, of packages and of
-    the engine's caches are accepted, others in the checkout or at home are not. Of `MODELS` only
-    those of the engine are, and what the page wrote.
+    the engine's caches are accepted, others in the checkout or at home are not. Of the
+    system's own files those of `MODELS` are not.
 
     Args:
         keyed: the files of the checkout that the page's fingerprint covers.
     """
-    own = [*filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))]
-    own += map(str, Path(PACKAGES).glob("genesis"))
-    accepted = [*own, *SYSTEM, sys.prefix, sys.base_prefix, str(CACHE / "derived")]
+    accepted = [sys.prefix, str(CACHE / "derived")]
+    accepted += filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))
     accepted += map(str, ROOT.glob("*.egg-info"))  # which lists the package for importlib.metadata
-    places = {form: True for each in accepted for form in (each, os.path.realpath(each))}
-    places |= {"": False, str(ROOT): False, str(Path.home()): False}
-    for_models = {form for each in own for form in (each, os.path.realpath(each))}
+    refused = dict.fromkeys(("", str(ROOT), str(Path.home())), ALL)
+    places = dict.fromkeys((*SYSTEM, sys.base_prefix), MODELS) | dict.fromkeys(accepted, NONE)
+    places = {
+        form: of for at, of in places.items() for form in (at, os.path.realpath(at))
+    } | refused
 
     def is_accepted(path: str) -> bool:
         place = max((each for each in places if path.startswith(f"{each}/")), key=len)
-        return place in for_models or (places[place] and not path.lower().endswith(MODELS))
+        return not path.lower().endswith(places[place])
 
     names = os.fsdecode(_notes().read_bytes()).split("\0")
     found = {BYTECODE.sub(r"\1.py", name) for name in names if not name.endswith(FONTS)}
