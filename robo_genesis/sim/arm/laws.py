@@ -118,9 +118,8 @@ def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Finding]:
     """Yield a start that is not the case's, or not at rest, and an effort limit of another case."""
     yield from apart("start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE)
     yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, ZERO, 0.0)
-    yield from apart(
-        "law", "effort_limit [N·m or N]", trace.effort_limit, case.effort_limit, LIMIT_TOLERANCE
-    )
+    limit, name = case.effort_limit, "effort_limit [N·m or N]"
+    yield from apart("law", name, trace.effort_limit, limit, LIMIT_TOLERANCE * (1 + limit / 10))
 
 
 def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
