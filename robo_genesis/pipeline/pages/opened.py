@@ -4,13 +4,13 @@ import atexit
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
+from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, PACKAGES, ROOT
 from robo_genesis.sim.compiler import spare_repeated_work
+from robo_genesis.sim.mujoco.files import note_models
 
 SYSTEM = (
     "/bin", "/dev", "/etc", "/lib", "/lib64", "/opt", "/proc", "/run", "/sys", "/usr", "/var",
@@ -20,12 +20,8 @@ SYSTEM = (
 FONTS = (".ttf", ".otf", ".ttc", ".afm")
 """Matplotlib lists all fonts of the machine; the figures use its own."""
 
-MODELS = (
-    ".xml", ".mjcf", ".urdf", ".xacro", ".mjb", ".obj", ".mtl", ".stl", ".dae", ".glb", ".gltf",
-    ".ply", ".msh", ".usd",
-)  # fmt: skip
-"""Ends of the names of robots' models and their meshes."""
-ALL, NONE = ("",), ()  # The same, of every file and of no file
+MODEL = re.compile(r"\.(xml|mjcf|urdf|xacro|mjb|obj|mtl|stl|dae|glb|gltf|ply|msh|usd\w?)$", re.I)
+"""The end of the name of a robot's model or mesh."""
 
 RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")
@@ -53,34 +49,10 @@ def start() -> None:
             seen.add(path)
             os.write(notes, b"" if flags & OWN else os.fsencode(path) + b"\0")
 
-    _note_models(lambda path: note("open", (path, None, os.O_RDONLY)))
+    note_models(
+        lambda path: note("open", (path, None, os.O_RDONLY)), Path(os.environ[RUNTIME], "model.xml")
+    )
     sys.addaudithook(note)
-
-
-def _note_models(note: Callable[[str], None]) -> None:
-    """Note all files of a model before MuJoCo reads it, because compiled code opens them."""
-    import mujoco
-
-    text = Path(os.environ[RUNTIME], "model.xml")
-
-    def noting(load: Callable[..., Any], from_text: bool) -> Any:
-        def noted(*given: Any, **named: Any) -> Any:
-            model = next(iter((*given, *named.values())))
-            if from_text:
-                text.write_bytes(model if isinstance(model, bytes) else model.encode())
-            with suppress(mujoco.FatalError):  # which the loader reports
-                for path in mujoco.mju_getXMLDependencies(str(text if from_text else model)):
-                    note(path)
-            return load(*given, **named)
-
-        return staticmethod(noted)
-
-    for kind, names in (
-        (mujoco.MjModel, ("from_xml_path", "from_xml_string")),
-        (mujoco.MjSpec, ("from_file", "from_string")),
-    ):
-        for name in names:
-            setattr(kind, name, noting(getattr(kind, name), name.endswith("string")))
 
 
 def _notes() -> Path:
@@ -92,24 +64,22 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
     """Return the noted files on which no key depends, and which the page did not make itself.
 
     The innermost known folder of a file decides: files of the system, of Python, of packages and of
-    the engine's caches are accepted, others in the checkout or at home are not. Of the
-    system's own files those of `MODELS` are not.
+    the engine's caches are accepted, others in the checkout or at home are not, nor are models
+    of robots in folders of the system.
 
     Args:
         keyed: the files of the checkout that the page's fingerprint covers.
     """
-    accepted = [sys.prefix, str(CACHE / "derived")]
-    accepted += filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))
+    accepted = [*SYSTEM, sys.prefix, PACKAGES, sys.base_prefix, str(CACHE / "derived")]
     accepted += map(str, ROOT.glob("*.egg-info"))  # which lists the package for importlib.metadata
-    refused = dict.fromkeys(("", str(ROOT), str(Path.home())), ALL)
-    places = dict.fromkeys((*SYSTEM, sys.base_prefix), MODELS) | dict.fromkeys(accepted, NONE)
-    places = {
-        form: of for at, of in places.items() for form in (at, os.path.realpath(at))
-    } | refused
+    accepted += filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))
+    places = {form: True for each in accepted for form in (each, os.path.realpath(each))}
+    places |= {"": False, str(ROOT): False, str(Path.home()): False}
+    system = {*SYSTEM, *map(os.path.realpath, SYSTEM)}
 
     def is_accepted(path: str) -> bool:
         place = max((each for each in places if path.startswith(f"{each}/")), key=len)
-        return not path.lower().endswith(places[place])
+        return places[place] and not (place in system and MODEL.search(path))
 
     names = os.fsdecode(_notes().read_bytes()).split("\0")
     found = {BYTECODE.sub(r"\1.py", name) for name in names if not name.endswith(FONTS)}

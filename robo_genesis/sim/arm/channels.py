@@ -1,10 +1,11 @@
 """Runs of a joint as channels, or the distance of the hand from its goal, with levels."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from robo_genesis.core.channels import Channel, Level, Replay, Runs
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import with_unit
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.joints import JointMap
@@ -27,7 +28,7 @@ def runs(
         ValueError: the robot has no such joint; as `Runs`.
     """
     joint, of_joint = replay.follows, channels(traces, joints, replay.follows)
-    reaching = distances(traces, links, replay) if replay.goal else []
+    reaching = distances(traces, links, replay.goal, replay.hand) if replay.goal else []
     return Runs(
         replay,
         subject="the hand" if reaching else joint,
@@ -62,9 +63,11 @@ def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[
     ]
 
 
-def distances(traces: Mapping[str, Trace], links: Sequence[str], replay: Replay) -> list[Channel]:
+def distances(
+    traces: Mapping[str, Trace], links: Sequence[str],
+    goal: Callable[[str, int], FloatArray], hand: str,
+) -> list[Channel]:  # fmt: skip
     """Return the distance of the hand from its goal, which each state has."""
-    goal, hand = replay.goal, replay.hand
     if hand not in links:
         raise ValueError(f"The record has no link {hand!r} as hand. Links: {', '.join(links)}.")
     found = {

@@ -8,10 +8,8 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, assemble
-from robo_genesis.sim.arm.joints import RobotModel
-from robo_genesis.sim.mujoco.kinematics import bare_robot, bare_spec, compiled, with_data
+from robo_genesis.sim.mujoco.kinematics import bare_spec, compiled, with_data
 
 VERSION = version("mujoco")
 
@@ -124,25 +122,3 @@ def each_step(
 def _kept(values: FloatArray) -> FloatArray:
     """Return a copy in the precision of the course's traces."""
     return np.array(values, dtype=np.float32)
-
-
-def at_rest(q: FloatArray, of: RobotModel = FRANKA) -> tuple[FloatArray, FloatArray]:
-    """Return the mass matrix's diagonal (d,) and the effort (d,) that holds posture `q` (d,).
-
-    Diagonal: [kg·m² or kg]; effort: [N·m or N]. Neither contains a term of the integrator.
-    """
-    import mujoco
-
-    model, data, q_at, dof_at = bare_robot(of=of)
-    data.qpos[q_at], data.qvel[:] = q, 0.0
-    mujoco.mj_forward(model, data)
-    columns = np.zeros((model.nv, model.nv))
-    for k, unit in enumerate(np.eye(model.nv)):
-        mujoco.mj_mulM(model, data, columns[k], unit)
-    return columns.diagonal()[dof_at].copy(), data.qfrc_bias[dof_at].copy()
-
-
-def passive_damping(of: RobotModel = FRANKA) -> FloatArray:
-    """Return the joint damping (d,) of the model [N·m·s/rad or N·s/m], without gains."""
-    model, _, _, dof_at = bare_robot(of=of)
-    return np.array(model.dof_damping[dof_at])

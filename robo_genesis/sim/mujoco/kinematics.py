@@ -154,17 +154,29 @@ def jacobian(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:
     return np.asarray(rows[:, dof_at])
 
 
-def gravity_effort(q: FloatArray, load: float = 0.0, of: RobotModel = FRANKA) -> FloatArray:
-    """Return the effort (d,) [N·m or N] that holds posture `q` (d,) against gravity at rest.
+def at_rest(
+    q: FloatArray, load: float = 0.0, of: RobotModel = FRANKA
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return inertia, gravity and damping of each joint at posture `q` (d,), without integrator.
 
     Args:
         q: (d,) positions [rad or m].
         load: mass at the hand's centre of mass, beside its own [kg].
         of: the robot.
+
+    Returns:
+        The diagonal (d,) of the mass matrix [kg·m² or kg], the effort (d,) that holds the posture
+        [N·m or N], and the passive damping (d,) of the model [N·m·s/rad or N·s/m].
     """
     import mujoco
 
     model, data, q_at, dof_at = bare_robot(load, of)
     data.qpos[q_at], data.qvel[:] = q, 0.0
     mujoco.mj_forward(model, data)
-    return np.array(data.qfrc_bias[dof_at])
+    diagonal = data.M[model.M_rowadr + model.M_rownnz - 1]
+    return diagonal[dof_at], data.qfrc_bias[dof_at], model.dof_damping[dof_at]
+
+
+def gravity_effort(q: FloatArray, load: float = 0.0, of: RobotModel = FRANKA) -> FloatArray:
+    """Return the effort (d,) [N·m or N] of `at_rest`."""
+    return at_rest(q, load, of)[1]
