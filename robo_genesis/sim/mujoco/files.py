@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import suppress
+from os.path import dirname, join, relpath
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +23,13 @@ def note_models(note: Callable[[str], None], text: Path) -> None:
             model = next(iter((*given, *named.values())))
             if from_text:
                 text.write_bytes(model if isinstance(model, bytes) else model.encode())
+            file = str(text if from_text else model)
             with suppress(mujoco.FatalError):  # which the loader reports
-                for path in mujoco.mju_getXMLDependencies(str(text if from_text else model)):
-                    note(path)
+                paths, top = mujoco.mju_getXMLDependencies(file), dirname(file)
+                # Names in an included file are relative to that file, but listed below the first.
+                for folder in {top, *(dirname(path) for path in paths if path.endswith(".xml"))}:
+                    for path in paths:
+                        note(join(folder, relpath(path, top or ".")))
             return load(*given, **named)
 
         return staticmethod(noted)

@@ -12,6 +12,7 @@ import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
 from robo_genesis.core.project import ROOT, engine_cache_environment, engine_cache_folder
+from robo_genesis.pipeline.pages import opened
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, in_order
 from robo_genesis.pipeline.pages.folder import PageRefused, read_record
@@ -359,7 +360,20 @@ def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp
     failure = results["refused"].failure
     names = failure.message.partition("): ")[2].partition(". It would not")[0]
     assert failure.error == "FileNotKeyed"
-    assert all(any(path.endswith(f"/{name}") for path in names.split(", ")) for name in READ)
+    assert [n for n in READ if not any(p.endswith(f"/{n}") for p in names.split(", "))] == []
+
+
+def test_of_the_files_in_folders_of_the_system_a_model_is_refused(tmp_path, monkeypatch):
+    share, runtime = tmp_path / "share", tmp_path / "runtime"
+    monkeypatch.setattr(opened, "SYSTEM", (str(share),))
+    monkeypatch.setenv(opened.RUNTIME, str(runtime))
+    for folder in (share, runtime):
+        folder.mkdir()
+        for name in ("arm.urdf", "TOOL.STL", "table.csv"):
+            (folder / name).touch()
+    noted = [*share.iterdir(), *runtime.iterdir()]
+    (runtime / "opened").write_text("\0".join(map(str, noted)))
+    assert opened.unkeyed_files([]) == [str(share / name) for name in ("TOOL.STL", "arm.urdf")]
 
 
 def test_ctrl_c_while_a_worker_starts_kills_it(tmp_path, monkeypatch):
