@@ -7,7 +7,7 @@ functions. The names are loaded when they are first used.
 
 from typing import Any
 
-__all__ = ["PLAIN_LOG", "PRECISION", "SEED", "backend", "open_page", "table"]
+__all__ = ["PLAIN_LOG", "PRECISION", "SEED", "backend", "model_file", "open_page", "table"]
 
 
 def __getattr__(name: str) -> Any:
@@ -19,4 +19,4 @@ def __getattr__(name: str) -> Any:
 
     if name == "PLAIN_LOG":
         return session.plain_log()
-    return getattr(session if name in ("PRECISION", "SEED") else page, name)
+    return getattr(session if name in ("PRECISION", "SEED", "model_file") else page, name)

@@ -1,8 +1,7 @@
-"""Runs of the Franka without Genesis, by the engine's rule of stepping and MuJoCo's mechanics."""
+"""Runs of robots without Genesis, by the engine's rule of stepping and MuJoCo's mechanics."""
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
 
 import mujoco
 import numpy as np
@@ -10,11 +9,9 @@ import numpy as np
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer
-from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, assemble
 from robo_genesis.sim.arm.laws import control_law
-from robo_genesis.sim.mujoco import joints as mujoco_joints
-from robo_genesis.sim.mujoco.kinematics import link_poses
+from robo_genesis.sim.mujoco.kinematics import bare_robot, link_poses
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 
@@ -29,16 +26,6 @@ def answer(position, q_start, iterations) -> IkAnswer:
     return IkAnswer(np.float32([*q, *q_start[7:]]), np.float32(error))
 
 
-@cache
-def model(timestep: float, load: float) -> mujoco.MjModel:
-    from robo_genesis.lessons.l04.spec import G1
-
-    of = mujoco_joints.load(G1, timestep, "Euler")
-    of.body("hand").mass += load
-    mujoco.mj_setConst(of, mujoco.MjData(of))
-    return of
-
-
 def driven(case: ControlCase, links: Sequence[str], load: float = 0.0) -> Trace:
     """Return a run by semi-implicit Euler with (M + h D) a = f, stored in float32 like others.
 
@@ -47,11 +34,10 @@ def driven(case: ControlCase, links: Sequence[str], load: float = 0.0) -> Trace:
         links: of the trace.
         load: what is added to the mass of the hand [kg].
     """
-    of, commands = (
-        model(case.dt, load),
-        np.broadcast_to(case.q_target, (case.steps, len(JOINT_NAMES))),
-    )
-    data, h, dofs = mujoco.MjData(of), case.dt / case.substeps, len(JOINT_NAMES)
+    dofs, h = len(case.q_start), case.dt / case.substeps
+    commands = np.broadcast_to(case.q_target, (case.steps, dofs))
+    of, *_ = bare_robot(load, case.model)
+    data = mujoco.MjData(of)
     damping, mass = of.dof_damping, np.zeros((dofs, dofs))
     q, qd, force = np.array(case.q_start), np.zeros(dofs), np.zeros(dofs)
     at = [q]
@@ -75,7 +61,7 @@ def driven(case: ControlCase, links: Sequence[str], load: float = 0.0) -> Trace:
 def assembled(case: ControlCase, links: Sequence[str], at, efforts, targets) -> Trace:
     """Return a trace in float32 of positions (n+1, d), with velocity and forces of each."""
     q = np.float32(at)
-    readings = zip(q, *link_poses(q, links), *zip(*efforts, strict=True), strict=True)
+    readings = zip(q, *link_poses(q, links, case.model), *zip(*efforts, strict=True), strict=True)
     kept = [tuple(map(np.float32, reading)) for reading in readings]
     return assemble(case, kept, targets, np.float32(case.effort_limit))
 
@@ -89,6 +75,6 @@ def assigned(
     """
     path = np.linspace(case.q_start, case.q_target, case.steps + 1)
     path = path if postures is None else np.vstack([case.q_start, postures])
-    efforts = np.zeros((len(path), 3, len(JOINT_NAMES)))
+    efforts = np.zeros((len(path), 3, len(case.q_start)))
     efforts[:, 2] = before.internal_force[-1]
     return assembled(case, links, path, efforts, path[1:])

@@ -60,6 +60,7 @@ class Replay:
     | `axes` | of the world, along which a link is followed |
     | `goal` | by case and number of the state, the point (3,) that the hand is to reach [m]; the |
     | | curves then show its distance |
+    | `hand` | the link of the hand |
     | `band` | half width of the settling band around the target of a joint |
     | `quality` | a sentence on one case, with its metrics in braces: `Rise time {rise_time}.` |
     | `rest` | height of a body at rest [m]; curves then show its clearance, close to zero |
@@ -77,6 +78,7 @@ class Replay:
     thing: str
     axes: tuple[str, ...] = ("z",)
     goal: Callable[[str, int], FloatArray] | None = None
+    hand: str = "hand"
     band: float = 0.0
     quality: str = ""
     rest: float | None = None

@@ -49,14 +49,15 @@ def inputs(
 
 def case_inputs(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Return every field of every case, which are dataclasses, as JSON values."""
-    return {
-        name: {key: json_value(value) for key, value in asdict(case).items()}
-        for name, case in cases.items()
-    }
+    return {name: json_value(asdict(case)) for name, case in cases.items()}
 
 
 def json_value(value: Any) -> Any:
-    """Return an array or a number of NumPy as Python's lists and numbers, other values as given."""
+    """Return arrays, numbers of NumPy and tuples as Python's lists and numbers, others as given."""
+    if isinstance(value, dict):
+        return {key: json_value(each) for key, each in value.items()}
+    if isinstance(value, tuple):
+        return [json_value(each) for each in value]
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 

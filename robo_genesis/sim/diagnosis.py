@@ -97,7 +97,7 @@ def backend(bench: Bench) -> str:
 
 def model_file(bench: Bench) -> str:
     """The robot's model is where the engine looks for it."""
-    session.asset(franka.FRANKA_MJCF)
+    session.model_file(franka.FRANKA_MJCF)
     return franka.FRANKA_MJCF
 
 

@@ -205,15 +205,28 @@ def import_engine() -> Any:
         raise EngineError(f"Genesis cannot be imported: {error}. {advice}") from error
 
 
-def asset(name: str) -> Path:
-    """Return the path of a file of the engine, which is not imported, or raise EngineError."""
-    found = find_spec("genesis")
-    path = Path(found.origin if found and found.origin else "genesis").parent / "assets" / name
-    if not path.is_file():
-        engine = f"{project.ENGINE}=={project.engine_pin()}"
-        again = project.install_command(f"--force-reinstall --no-deps {engine}")
-        raise EngineError(f"{engine} has no file genesis/assets/{name}. Run {again}")
-    return path
+def model_file(name: str) -> str:
+    """Return the path of a robot's model, for the engine and for MuJoCo, on each machine.
+
+    Args:
+        name: `lessons/l07/arm.xml` for a file in the package's folder of a lesson; a file of the
+            engine by its path below the engine's assets.
+
+    Raises:
+        EngineError: there is no such file, or the name leads elsewhere.
+    """
+    place, owner = Path(__file__).parents[1], "The package robo_genesis"
+    advice = f"Put models and their meshes into {place / 'lessons'}/lNN and name them lessons/lNN/…"
+    if not name.startswith("lessons/"):
+        found = find_spec("genesis")
+        place = Path(found.origin if found and found.origin else "genesis").parent / "assets"
+        owner = f"{project.ENGINE}=={project.engine_pin()}"
+        again = project.install_command(f"--force-reinstall --no-deps {owner}")
+        advice += f", or, if it is one of the engine, run {again}"
+    path = place / name
+    if ".." in path.parts or not path.is_relative_to(place) or not path.is_file():
+        raise EngineError(f"{owner} has no model {name!r}. {advice}.")
+    return str(path)
 
 
 def require_libraries() -> ctypes.CDLL:

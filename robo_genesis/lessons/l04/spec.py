@@ -14,7 +14,7 @@ from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import DT, FloatArray, read_only
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase
 
 MEASURES = False
@@ -104,9 +104,7 @@ def parameters() -> dict[str, Any]:
     """
     return inputs(
         CASES,
-        joints=list(JOINT_NAMES),
         stepped_joint=STEPPED_JOINT,
-        model=FRANKA_MJCF,
         counted=list(EXPECTED_MODEL),
         rise_fraction=RISE_FRACTION,
         settling_band_rad=SETTLING_BAND,

@@ -17,7 +17,7 @@ from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, run_case
 from robo_genesis.sim.arm.joints import JointMap
-from robo_genesis.sim.mujoco import joints as mujoco_joints
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 """Genesis, and MuJoCo by its integrator."""
@@ -77,12 +77,13 @@ def read_gravity(
 
 def by_model(traces: Mapping[str, Trace]) -> dict[str, float]:
     """Return every value of `GROUP` by the model in MuJoCo, for the cases that have a trace."""
-    inertia, gravity = (float(of[spec.ENTRY]) for of in mujoco_joints.at_rest(spec.G1.q_start))
-    damping, h = float(mujoco_joints.passive_damping()[spec.ENTRY]), spec.G1.dt / spec.G1.substeps
+    start, h = mujoco_kinematics.at_rest(spec.G1.q_start), spec.G1.dt / spec.G1.substeps
+    inertia, gravity, damping = (float(of[spec.ENTRY]) for of in start)
     found = dict(zip(AT_START, (damping, inertia, gravity), strict=True))
     found |= {f"mass_KV_{kv:g}": inertia + h * (damping + kv) for kv in COMPARED_KV}
     ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES if name in traces}
-    return found | {n: float(mujoco_joints.at_rest(q)[1][spec.ENTRY]) for n, q in ends.items()}
+    efforts = {name: mujoco_kinematics.gravity_effort(q) for name, q in ends.items()}
+    return found | {name: float(of[spec.ENTRY]) for name, of in efforts.items()}
 
 
 def implicit_term(run: Experiment, kv: float) -> float:
@@ -98,8 +99,7 @@ def without_term(run: Experiment, kv: float) -> float:
 def damping_ratio(case: str) -> FloatArray:
     """Return h (KV + d) / I of each joint (d,) at the start, by the model in MuJoCo."""
     settings = study_spec.COMPARED[case]
-    inertia, _ = mujoco_joints.at_rest(settings.q_start)
-    damping = mujoco_joints.passive_damping()
+    inertia, _, damping = mujoco_kinematics.at_rest(settings.q_start)
     return np.asarray(settings.dt / settings.substeps * (settings.kv + damping) / inertia)
 
 

@@ -178,10 +178,9 @@ BEYOND_NEAREST = 0.01
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    robot = {"joints": list(franka.JOINT_NAMES), "model": franka.FRANKA_MJCF}
     asked = case_inputs(PRECISE | LOW) | {"stretched": NEARLY_STRETCHED.tolist()}
     counted = list(EXPECTED_MODEL)
-    return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS, **robot)
+    return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS)
 
 
 def lecture_parameters() -> dict[str, Any]:

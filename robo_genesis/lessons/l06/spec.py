@@ -157,8 +157,7 @@ HELD = 0.05
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
     mixed = {"targets": MIXED.tolist(), "settings": asdict(ONE_START)}
-    robot = {"joints": list(franka.JOINT_NAMES), "model": franka.FRANKA_MJCF}
-    further = robot | {"order": list(ORDER), "hand_mass": HAND_MASS, "mixed": mixed}
+    further = {"order": list(ORDER), "hand_mass": HAND_MASS, "mixed": mixed}
     further |= {"sweep": {"factors": list(FACTORS), "loads": list(LOADS)}}
     further |= {
         "restarted": RESTARTED.tolist(),

@@ -8,8 +8,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, ROOT
+from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, PACKAGES, ROOT
 from robo_genesis.sim.compiler import spare_repeated_work
+from robo_genesis.sim.mujoco.files import note_models
 
 SYSTEM = (
     "/bin", "/dev", "/etc", "/lib", "/lib64", "/opt", "/proc", "/run", "/sys", "/usr", "/var",
@@ -18,6 +19,9 @@ SYSTEM = (
 
 FONTS = (".ttf", ".otf", ".ttc", ".afm")
 """Matplotlib lists all fonts of the machine; the figures use its own."""
+
+MODEL = re.compile(r"\.(xml|mjcf|urdf|xacro|mjb|obj|mtl|stl|dae|glb|gltf|ply|msh|usd\w?)$", re.I)
+"""The end of the name of a robot's model or mesh."""
 
 RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")
@@ -28,7 +32,7 @@ def start() -> None:
     """Prepare a kernel, and note from now on each file that its Python opens for reading.
 
     What the process itself made or emptied is not noted. What compiled code or a child process
-    opens is not seen.
+    opens is not seen, except the models that MuJoCo reads, also for the engine.
     """
     # ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run
     # last: one that is registered right after them runs right before them, after the engine's, and
@@ -45,6 +49,9 @@ def start() -> None:
             seen.add(path)
             os.write(notes, b"" if flags & OWN else os.fsencode(path) + b"\0")
 
+    note_models(
+        lambda path: note("open", (path, None, os.O_RDONLY)), Path(os.environ[RUNTIME], "model.xml")
+    )
     sys.addaudithook(note)
 
 
@@ -57,19 +64,22 @@ def unkeyed_files(keyed: Iterable[Path]) -> list[str]:
     """Return the noted files on which no key depends, and which the page did not make itself.
 
     The innermost known folder of a file decides: files of the system, of Python, of packages and of
-    the engine's caches are accepted, others in the checkout or at home are not.
+    the engine's caches are accepted, others in the checkout or at home are not, nor are models
+    of robots in folders of the system.
 
     Args:
         keyed: the files of the checkout that the page's fingerprint covers.
     """
-    accepted = [*SYSTEM, sys.prefix, sys.base_prefix, str(CACHE / "derived")]
+    accepted = [*SYSTEM, sys.prefix, PACKAGES, sys.base_prefix, str(CACHE / "derived")]
     accepted += map(str, ROOT.glob("*.egg-info"))  # which lists the package for importlib.metadata
     accepted += filter(None, map(os.environ.get, (RUNTIME, OUTPUTS_DIR, *CACHE_FOLDERS)))
     places = {form: True for each in accepted for form in (each, os.path.realpath(each))}
     places |= {"": False, str(ROOT): False, str(Path.home()): False}
+    system = {*SYSTEM, *map(os.path.realpath, SYSTEM)}
 
     def is_accepted(path: str) -> bool:
-        return places[max((each for each in places if path.startswith(f"{each}/")), key=len)]
+        place = max((each for each in places if path.startswith(f"{each}/")), key=len)
+        return places[place] and not (place in system and MODEL.search(path))
 
     names = os.fsdecode(_notes().read_bytes()).split("\0")
     found = {BYTECODE.sub(r"\1.py", name) for name in names if not name.endswith(FONTS)}

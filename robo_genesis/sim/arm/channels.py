@@ -28,7 +28,7 @@ def runs(
         ValueError: the robot has no such joint; as `Runs`.
     """
     joint, of_joint = replay.follows, channels(traces, joints, replay.follows)
-    reaching = distances(traces, links, replay.goal) if replay.goal else []
+    reaching = distances(traces, links, replay.goal, replay.hand) if replay.goal else []
     return Runs(
         replay,
         subject="the hand" if reaching else joint,
@@ -64,12 +64,15 @@ def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[
 
 
 def distances(
-    traces: Mapping[str, Trace], links: Sequence[str], goal: Callable[[str, int], FloatArray]
-) -> list[Channel]:
+    traces: Mapping[str, Trace], links: Sequence[str],
+    goal: Callable[[str, int], FloatArray], hand: str,
+) -> list[Channel]:  # fmt: skip
     """Return the distance of the hand from its goal, which each state has."""
+    if hand not in links:
+        raise ValueError(f"The record has no link {hand!r} as hand. Links: {', '.join(links)}.")
     found = {
         case: 1000 * np.linalg.norm(
-            trace.link_pos[:, links.index("hand")] - [goal(case, k) for k in range(len(trace.t))],
+            trace.link_pos[:, links.index(hand)] - [goal(case, k) for k in range(len(trace.t))],
             axis=1,
         )
         for case, trace in traces.items()

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.joints import JointMap, require_whole, to_numpy
 
 
 def let_go(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> list[int]:
@@ -13,7 +13,11 @@ def let_go(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> list[int]
 
     The engine's getters of forces and masses return values of the latest step, so without a step
     they would belong to an earlier posture. Returns the local DOFs, in the order of the map.
+
+    Raises:
+        ModelError: the robot has further DOFs, such as those of a free base: these would move.
     """
+    require_whole(robot, joints)
     dofs: list[int] = joints.dofs_idx_local.tolist()
     scene.reset()
     robot.set_dofs_position(np.array(q, dtype=np.float64), dofs, zero_velocity=True)

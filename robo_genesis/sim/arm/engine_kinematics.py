@@ -7,12 +7,17 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.joints import JointMap, to_numpy
-from robo_genesis.sim.arm.kinematics import ARM, accepted, distances, fingertip, hand_pose
+from robo_genesis.sim.arm.franka import FRANKA
+from robo_genesis.sim.arm.joints import (
+    JointMap,
+    ModelError,
+    RobotModel,
+    require_whole,
+    to_numpy,
+)
+from robo_genesis.sim.arm.kinematics import Pose, accepted, distances, hand_pose, rotate
 
-END_EFFECTOR = "hand"
-MOVED = JOINT_NAMES[:ARM]  # The joints of the Franka that the solver may move
+END_EFFECTOR = FRANKA.hand
 
 
 class KinematicsError(ValueError):
@@ -62,7 +67,7 @@ class IkAnswer:
 
 def solve_ik(
     robot: Any, joints: JointMap, position: FloatArray, quat: FloatArray, q_start: FloatArray,
-    settings: IkSettings, envs: Sequence[int] | None = None,
+    settings: IkSettings, envs: Sequence[int] | None = None, of: RobotModel = FRANKA,
 ) -> IkAnswer:  # fmt: skip
     """Ask the engine for joint positions that bring the hand to a pose. Nothing is commanded.
 
@@ -77,22 +82,33 @@ def solve_ik(
         q_start: (…, d) first start [rad or m].
         settings: of the solver.
         envs: numbers of the environments that are asked, all by default.
+        of: the robot, whose fingers the solver does not move.
 
     Raises:
         KinematicsError: an array has the wrong shape, or a value that is not finite.
+        ModelError: the joints are those of another robot, or its base moves freely.
     """
+    require_whole(robot, joints)
+    if {*joints.names} != {*of.joints} or not of.hand:
+        raise ModelError(
+            f"The map has the joints {', '.join(joints.names)}. {of.file} has hand {of.hand!r} and "
+            f"{', '.join(of.joints)}. Give the RobotModel of this robot, with a hand, as `of`."
+        )
     d, count = len(joints.names), robot.scene.n_envs
     rows = () if count == 0 else (count if envs is None else len(envs),)
     require_finite("position", position, (*rows, 3))
     require_finite("quat", quat, (*rows, 4))
     require_finite("q_start", q_start, (*rows, d))
+    in_model_order = np.empty(np.shape(q_start), dtype=np.float32)
+    in_model_order[..., joints.qs_idx_local] = q_start
     chosen = {} if envs is None else {"envs_idx": list(envs)}
-    dofs = [int(joints.dofs_idx_local[joints.entry(name)]) for name in MOVED]
+    moved = of.joints[: of.arm]
+    dofs = [int(joints.dofs_idx_local[joints.entry(name)]) for name in moved]
     q, error = robot.inverse_kinematics(
-        link=robot.get_link(END_EFFECTOR),
+        link=robot.get_link(of.hand),
         pos=np.array(position, dtype=np.float32),
         quat=np.array(quat, dtype=np.float32),
-        init_qpos=in_model_order(joints, q_start),
+        init_qpos=in_model_order,
         respect_joint_limit=True,
         max_samples=settings.samples,
         max_solver_iters=settings.iterations,
@@ -107,20 +123,35 @@ def solve_ik(
     return IkAnswer(to_numpy(q)[..., joints.qs_idx_local], to_numpy(error))
 
 
-def accepted_command(answer: IkAnswer, settings: IkSettings, q_start: FloatArray) -> FloatArray:
+def tip_height(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:
+    """Return the height (…) of the ends of a robot's fingers at joint positions (…, d) [m]."""
+    if of == FRANKA:
+        pose = hand_pose(q)
+    else:
+        from robo_genesis.sim.mujoco.kinematics import link_poses
+
+        rows = link_poses(np.reshape(q, (-1, np.shape(q)[-1])), [of.hand], of)
+        pose = Pose(*(part.reshape(*np.shape(q)[:-1], -1) for part in rows))
+    return (pose.position + rotate(pose.quat, np.array([0.0, 0.0, of.tip])))[..., 2]
+
+
+def accepted_command(
+    answer: IkAnswer, settings: IkSettings, q_start: FloatArray, of: RobotModel = FRANKA
+) -> FloatArray:
     """Return the joint positions (…, d) that accepted answers command; the fingers stay.
 
     Args:
         answer: of one question, or with a row for each.
         settings: of the solver, with the tolerances of both residuals and the least clearance.
         q_start: (…, d) joint positions with those of the fingers [rad or m].
+        of: the robot.
 
     Raises:
         NotAccepted: an answer is not finite, a residual is beyond its tolerance, or the fingertips
             would be too low; the message names the rows, and gives the largest residuals and the
             lowest height.
     """
-    height = fingertip(hand_pose(answer.q))[..., 2]
+    height = tip_height(answer.q, of)
     near = accepted(answer.q, answer.error, *settings.tolerances)
     refused = ~(near & (height >= settings.clearance))
     if refused.any():
@@ -135,7 +166,7 @@ def accepted_command(answer: IkAnswer, settings: IkSettings, q_start: FloatArray
             "start of the solver."
         )
     q = answer.q.astype(np.float64)
-    q[..., ARM:] = q_start[..., ARM:]
+    q[..., of.arm :] = q_start[..., of.arm :]
     return q
 
 
@@ -144,13 +175,15 @@ def link_poses_at(
 ) -> tuple[FloatArray, FloatArray]:
     """Return where the engine puts links at joint positions, without a step.
 
+    Other joints, such as a base that moves freely, stay where they are.
+
     The state is assigned, read and assigned back. That also ends contacts and velocities: reset
     before the next run. The engine's own `forward_kinematics` is missing in newer versions, and in
     older ones it fails before the first call of the solver.
 
     Args:
         robot: rigid entity of a built scene, without parallel environments.
-        joints: all its joints.
+        joints: those of `q`.
         links: names of the links.
         q: (d,) joint positions [rad or m].
 
@@ -162,27 +195,20 @@ def link_poses_at(
     """
     require_finite("q", q, (len(joints.names),))
     before = robot.get_qpos()
-    robot.set_qpos(in_model_order(joints, q), zero_velocity=True)
+    robot.set_qpos(np.array(q, dtype=np.float32), joints.qs_idx_local.tolist(), zero_velocity=True)
     at = [robot.get_link(name).idx_local for name in links]
     poses = to_numpy(robot.get_links_pos())[at], to_numpy(robot.get_links_quat())[at]
     robot.set_qpos(before, zero_velocity=True)
     return poses
 
 
-def jacobian(robot: Any, joints: JointMap) -> FloatArray:
-    """Return the Jacobian (6, d) of the hand's origin in the state now.
+def jacobian(robot: Any, joints: JointMap, link: str = END_EFFECTOR) -> FloatArray:
+    """Return the Jacobian (6, d) of the origin of a link, by default the hand, in the state now.
 
     The first three rows are its velocity, the others its angular velocity, in the world's axes.
     """
-    found = to_numpy(robot.get_jacobian(link=robot.get_link(END_EFFECTOR)))
+    found = to_numpy(robot.get_jacobian(link=robot.get_link(link)))
     return np.asarray(found[:, joints.dofs_idx_local])
-
-
-def in_model_order(joints: JointMap, q: FloatArray) -> FloatArray:
-    """Return joint positions (…, d) in the order of the model, for one entity with d qpos."""
-    ordered = np.empty(np.shape(q), dtype=np.float32)
-    ordered[..., joints.qs_idx_local] = q
-    return ordered
 
 
 def require_finite(name: str, values: FloatArray, shape: tuple[int, ...]) -> None:

@@ -1,12 +1,15 @@
 """Constants of the Franka Panda of the course, with units."""
 
 from robo_genesis.core.scene import FloatArray, read_only
+from robo_genesis.sim.arm.joints import RobotModel
 
 FRANKA_MJCF = "xml/franka_emika_panda/panda.xml"
 """The Franka Panda that Genesis bundles, relative to the engine's asset folder."""
 
 JOINT_NAMES = (*(f"joint{number}" for number in range(1, 8)), "finger_joint1", "finger_joint2")
 """The nine one-DOF joints, in the order of every array of the course."""
+
+FRANKA = RobotModel(FRANKA_MJCF, JOINT_NAMES, hand="hand", fingers=2, tip=0.1123)
 
 CREDIT = (
     "Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from franka_description, "

@@ -1,4 +1,4 @@
-"""The map from joint names to entity-local DOFs, with types, units and limits."""
+"""A robot's model, and the map from its joints to entity-local DOFs, with types and limits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +14,37 @@ EFFORT_UNIT = {"REVOLUTE": "N·m", "PRISMATIC": "N"}
 
 class JointError(LookupError):
     """A joint does not exist, or is not one scalar DOF."""
+
+
+class ModelError(ValueError):
+    """A robot is not as its `RobotModel` says, or not one that a rule knows; it says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotModel:
+    """What the course has to know of a robot whose driven joints have one DOF each.
+
+    | field | meaning |
+    |---|---|
+    | `file` | its MJCF or URDF, as in `session.model_file` |
+    | `joints` | all driven joints, in the order of every array |
+    | `hand` | the link that reaches targets and carries loads, if it has one |
+    | `fingers` | how many of the last joints are fingers, which reach no target |
+    | `tip` | from the hand's origin to the ends of the fingers, along its z axis [m] |
+    | `free_base` | whether its base moves freely, as that of a quadruped |
+    """
+
+    file: str
+    joints: tuple[str, ...]
+    hand: str = ""
+    fingers: int = 0
+    tip: float = 0.0
+    free_base: bool = False
+
+    @property
+    def arm(self) -> int:
+        """The number of joints that move the hand."""
+        return len(self.joints) - self.fingers
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +149,16 @@ def one_dof_joint(robot: Any, name: str) -> Any:
             "of this course take joints with one of each. Control it through its own DOF slice."
         )
     return joint
+
+
+def require_whole(robot: Any, joints: JointMap) -> None:
+    """Raise ModelError unless a map has all DOFs of a robot, so that its base is fixed."""
+    if robot.n_dofs != len(joints.names):
+        raise ModelError(
+            f"The robot has {robot.n_dofs} DOFs, the map {len(joints.names)}, those of "
+            f"{', '.join(joints.names)}. Expected is an arm with a fixed base and all of its "
+            "joints; a URDF has a free base unless it is added with fixed=True."
+        )
 
 
 def to_numpy(values: Any) -> FloatArray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import LINK_PARENTS
+from robo_genesis.sim.arm.franka import FRANKA, LINK_PARENTS
 
 HALF = np.sqrt(0.5)
 
@@ -32,7 +32,7 @@ CHAIN = (
 
 ARM = len(CHAIN) - 1  # Number of joints of the arm
 
-TIP = 0.1123  # From the hand's origin to the ends of the fingers, along its z axis [m]
+TIP = FRANKA.tip  # From the hand's origin to the ends of the fingers, along its z axis [m]
 
 HAND = LINK_PARENTS[-1]
 """Index of the hand among the links of the arrays: the parent of both fingers."""
@@ -99,8 +99,16 @@ def link_poses(q: FloatArray) -> Pose:
 
     Returns:
         Positions (…, 8, 3) [m] and orientations (…, 8, 4).
+
+    Raises:
+        ValueError: there are fewer than seven, so these are not those of the Franka.
     """
     q = np.asarray(q, dtype=float)
+    if q.shape[-1] < ARM:
+        raise ValueError(
+            f"{q.shape[-1]} joint positions given, expected {ARM} of the Franka or more. For "
+            "another arm call sim.mujoco.kinematics.link_poses with its RobotModel."
+        )
     pose = Pose(np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
     positions, quats = [], []
     for k, (_, position, quat) in enumerate(CHAIN):

@@ -1,17 +1,16 @@
-"""What the arrays of a position-controlled Franka must have in common, by the model's mechanics.
+"""What the arrays of a position-controlled robot have in common, by the mechanics of its model.
 
 The poses of the links are a function of the positions, the control force is the control law, and
 the internal force is the net force at the state before the last solver step. MuJoCo computes poses,
 masses and gravity of the same model file in float64. What computes them is imported where it is
-used: a page measures without it.
+used: a page measures without it. Forces grow with KP, and so do their tolerances from `STIFF` on.
 
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
 | `LIMIT_TOLERANCE` of a start | 5e-8 rad | 1e-6 rad |
 | `LAW`, control force: float32 in KP times a position error | 4e-4 N·m | 4e-3 N·m |
 | `POSE`, link positions and quaternions | 2.3e-7 m, 2.2e-7 | 2.5e-6 |
-| `NET_FORCE`, internal force of the arm | 9e-4 N·m | 1e-2 N·m |
-| `NET_FORCE`, of the fingers | 6e-3 N | 6e-2 N |
+| `NET_FORCE`, internal force of a joint, and of a finger | 9e-4 N·m, 6e-3 N | 1e-2, 6e-2 |
 | `STEPPED`, velocity before the last solver step | 2e-4 rad/s | 2e-3 rad/s |
 | `NEXT`, position and velocity after one outer step in MuJoCo | 2e-7 rad, 6e-5 rad/s | 2e-6, 6e-4 |
 | `MEAN`, mean velocity beyond those of the two samples | 0.07 rad/s | 0.7 rad/s |
@@ -25,23 +24,25 @@ import numpy as np
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import JOINT_TYPES, per_joint
+from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
-from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.arm.joints import JointMap, RobotModel
 from robo_genesis.sim.laws import ZERO, apart, broken, mean_speed, times, unit_quaternions
 
 MEASURES = False
 
 LAW, POSE, STEPPED, MEAN, NEXT = 4e-3, 2.5e-6, 2e-3, 0.7, (2e-6, 6e-4)
 
-NET_FORCE = per_joint(*(1e-2,) * 7, *(6e-2,) * 2)
-"""Tolerance of the internal force [N·m or N]. The fingers also have a force between them, which the
-rule does not know."""
+NET_FORCE = (1e-2, 6e-2)
+"""Tolerance of the internal force of a joint and of a finger [N·m or N]. Fingers also have a force
+between them, which the rule does not know."""
+
+STIFF = 1e4  # KP up to which rounding of a position stays within the tolerances [N·m/rad or N/m]
 
 
 def driven_run(
     trace: Trace, case: ControlCase, links: Sequence[str],
-    net_force: FloatArray = NET_FORCE, load: float = 0.0,
+    net_force: FloatArray | None = None, load: float = 0.0,
 ) -> Iterator[Finding]:  # fmt: skip
     """Yield what no run of `joint_control.run_case` has.
 
@@ -49,24 +50,38 @@ def driven_run(
         trace: the run.
         case: its settings; the target is one for all steps, (d,), or one for each, (n, d).
         links: names of the links of the trace.
-        net_force: (d,) tolerances of the internal force [N·m or N].
+        net_force: (d,) tolerances of the internal force [N·m or N], `NET_FORCE` by default.
         load: what is added to the mass of the hand [kg].
+
+    Raises:
+        ModelError: MuJoCo cannot read the robot's model, or its base moves freely.
     """
     yield from commanded(trace, case, links)
     yield from dynamics(trace, case, net_force, load)
 
 
 def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
-    """Yield what no run with a commanded target has, whatever engine steps; arguments as before."""
+    """Yield what no run with a commanded target has, whatever engine steps; arguments as before.
+
+    Of a robot whose base moves freely nothing is known about where its links are.
+    """
+    if trace.q.shape[1] != len(case.model.joints):
+        expected = f"{len(case.model.joints)}, those of {case.model.file}"
+        yield broken("labels", "number of DOFs", trace.q.shape[1], expected)
+        return
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
     yield from apart("start", "target [rad or m]", trace.target, case.q_target, 0.0)
     first = replace(case, q_target=np.atleast_2d(case.q_target)[0])
-    start = control_law(first, trace.q[0], trace.start_qd)
-    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, start, LAW)
+    start, room = control_law(first, trace.q[0], trace.start_qd), LAW * softer(case)
+    found = trace.start_control_force
+    yield from apart("law", "start_control_force [N·m or N]", found, start, room)
     law = control_law(case, trace.q[1:], trace.qd)
-    yield from apart("law", "control_force [N·m or N]", trace.control_force, law, LAW)
-    yield from poses(trace, links)
+    yield from apart("law", "control_force [N·m or N]", trace.control_force, law, room)
+    if case.model.free_base:
+        yield from unit_quaternions(trace.link_quat)
+    else:
+        yield from poses(trace, links, case.model)
 
 
 def assigned_path(
@@ -96,16 +111,15 @@ def assigned_postures(
     ends = ends or [trace.internal_force[0]]
     force = min(ends, key=lambda end: float(np.abs(trace.internal_force - end).max()))
     yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, force, 0.0)
-    yield from poses(trace, links)
+    yield from poses(trace, links, case.model)
 
 
 def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Finding]:
     """Yield a start that is not the case's, or not at rest, and an effort limit of another case."""
     yield from apart("start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE)
     yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, ZERO, 0.0)
-    yield from apart(
-        "law", "effort_limit [N·m or N]", trace.effort_limit, case.effort_limit, LIMIT_TOLERANCE
-    )
+    limit, name = case.effort_limit, "effort_limit [N·m or N]"
+    yield from apart("law", name, trace.effort_limit, limit, LIMIT_TOLERANCE * (1 + limit / 10))
 
 
 def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
@@ -114,36 +128,46 @@ def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
     return np.asarray(np.clip(effort, -case.effort_limit, case.effort_limit))
 
 
-def poses(trace: Trace, links: Sequence[str]) -> Iterator[Finding]:
+def softer(case: ControlCase) -> FloatArray:
+    """Return by how much tolerances of forces (d,) grow, because KP multiplies rounding."""
+    return np.maximum(1.0, case.kp / STIFF)
+
+
+def poses(trace: Trace, links: Sequence[str], of: RobotModel) -> Iterator[Finding]:
     """Yield a link that is not where the positions of the joints put it."""
     from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
     yield from unit_quaternions(trace.link_quat)
-    unknown = sorted(set(links) - mujoco_kinematics.link_names())
+    unknown = sorted(set(links) - mujoco_kinematics.link_names(of))
     if unknown:
         yield broken("pose", "list of links that the model does not have", unknown, [])
         return
-    position, orientation = mujoco_kinematics.link_poses(trace.q, links)
+    position, orientation = mujoco_kinematics.link_poses(trace.q, links, of)
     yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
-    yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
+    same = (orientation * trace.link_quat).sum(-1, keepdims=True) >= 0  # −q is the rotation q
+    expected = np.where(same, orientation, -orientation)
+    yield from apart("pose", "link_quat", trace.link_quat, expected, POSE)
 
 
-def model_joints(joints: JointMap) -> Iterator[Finding]:
+def model_joints(joints: JointMap, of: RobotModel = FRANKA) -> Iterator[Finding]:
     """Yield an index, a limit or a type that the joint of the model does not have."""
-    from robo_genesis.sim.mujoco.kinematics import bare_robot
+    from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
-    model, _, q_at, dof_at = bare_robot()
+    model, _, q_at, dof_at = mujoco_kinematics.bare_robot(of=of)
     own = [model.joint(name).id for name in joints.names]
-    lower, upper = model.jnt_range[own].T
+    limited = model.jnt_limited[own][:, None].astype(bool)
+    lower, upper = np.where(limited, model.jnt_range[own], (-np.inf, np.inf)).T
     expected = {"dofs_idx_local": dof_at, "qs_idx_local": q_at, "lower": lower, "upper": upper}
     for name, values in expected.items():
-        yield from apart("labels", name, getattr(joints, name), np.array(values), LIMIT_TOLERANCE)
-    if joints.types != JOINT_TYPES:
-        yield broken("labels", "list of types", joints.types, JOINT_TYPES)
+        found, valid = map(np.nan_to_num, (getattr(joints, name), np.array(values)))  # of ±∞
+        yield from apart("labels", name, found, valid, LIMIT_TOLERANCE)
+    types = tuple(mujoco_kinematics.TYPES[kind] for kind in model.jnt_type[own])
+    if joints.types != types:
+        yield broken("labels", "list of types", joints.types, types)
 
 
 def dynamics(
-    trace: Trace, case: ControlCase, net_force: FloatArray, load: float
+    trace: Trace, case: ControlCase, net_force: FloatArray | None = None, load: float = 0.0
 ) -> Iterator[Finding]:
     """Yield an internal force that is not the net force, and motion that the samples do not have.
 
@@ -153,6 +177,13 @@ def dynamics(
     position is q − h q̇, and the velocity is q̇ − h a with (M + h D) a = f, the internal force, where
     D are passive damping and KV. The net force there is control force − bias − passive damping.
     """
+    from robo_genesis.sim.mujoco.kinematics import unknown_forces
+
+    if others := unknown_forces(case.model):
+        yield broken("motion", f"list of forces of {case.model.file} without a law", others, [])
+        return
+    if net_force is None:
+        net_force = np.repeat(NET_FORCE, (case.model.arm, case.model.fingers)) * softer(case)
     h, n = case.dt / case.substeps, case.substeps
     speeds = np.vstack([trace.start_qd, trace.qd]).astype(np.float64)
     q = trace.q.astype(np.float64)
@@ -175,7 +206,7 @@ def last_step(
 
     from robo_genesis.sim.mujoco.kinematics import bare_robot
 
-    (model, data, q_at, dof_at), h = bare_robot(load), case.dt / case.substeps
+    (model, data, q_at, dof_at), h = bare_robot(load, case.model), case.dt / case.substeps
     damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
     states, impulses, speeds, bias = np.zeros((4, len(q_before), model.nv))
     states[:, q_at], speeds[:, dof_at] = q_before, trace.qd
@@ -216,4 +247,5 @@ def driven_in_mujoco(
     yield from apart("motion", "q [rad or m]", trace.q[1:], q, NEXT[0])
     yield from apart("motion", "qd [rad/s or m/s]", trace.qd, qd, NEXT[1])
     name = "internal_force [N·m or N]"
-    yield from apart("motion", name, trace.internal_force, force, NET_FORCE)
+    room = np.repeat(NET_FORCE, (case.model.arm, case.model.fingers))
+    yield from apart("motion", name, trace.internal_force, force, room)

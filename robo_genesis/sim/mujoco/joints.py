@@ -1,4 +1,4 @@
-"""Control cases in MuJoCo, on the model file that Genesis bundles, for comparison."""
+"""Control cases in MuJoCo, on the model file that Genesis reads, for comparison."""
 
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -8,9 +8,8 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, assemble
-from robo_genesis.sim.mujoco.kinematics import bare_robot, bare_spec, with_data
+from robo_genesis.sim.mujoco.kinematics import bare_spec, compiled, with_data
 
 VERSION = version("mujoco")
 
@@ -18,16 +17,16 @@ INTEGRATORS = ("implicitfast", "Euler")
 
 
 def load(case: ControlCase, timestep: float, integrator: str) -> Any:
-    """Compile the bundled Franka with one bounded PD actuator per joint and no others.
+    """Compile the robot of a case with one bounded PD actuator per joint and no others.
 
-    The shapes are left out: no links touch each other in the course's runs, and every link has its
-    inertia in the file.
+    Nothing touches anything: no links touch each other in the course's runs.
 
     An affine actuator's force is gain · ctrl + bias[1] · q + bias[2] · q̇, clipped to its range.
     With (KP, −KP, −KV) and the target as ctrl, it is the PD law of the course.
 
     Raises:
         CaseError: the integrator is unknown, or the time step does not divide the dt of the case.
+        ModelError: MuJoCo cannot read the model, or its base moves freely.
     """
     import mujoco
 
@@ -41,8 +40,8 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
     def padded(*values: float) -> FloatArray:  # MuJoCo has ten parameters
         return np.pad(np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values)))
 
-    spec = bare_spec()
-    for k, name in enumerate(JOINT_NAMES):
+    spec = bare_spec(case.model)
+    for k, name in enumerate(case.model.joints):
         spec.add_actuator(
             name=name,
             target=name,
@@ -56,7 +55,7 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
         )
     spec.option.timestep = timestep
     spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
-    return spec.compile()
+    return compiled(spec, case.model)
 
 
 def run_case(
@@ -76,7 +75,7 @@ def run_case(
     """
     import mujoco
 
-    model, data, q_at, dof_at = with_data(load(case, timestep, integrator))
+    model, data, q_at, dof_at = with_data(load(case, timestep, integrator), case.model)
     bodies = [model.body(name).id for name in links]
     data.qpos[q_at], data.ctrl[:] = case.q_start, case.q_target
 
@@ -105,7 +104,7 @@ def each_step(
     """
     import mujoco
 
-    model, data, q_at, dof_at = with_data(load(case, timestep, integrator))
+    model, data, q_at, dof_at = with_data(load(case, timestep, integrator), case.model)
     data.ctrl[:] = case.q_target
     q, qd, force = np.empty((3, *trace.qd.shape))
     speeds = np.vstack([trace.start_qd, trace.qd])
@@ -123,25 +122,3 @@ def each_step(
 def _kept(values: FloatArray) -> FloatArray:
     """Return a copy in the precision of the course's traces."""
     return np.array(values, dtype=np.float32)
-
-
-def at_rest(q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the mass matrix's diagonal (d,) and the effort (d,) that holds posture `q` (d,).
-
-    Diagonal: [kg·m² or kg]; effort: [N·m or N]. Neither contains a term of the integrator.
-    """
-    import mujoco
-
-    model, data, q_at, dof_at = bare_robot()
-    data.qpos[q_at], data.qvel[:] = q, 0.0
-    mujoco.mj_forward(model, data)
-    columns = np.zeros((model.nv, model.nv))
-    for k, unit in enumerate(np.eye(model.nv)):
-        mujoco.mj_mulM(model, data, columns[k], unit)
-    return columns.diagonal()[dof_at].copy(), data.qfrc_bias[dof_at].copy()
-
-
-def passive_damping() -> FloatArray:
-    """Return the joint damping (d,) of the model [N·m·s/rad or N·s/m], without gains."""
-    model, _, _, dof_at = bare_robot()
-    return np.array(model.dof_damping[dof_at])

@@ -1,6 +1,7 @@
-"""Link poses, Jacobian and gravity of the Franka in MuJoCo, on the model file that Genesis bundles.
+"""Link poses, Jacobian and gravity of an arm in MuJoCo, on the model file that Genesis reads.
 
-The model has neither shapes nor actuators, so nothing but its frames and masses decides a result.
+The model has neither actuators nor shapes, except where a shape decides the inertia of a link. So
+nothing but its frames and masses decides a result.
 """
 
 from collections.abc import Sequence
@@ -10,54 +11,124 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.franka import FRANKA
+from robo_genesis.sim.arm.joints import ModelError, RobotModel
 from robo_genesis.sim.arm.kinematics import Pose
-from robo_genesis.sim.session import asset
+from robo_genesis.sim.session import model_file
+
+TYPES = {2: "PRISMATIC", 3: "REVOLUTE"}
+"""Genesis' names of MuJoCo's types of joints, slide and hinge."""
+
+GRAVITY = (0.0, 0.0, -9.81)  # That of a scene of Genesis, whatever the model file says [m/s²]
 
 
 @cache
-def bare_robot(load: float = 0.0) -> tuple[Any, Any, list[int], list[int]]:
+def bare_robot(load: float = 0.0, of: RobotModel = FRANKA) -> tuple[Any, Any, list[int], list[int]]:
     """Return the model without shapes and actuators, its data, and the joints in qpos and qvel.
 
     `load` is added to the mass of the hand [kg]; its centre of mass and inertia remain. The data
     are made once, because that takes as long as a hundred states. Every use sets all of `qpos` and
     `qvel` that it reads.
     """
-    spec = bare_spec()
-    spec.body("hand").mass += load
-    return with_data(spec.compile())
-
-
-def bare_spec() -> Any:
-    """Return the specification of the model without shapes and actuators."""
     import mujoco
 
-    spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
-    for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
+    model, *found = with_data(compiled(bare_spec(of), of), of)
+    if load:
+        model.body(of.hand).mass += load
+        mujoco.mj_setConst(model, found[0])
+    return model, *found
+
+
+def bare_spec(of: RobotModel = FRANKA) -> Any:
+    """Return the specification of the model without actuators, and with the shapes that weigh.
+
+    Raises:
+        ModelError: the base moves freely, or MuJoCo cannot read the file.
+    """
+    import mujoco
+
+    if of.free_base:
+        raise ModelError(
+            f"{of.file} has a base that moves freely. Poses and masses in MuJoCo, and the laws of "
+            "motion, are those of arms with a fixed base. For other robots `laws.commanded` checks "
+            "times, start, command and control law."
+        )
+    try:
+        spec = mujoco.MjSpec.from_file(model_file(of.file))
+    except (ValueError, mujoco.FatalError) as error:
+        raise _unreadable(of, error) from error
+    from_shapes = spec.compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+    light = [g for g in spec.geoms if g.parent.explicitinertial and not from_shapes]
+    kept = {g.meshname for g in spec.geoms if g not in light}
+    shapes = [*light, *(mesh for mesh in spec.meshes if mesh.name not in kept)]
+    for part in (*spec.actuators, *spec.keys, *shapes):
         spec.delete(part)
+    spec.compiler.fusestatic = False  # fused links would lose their names
+    spec.option.gravity = GRAVITY
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return spec
 
 
-def with_data(model: Any) -> tuple[Any, Any, list[int], list[int]]:
-    """Return a model of the robot, its data, and the joints' indices in qpos and qvel."""
+def compiled(spec: Any, of: RobotModel) -> Any:
+    """Return the compiled specification of a model, or raise ModelError if it cannot be."""
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise _unreadable(of, error) from error
+
+
+def _unreadable(of: RobotModel, error: Exception) -> ModelError:
+    return ModelError(
+        f"MuJoCo cannot read {of.file}: {error}. Each link that a joint moves needs mass and "
+        "inertia, in a URDF as <inertial>."
+    )
+
+
+def with_data(model: Any, of: RobotModel = FRANKA) -> tuple[Any, Any, list[int], list[int]]:
+    """Return a compiled model, its data, and the indices of the robot's joints in qpos and qvel.
+
+    Raises:
+        ModelError: the robot's joints are not those of the file, or not all have one DOF.
+    """
     import mujoco
 
-    joints = [model.joint(name) for name in JOINT_NAMES]
+    names = [model.joint(k).name for k in range(model.njnt)]
+    if sorted(names) != sorted(of.joints) or model.nq != model.njnt or model.nv != model.njnt:
+        kinds = [mujoco.mjtJoint(kind).name[len("mjJNT_") :].lower() for kind in model.jnt_type]
+        named = zip(names, kinds, strict=True)
+        found = ", ".join(f"{name or 'without a name'} ({kind})" for name, kind in named)
+        raise ModelError(
+            f"{of.file} has the joints {found}; its RobotModel names {', '.join(of.joints)}. "
+            "Name each joint in the file and in `joints`. Valid kinds are hinge and slide."
+        )
+    joints = [model.joint(name) for name in of.joints]
     q_at, dof_at = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
     return model, mujoco.MjData(model), q_at, dof_at
 
 
-def link_names() -> set[str]:
+def unknown_forces(of: RobotModel) -> list[str]:
+    """Return which forces a model has beside gravity, damping and those between fingers."""
+    model, *_ = bare_robot(of=of)
+    forces = {
+        "stiffness of joints": model.jnt_stiffness.any(),
+        "frictionloss": model.dof_frictionloss.any(),
+        "gravcomp": model.body_gravcomp.any(),
+        "equality": model.neq and not of.fingers,
+    }
+    return [name for name, present in forces.items() if present]
+
+
+def link_names(of: RobotModel = FRANKA) -> set[str]:
     """Return the names of the model's links."""
-    model, *_ = bare_robot()
-    return {model.body(k).name for k in range(1, model.nbody)}
+    model, *_ = bare_robot(of=of)
+    return {model.body(k).name for k in range(model.nbody)}
 
 
-def link_poses(q: FloatArray, links: Sequence[str]) -> Pose:
+def link_poses(q: FloatArray, links: Sequence[str], of: RobotModel = FRANKA) -> Pose:
     """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
     import mujoco
 
-    model, data, q_at, _ = bare_robot()
+    model, data, q_at, _ = bare_robot(of=of)
     bodies = [model.body(name).id for name in links]
     position, orientation = np.empty((len(q), model.nbody, 3)), np.empty((len(q), model.nbody, 4))
     joints = np.empty((len(q), model.nq))
@@ -70,29 +141,42 @@ def link_poses(q: FloatArray, links: Sequence[str]) -> Pose:
     return Pose(position[:, bodies], orientation[:, bodies])
 
 
-def jacobian(q: FloatArray) -> FloatArray:
+def jacobian(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:
     """Return the Jacobian (6, d) of the hand's origin at `q` (d,), as `kinematics.jacobian`."""
     import mujoco
 
-    model, data, q_at, dof_at = bare_robot()
+    model, data, q_at, dof_at = bare_robot(of=of)
     data.qpos[q_at] = q
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     rows = np.zeros((6, model.nv))
-    mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body("hand").id)
+    mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body(of.hand).id)
     return np.asarray(rows[:, dof_at])
 
 
-def gravity_effort(q: FloatArray, load: float = 0.0) -> FloatArray:
-    """Return the effort (d,) [N·m or N] that holds posture `q` (d,) against gravity at rest.
+def at_rest(
+    q: FloatArray, load: float = 0.0, of: RobotModel = FRANKA
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return inertia, gravity and damping of each joint at posture `q` (d,), without integrator.
 
     Args:
         q: (d,) positions [rad or m].
         load: mass at the hand's centre of mass, beside its own [kg].
+        of: the robot.
+
+    Returns:
+        The diagonal (d,) of the mass matrix [kg·m² or kg], the effort (d,) that holds the posture
+        [N·m or N], and the passive damping (d,) of the model [N·m·s/rad or N·s/m].
     """
     import mujoco
 
-    model, data, q_at, dof_at = bare_robot(load)
+    model, data, q_at, dof_at = bare_robot(load, of)
     data.qpos[q_at], data.qvel[:] = q, 0.0
     mujoco.mj_forward(model, data)
-    return np.array(data.qfrc_bias[dof_at])
+    diagonal = data.M[model.M_rowadr + model.M_rownnz - 1]
+    return diagonal[dof_at], data.qfrc_bias[dof_at], model.dof_damping[dof_at]
+
+
+def gravity_effort(q: FloatArray, load: float = 0.0, of: RobotModel = FRANKA) -> FloatArray:
+    """Return the effort (d,) [N·m or N] of `at_rest`."""
+    return at_rest(q, load, of)[1]

@@ -6,7 +6,6 @@ import pytest
 
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.pages.sources import measuring_modules
-from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 PACKAGE = Path(spec.__file__).parents[2]
 PAGES = ("lecture", "formula", "integrator", "batch")
@@ -15,8 +14,6 @@ PAGES = ("lecture", "formula", "integrator", "batch")
 OTHER = {
     "STEPPED_JOINT": "joint2",
     "EXPECTED_MODEL": {**spec.EXPECTED_MODEL, "cameras": 1},  # its names are read
-    "FRANKA_MJCF": "another.xml",
-    "JOINT_NAMES": JOINT_NAMES[::-1],
     "RISE_FRACTION": 0.8,
     "SETTLING_BAND": 0.02,
     "SATURATION_THRESHOLD": 0.9,

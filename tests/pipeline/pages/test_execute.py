@@ -12,6 +12,7 @@ import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
 from robo_genesis.core.project import ROOT, engine_cache_environment, engine_cache_folder
+from robo_genesis.pipeline.pages import opened
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, in_order
 from robo_genesis.pipeline.pages.folder import PageRefused, read_record
@@ -324,15 +325,25 @@ print(os.environ["GIVEN"], len(os.environ["ROBO_GENESIS_RUN_ID"]))"""
 
 
 READS = """\
-import importlib, os, pathlib
+import importlib, mujoco, os, pathlib
 os.chdir({away!r})
+mujoco.MjModel.from_xml_path("arm.xml")
+mujoco.MjSpec.from_string(f"<mujoco><asset><mesh file='{{os.getcwd()}}/a.obj'/></asset></mujoco>")
 for name, mode in (("relative", "r"), (os.fsencode({away!r} + "/bytes"), "r+"), ("added", "a+")):
     open(name, mode).close()
 os.close(os.open("low", os.O_RDONLY))
 pathlib.Path({root!r}, "README.md").read_text()
 importlib.import_module("robo_genesis.core." + "palette")
 pathlib.Path("written").write_text("only written")"""
-READ = ("relative", "bytes", "added", "low", "README.md", "palette.py")
+MODEL = {
+    "arm.xml": """<mujoco><include file="sub/tool.xml"/><worldbody>
+        <geom type="mesh" mesh="tool"/></worldbody></mujoco>""",
+    "sub/tool.xml": '<mujoco><asset><mesh name="tool" file="tool.obj"/></asset></mujoco>',
+    "sub/tool.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4",
+    "a.obj": "",
+}
+"""A model with what it includes, which compiled code opens, and a mesh of another one."""
+READ = ("relative", "bytes", "added", "low", *MODEL, "README.md", "core/palette.py")
 OWN = """\
 import os, pathlib, tempfile
 from robo_genesis.core import text
@@ -344,8 +355,9 @@ with tempfile.NamedTemporaryFile() as file:
 
 
 def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp_path):
-    for name in READ[:4]:
-        (tmp_path / name).touch()
+    (tmp_path / "sub").mkdir()
+    for name in READ[:8]:
+        (tmp_path / name).write_text(MODEL.get(name, ""))
     codes = {"refused": READS, "accepted": OWN}
     place = {"away": str(tmp_path), "root": str(ROOT)}
     make_book(tmp_path, **{name: notebook(cell(of.format(**place))) for name, of in codes.items()})
@@ -354,7 +366,20 @@ def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp
     failure = results["refused"].failure
     names = failure.message.partition("): ")[2].partition(". It would not")[0]
     assert failure.error == "FileNotKeyed"
-    assert {*READ} <= {Path(name).name for name in names.split(", ")}
+    assert [n for n in READ if not any(p.endswith(f"/{n}") for p in names.split(", "))] == []
+
+
+def test_of_the_files_in_folders_of_the_system_a_model_is_refused(tmp_path, monkeypatch):
+    share, runtime = tmp_path / "share", tmp_path / "runtime"
+    monkeypatch.setattr(opened, "SYSTEM", (str(share),))
+    monkeypatch.setenv(opened.RUNTIME, str(runtime))
+    for folder in (share, runtime):
+        folder.mkdir()
+        for name in ("arm.urdf", "TOOL.STL", "table.csv"):
+            (folder / name).touch()
+    noted = [*share.iterdir(), *runtime.iterdir()]
+    (runtime / "opened").write_text("\0".join(map(str, noted)))
+    assert opened.unkeyed_files([]) == [str(share / name) for name in ("TOOL.STL", "arm.urdf")]
 
 
 def test_ctrl_c_while_a_worker_starts_kills_it(tmp_path, monkeypatch):

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from robo_genesis.sim.arm import engine_kinematics as of
-from robo_genesis.sim.arm.franka import Q_START
+from robo_genesis.sim.arm.franka import FRANKA, Q_START
+from robo_genesis.sim.arm.joints import ModelError
 
 POSE = {"position": np.array([0.45, 0.0, 0.35]), "quat": np.array([0.0, 1.0, 0.0, 0.0])}
 
@@ -15,8 +16,8 @@ POSE = {"position": np.array([0.45, 0.0, 0.35]), "quat": np.array([0.0, 1.0, 0.0
 class Robot:
     """A robot that keeps its question, and answers with its start."""
 
-    def __init__(self, environments):
-        self.scene = SimpleNamespace(n_envs=environments)
+    def __init__(self, environments, n_dofs):
+        self.scene, self.n_dofs = SimpleNamespace(n_envs=environments), n_dofs
 
     def get_link(self, name):
         return SimpleNamespace(name=name)
@@ -26,13 +27,14 @@ class Robot:
         return question["init_qpos"], np.zeros(6, np.float32)
 
 
-def ask(joints, environments=0, rows=None, envs=None, **given):
+def ask(joints, environments=0, rows=None, envs=None, n_dofs=9, of_robot=FRANKA, **given):
     """Ask for one pose, or for `rows` equal ones; return answer and question."""
-    robot, arrays = Robot(environments), POSE | {"q_start": Q_START} | given
+    robot, arrays = Robot(environments, n_dofs), POSE | {"q_start": Q_START} | given
     if rows is not None:
         arrays = {name: np.tile(values, (rows, 1)) for name, values in arrays.items()}
     settings = of.IkSettings(samples=1, iterations=7)
-    return of.solve_ik(robot, joints, **arrays, settings=settings, envs=envs), robot.question
+    found = of.solve_ik(robot, joints, **arrays, settings=settings, envs=envs, of=of_robot)
+    return found, robot.question
 
 
 def test_every_setting_is_given_to_the_engine_and_its_order_is_that_of_the_map(joints):
@@ -68,8 +70,15 @@ def test_rows_belong_to_all_environments_or_to_those_that_are_named(joints, rows
         ({"environments": 4, "rows": 3}, r"position has shape \(3, 3\), expected \(4, 3\)"),
         ({"environments": 4, "rows": 1, "envs": [1, 3]}, r"shape \(1, 3\), expected \(2, 3\)"),
         ({"environments": 4, "rows": 4, "envs": [1, 3]}, r"shape \(4, 3\), expected \(2, 3\)"),
+        # another robot
+        ({"n_dofs": 15}, "The robot has 15 DOFs, the map 9, .* a fixed base and all of its joints"),
+        ({"of_robot": replace(FRANKA, hand="")}, "has hand '' and joint1"),
+        (
+            {"of_robot": replace(FRANKA, joints=("a",))},
+            "The map has the joints joint1.* and a. Give",
+        ),
     ],
 )
 def test_a_question_of_the_wrong_form_is_refused(joints, given, message):
-    with pytest.raises(of.KinematicsError, match=message):
+    with pytest.raises((of.KinematicsError, ModelError), match=message):
         ask(joints, **given)

@@ -15,6 +15,7 @@ from robo_genesis.sim.arm.joint_control import (
     run_case,
     validate,
 )
+from robo_genesis.sim.arm.joints import RobotModel
 
 ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")
 N = len(JOINT_NAMES)
@@ -109,9 +110,8 @@ def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints
     other = replace(G2, kv=G2.kv + np.isin(np.arange(N), (3, 7)), steps=3)
     named = ["kp[joint4]", "kv[joint4]", "kv[finger_joint1]", "steps"]
     assert differences(G1, other, joints) == named
-    other = ControlCase(
-        **dict.fromkeys(ARRAYS, np.full(N, -1.0)), steps=1, dt=1, substeps=1, seed=1
-    )
+    settings = {"steps": 1, "dt": 1, "substeps": 1, "seed": 1, "model": RobotModel("", ())}
+    other = ControlCase(**dict.fromkeys(ARRAYS, np.full(N, -1.0)), **settings)
     named = {entry.split("[")[0] for entry in differences(BASELINE, other, joints)}
     assert named == set(ControlCase.__dataclass_fields__)
 

@@ -2,12 +2,11 @@
 
 from dataclasses import replace
 
-import mujoco
 import numpy as np
 import pytest
 
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.sim.arm.franka import JOINT_NAMES, Q_START
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import CaseError
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 
@@ -28,17 +27,6 @@ def test_forces_have_the_times_of_the_states_and_are_bounded_law_and_net_force(t
     assert trace.start_control_force[K] == SHORT.effort_limit[K]
     # At the end the control force still holds the arm against gravity.
     assert abs(trace.internal_force[-1, K]) < 5 < abs(trace.control_force[-1, K])
-
-
-def test_gravity_and_inertia_have_no_term_of_the_integrator():
-    inertia, gravity = mujoco_joints.at_rest(Q_START)
-    model = mujoco_joints.load(l04.G3, 0.005, "Euler")
-    data, mass = mujoco.MjData(model), np.zeros((9, 9))
-    data.qpos[:] = Q_START
-    mujoco.mj_forward(model, data)
-    mujoco.mj_fullM(model, data, mass)
-    assert inertia == pytest.approx(mass.diagonal())
-    assert gravity == pytest.approx(data.qfrc_bias)
 
 
 @pytest.mark.parametrize(
