@@ -8,23 +8,55 @@ MAKEFLAGS += --no-print-directory
 # A build uses all cores; a test or a second build at the same time would only disturb it.
 .NOTPARALLEL:
 
-# Variables are in capitals: `jobs=2` would be ignored without a word.
-NAMED := $(foreach word,$(MAKEOVERRIDES),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
-KNOWN := RENDER RELEASE JOBS PORT EXECUTE EXECUTED BUNDLE GENESIS SITE_URL SOLUTIONS PAGE TO LESSON BACKEND OLD NEW \
-  REPORT ROWS RUNS PYTHON BASE_PYTHON FIRST SECOND
-ifneq ($(filter-out $(KNOWN),$(NAMED)),)
-  SMALL := $(foreach name,$(filter-out $(KNOWN),$(NAMED)),$(if $(filter $(KNOWN),$(shell echo '$(name)' | tr a-z A-Z)),$(name)))
-  ifneq ($(strip $(SMALL)),)
-    $(error $(SMALL) would be ignored: variables are in capitals. Write $(shell echo '$(SMALL)' | tr a-z A-Z))
+ifneq ($(findstring :,$(CURDIR)),)
+  $(error The path $(CURDIR) has a colon, which separates the entries of PYTHONPATH. Rename the folder)
+endif
+
+# What each target reads. Another word with = after make would be ignored without a message.
+book_READS := EXECUTED JOBS RELEASE RENDER SITE_URL SOLUTIONS
+execute_READS := PAGE RENDER TO
+evidence_READS := BACKEND LESSON TO
+evidence-rocm_READS := LESSON
+verify_READS := BUNDLE
+test_READS := EXECUTED JOBS
+test-all_READS := $(test_READS)
+lesson_READS := NEW
+compare_READS := NEW OLD REPORT
+agree_READS := FIRST SECOND
+serve_READS := PORT
+live_READS := EXECUTE PORT RENDER SOLUTIONS
+repin_READS := GENESIS JOBS RENDER SITE_URL SOLUTIONS
+bench_READS := ROWS RUNS
+$(foreach name,clean distclean help home-picture lint lock pages .venv/.installed,$(eval $(name)_READS :=))
+ALWAYS := BASE_PYTHON PYTHON TORCH_INDEX
+GOALS := $(or $(MAKECMDGOALS),help)
+READ := $(sort $(ALWAYS) $(foreach goal,$(GOALS),$($(goal)_READS)))
+OURS := $(sort $(foreach name,$(filter %_READS,$(.VARIABLES)),$($(name))))
+unread = $(strip $(foreach name,$(filter-out $(READ),$(2)),$(if $(filter $(1),$(firstword $(origin $(name)))),$(name))))
+ifeq ($(filter undefined,$(foreach goal,$(GOALS),$(origin $(goal)_READS))),)
+  ifneq ($(call unread,command,$(.VARIABLES)),)
+    $(error make $(GOALS) does not read $(call unread,command,$(.VARIABLES)). It reads $(READ). \
+      Write a setting of another program before make)
+  endif
+  ifneq ($(and $(filter 0,$(MAKELEVEL)),$(call unread,environment,$(OURS))),)
+    $(warning make $(GOALS) does not read $(call unread,environment,$(OURS)), which the environment has)
   endif
 endif
+# A make below this one gets these variables as environment.
+MAKEOVERRIDES :=
 
 ifdef PYTHON
   PY := $(PYTHON)
+  NAME := PYTHON=$(PYTHON)
+  GIVE := Give the path of an interpreter with the packages of requirements.lock, or leave PYTHON out to use .venv.
+  FILL := Install the lock there: pip install -r requirements.lock
   ENVIRONMENT := has-packages
 else
   PY := .venv/bin/python
-  ENVIRONMENT := .venv/.installed
+  NAME := $(PY)
+  GIVE := The Python that made it was removed or replaced. Remove .venv; the same command then makes it again.
+  FILL := Remove .venv; the same command then makes it again.
+  ENVIRONMENT := .venv/.installed has-packages
 endif
 BASE_PYTHON ?= python3
 
@@ -40,7 +72,6 @@ export GENESIS
 export SITE_URL
 export SOLUTIONS
 export EXECUTED
-
 .PHONY: help
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
@@ -69,6 +100,7 @@ evidence: $(ENVIRONMENT) ## record all labs here, or one (BACKEND=amdgpu|cuda|cp
 # environment variable.
 .PHONY: evidence-rocm
 evidence-rocm: ## record all labs, or one, in a container with ROCm (LESSON=l04; docker or podman)
+	@$(REQUIRE_BASE)
 	@"$(BASE_PYTHON)" build_scripts/evidence_rocm.py
 
 .PHONY: verify
@@ -76,12 +108,14 @@ verify: $(ENVIRONMENT) ## verify recorded and built evidence (BUNDLE=path: one f
 	@"$(PY)" build_scripts/verify.py
 
 # The site is built first, because the tests of the engine hold the lock of builds.
-TESTS = "$(PY)" build_scripts/book.py && "$(PY)" -m pytest --numprocesses 2 --dist loadscope --no-loadscope-reorder
+TESTS = echo "test  step 1 of 2, the site" && "$(PY)" build_scripts/book.py && \
+  echo "test  step 2 of 2, the tests" && "$(PY)" -m pytest --numprocesses 2 --dist loadscope --no-loadscope-reorder
 
 .PHONY: test
 test: export RENDER = 1
 test: export SITE_URL =
 test: export SOLUTIONS =
+test: export RELEASE =
 test: $(ENVIRONMENT) ## build the site, and run the tests (needs Debian's chromium)
 	@$(TESTS)
 
@@ -89,6 +123,7 @@ test: $(ENVIRONMENT) ## build the site, and run the tests (needs Debian's chromi
 test-all: export RENDER = 1
 test-all: export SITE_URL =
 test-all: export SOLUTIONS =
+test-all: export RELEASE =
 test-all: $(ENVIRONMENT) ## run the slow tests too: empty environments, a changed pin (network; hours)
 	@$(TESTS) --slow
 
@@ -149,12 +184,9 @@ clean: ## remove the built site and the executed pages, keep the compiled kernel
 
 .PHONY: distclean
 distclean: clean ## remove the environment and every cache too
+	@test ! -e .venv || test -e .venv/.robo-genesis || test -e .venv/.installed || { \
+	  echo ".venv was not made by make, so it stays. Move it away" >&2; exit 1; }
 	@rm -rf .venv .cache
-
-# The address has one home, where the site's commands for students read it too.
-.PHONY: torch-index
-torch-index: ## print the index with Torch's builds for the CPU (for PIP_EXTRA_INDEX_URL)
-	@sed -n 's/^ *torch_index: *\([^ ]*\).*/\1/p' book/_config.yml
 
 .PHONY: lock
 lock: $(ENVIRONMENT) ## resolve requirements.lock again from pyproject.toml
@@ -177,19 +209,15 @@ NEEDED = genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib 
 has-packages:
 	@missing=$$("$(PY)" -c 'from importlib.util import find_spec; \
 	  print(*(name for name in "$(NEEDED)".split() if find_spec(name) is None), sep=", ")' 2>/dev/null) || { \
-	  echo "PYTHON=$(PY) is not a Python command. Give the path of an interpreter with the packages of" \
-	  "requirements.lock, or leave PYTHON out to use .venv." >&2; exit 1; }; test -z "$$missing" || { \
-	  echo "PYTHON=$(PY) lacks $$missing. Install the lock there: pip install -r requirements.lock" >&2; exit 1; }
+	  echo "$(NAME) is not a Python command. $(GIVE)" >&2; exit 1; }; test -z "$$missing" || { \
+	  echo "$(NAME) lacks $$missing. $(FILL)" >&2; exit 1; }
 
-# The file is touched last, so an interrupted installation starts again.
+REQUIRE_BASE = "$(BASE_PYTHON)" -c 'import sys; 1 / ((3, 11) <= sys.version_info[:2] < (3, 14))' 2>/dev/null || { \
+  echo "BASE_PYTHON=$(BASE_PYTHON) is not a command of Python 3.11, 3.12 or 3.13. Give the path of one of them." \
+  "On Debian: apt install python3-venv" >&2; exit 1; }
+
+# The address of Torch's builds for the CPU has one home, where the site's commands for students read it.
 .venv/.installed: requirements.lock
-	@"$(BASE_PYTHON)" -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else \
-	  "The course needs Python 3.11 to 3.13, found %d.%d. Name another with BASE_PYTHON=python3.11." % v)'
-	@! test -L .venv || { echo ".venv is a link to $$(readlink .venv), which setting it up would empty." \
-	  "Remove the link, or use that environment as it is: make PYTHON=.venv/bin/python ..." >&2; exit 1; }
-	@echo "Setting up .venv from requirements.lock (once; some minutes)"
-	@"$(BASE_PYTHON)" -m venv --clear .venv
-	@.venv/bin/python -m pip install -qq --no-compile --no-deps --disable-pip-version-check --requirement requirements.lock
-	@.venv/bin/python -m pip check >.venv/check.txt || { cat .venv/check.txt >&2; exit 1; } # the lock has all
-	@.venv/bin/python -m compileall -qq -j 0 .venv/lib >/dev/null || true  # some packages have files that do not compile
-	@touch $@
+	@$(REQUIRE_BASE)
+	@TORCH_INDEX="$${TORCH_INDEX:-$$(sed -n 's/^ *torch_index: *\([^ ]*\).*/\1/p' book/_config.yml)}" \
+	  "$(BASE_PYTHON)" build_scripts/install.py

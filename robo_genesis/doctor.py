@@ -37,9 +37,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from robo_genesis.core import project
-from robo_genesis.core.text import printable
+from robo_genesis.core.text import ended, printable
 
-WIDTH, INDENT = 72, 25  # Characters of a row, which fits 80 columns, and before what was found
+WIDTH, INDENT = 72, 28  # Characters of a row, which fits 80 columns, and before what was found
 REPORT_FORMAT = 4
 MARK = "\x1e"  # Begins a report among the other output of the process that runs the steps
 STEPS_PROCESS = "from robo_genesis import doctor; doctor.send_reports()"
@@ -57,11 +57,11 @@ def table(steps: Sequence[Mapping[str, str]]) -> str:
     """
     text, verdict = "", f"all {len(steps)} steps pass"
     for number, step in enumerate(steps, start=1):
-        text += f"{number:2}  {step['step']:{INDENT - 15}}  "
+        text += f"{number:2}/{len(steps):<2}  {step['step']:{INDENT - 18}}  "
         if step["state"] == "not run" and verdict.startswith("all"):
             return text
-        lines = textwrap.wrap(step["found"], WIDTH - INDENT, break_long_words=False)
-        found = f"\n{' ' * INDENT}".join(map(printable, lines))
+        wrap = textwrap.TextWrapper(WIDTH - INDENT, break_long_words=False, break_on_hyphens=False)
+        found = f"\n{' ' * INDENT}".join(map(printable, wrap.wrap(step["found"])))
         text += f"{step['state']:7}  {found}".rstrip() + "\n"
         if step["state"] == "broken":
             verdict = f"step {number}, {step['step']}, is broken; fix it and run this again"
@@ -142,11 +142,7 @@ def ending(status: int, said: Sequence[str]) -> str:
     if status >= 0:
         return f"{said[-1] if said else f'Status {status}'}. {project.import_advice()}"
     folders = " and ".join(project.cache_folders().values())
-    return (
-        f"Ended by {signal.Signals(-status).name} ({signal.strsignal(-status)}). If you did not "
-        "stop it, the memory or the disk is full, or compiled code is damaged: close programs, "
-        f"free space, or delete {folders}. {' '.join(said)}"
-    )
+    return f"Ended by {ended(status, folders)}. {' '.join(said)}"
 
 
 def machine(engine: Any) -> dict[str, str]:

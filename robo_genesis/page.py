@@ -7,6 +7,7 @@ A page calls `gs.init` itself; `open_page` follows it:
     page = rg.open_page("l02", "lab")
 """
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -19,11 +20,19 @@ from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check
 from robo_genesis.core.exercises import FUNCTIONS, FunctionFailed, Mistake, Written
 from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.project import RUN_ID, cache_folders, nothing_compiled
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources
 from robo_genesis.sim import session, visual_shape
 from robo_genesis.sim.camera import frames as cameras
+
+FIRST_START = """\
+First start on this machine: the engine compiles its kernels, most of them without output.
+Step 1 of 3: the scene, and the first run. This is the compilation: minutes; later, seconds.
+Step 2 of 3: the other runs, of {count} in all.
+Step 3 of 3: checks, figures and the bundle."""
+"""What a reader's own notebook prints; a page that a command executes does not."""
 
 _opened: list[str] = []
 
@@ -60,6 +69,8 @@ def open_page(lesson: str, name: str) -> "LessonPage":
     page = LessonPage(lesson, name, contract, session.started(contract))
     _opened.append(f"{lesson}/{name}")
     plotting.use_course_style()
+    if RUN_ID not in os.environ and nothing_compiled(cache_folders()):
+        print(FIRST_START.format(count=len(declared.runs)))
     return page
 
 

@@ -1,6 +1,7 @@
 """The Makefile and `make serve`: their messages about a wrong environment."""
 
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -18,6 +19,7 @@ def checkout(tmp_path):
     folder = tmp_path / "a course"
     (folder / "build_scripts").mkdir(parents=True)
     shutil.copy(ROOT / "Makefile", folder)
+    (folder / "requirements.lock").touch()
     stub = "import os\nprint(os.environ['PYTHONPATH'], os.environ.get('TO'), sep='\\n')\n"
     for name in ("serve.py", "evidence_rocm.py"):
         (folder / "build_scripts" / name).write_text(stub)
@@ -32,9 +34,12 @@ def python(folder: Path, *options: str) -> Path:
     return path
 
 
-def make(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    command = ["make", "-C", str(folder), *words, f"BASE_PYTHON={sys.executable}"]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+def make(folder: Path, *words: str, **set_: str) -> subprocess.CompletedProcess[str]:
+    command = ["make", "-C", str(folder), f"BASE_PYTHON={sys.executable}", *words]
+    given = {"MAKELEVEL": "0", "MAKEFLAGS": ""} | set_  # those of a make around these tests
+    return subprocess.run(
+        command, env=os.environ | given, capture_output=True, text=True, check=False, timeout=60
+    )
 
 
 @pytest.mark.parametrize("target", ["serve", "evidence-rocm"])
@@ -42,10 +47,11 @@ def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_ne
     checkout, target
 ):
     words = [] if target == "evidence-rocm" else [f"PYTHON={python(checkout)}"]
-    done = make(checkout, target, *words, "TO=a folder", "ROWS=prose live=fast", "pip_option=x")
+    done = make(checkout, target, *words, TO="a folder", ROWS="prose live=fast", pip_option="x")
     assert done.returncode == 0, done.stderr
     assert {str(checkout), "a folder"} <= {*done.stdout.splitlines()}
     assert not (checkout / ".venv").exists()
+    assert f"make {target} does not read ROWS TO, which the environment has" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -57,9 +63,23 @@ def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_ne
         ("serve", ["PYTHON=nowhere/python"], "PYTHON=nowhere/python is not a Python command"),
         ("serve", ["PYTHON=/tmp"], "PYTHON=/tmp is not a Python command"),
         ("serve", ["PYTHON=ls"], "PYTHON=ls is not a Python command"),
-        ("serve", ["jobs=2"], "jobs would be ignored: variables are in capitals. Write JOBS"),
-        ("serve", ["site_url=https://example.org/a=b"], "site_url would be ignored"),
-        ("serve", ["Page=l04/lab", "to=folder"], "Write "),
+        (
+            "evidence-rocm",
+            ["BASE_PYTHON=nopy"],
+            "BASE_PYTHON=nopy is not a command of Python 3.11, 3",
+        ),
+        (
+            ".venv/.installed",
+            ["BASE_PYTHON=ls"],
+            "BASE_PYTHON=ls is not a command of Python 3.11, 3",
+        ),
+        ("serve", ["jobs=2"], "make serve does not read jobs. It reads BASE_PYTHON PORT PYTHON "),
+        ("serve", ["site_url=https://example.org/a=b"], "make serve does not read site_url."),
+        ("book", ["LESSON=l77"], "make book does not read LESSON. It reads BASE_PYTHON EXECUTED"),
+        ("test", ["JOB=3"], "make test does not read JOB. It reads BASE_PYTHON EXECUTED JOBS"),
+        ("clean", ["ROWS=a TO=b"], "make clean does not read ROWS. It reads BASE_PYTHON PYTHON "),
+        ("serve", ["test", "PORT=1", "RUNS=3"], "make serve test does not read RUNS. It reads B"),
+        ("lessons", ["NEW=l07"], "No rule to make target 'lessons'"),
     ],
 )
 def test_a_wrong_environment_is_refused_with_the_fix(checkout, target, words, said):
@@ -69,6 +89,33 @@ def test_a_wrong_environment_is_refused_with_the_fix(checkout, target, words, sa
     assert said.format(bare=bare) in done.stderr
     assert "Traceback" not in done.stderr
     assert str(checkout) not in done.stdout.splitlines()  # what the stub of the command prints
+
+
+def test_each_target_says_what_it_reads():
+    text = (ROOT / "Makefile").read_text()
+    targets = set(re.findall(r"^([a-z-]+):", text, re.MULTILINE))
+    said = set(re.findall(r"^([a-z-]+)_READS", text, re.MULTILINE))
+    (without,) = re.findall(r"foreach name,(.*),\$\(eval", text)
+    assert targets == (said | {*without.split()}) - {".venv/.installed"} | {"has-packages"}
+
+
+def test_an_environment_whose_python_is_gone_or_was_not_made_by_make_is_named(checkout):
+    foreign = checkout / ".venv" / "bin" / "python"
+    foreign.parent.mkdir(parents=True)
+    foreign.symlink_to("/nowhere/python")
+    done = make(checkout, "distclean")
+    assert ".venv was not made by make, so it stays" in done.stderr
+    assert foreign.is_symlink()
+    (checkout / ".venv/.installed").touch()
+    done = make(checkout, "serve")
+    assert ".venv/bin/python is not a Python command. The Python that made it was re" in done.stderr
+    assert make(checkout, "distclean").returncode == 0
+    assert not foreign.parent.exists()
+
+
+def test_a_path_with_a_colon_is_refused(checkout):
+    done = make(checkout.rename(checkout.with_name("a:b")), "help")
+    assert "a:b has a colon, which separates the entries of PYTHONPATH. Rename" in done.stderr
 
 
 def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):

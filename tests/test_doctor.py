@@ -218,10 +218,10 @@ def rows(*states, found=""):
 def test_the_table_is_aligned_fits_80_columns_and_grows():
     lines = table(rows("ok", "broken", "not run", found="word " * 60)).splitlines()
     assert max(map(len, lines)) <= doctor.WIDTH <= 80
-    assert all(line[24] == " " != line[25] for line in lines if "word" in line)
+    assert all(line[27] == " " != line[28] for line in lines if "word" in line)
     assert lines[-1] == "DOCTOR: step 2, libraries, is broken; fix it and run this again"
     begun = table(rows("ok", "not run", found="a\nb\x1b[2J"))
-    assert begun.endswith("a b\\x1b[2J\n 2  libraries   ")
+    assert begun.endswith("a b\\x1b[2J\n 2/2   libraries   ")
     assert table(rows("ok", "ok", found="a\nb\x1b[2J")).startswith(begun)
 
 
@@ -275,7 +275,7 @@ def test_ctrl_c_ends_the_step_that_was_begun(tmp_path):
     (tmp_path / GENESIS).write_text("import time\ntime.sleep(60)")
     doctor = started(tmp_path)
     begun = ""
-    while not begun.endswith(" 3  backend  "):  # written before the step ends
+    while not begun.endswith(" 3/11  backend  "):  # written before the step ends
         begun += doctor.stdout.read(1)
     doctor.send_signal(signal.SIGINT)
     said, error = doctor.communicate()

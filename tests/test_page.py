@@ -57,6 +57,25 @@ def measure(page):
     page.capture(camera, "final")
 
 
+@pytest.mark.parametrize(
+    ("run_id", "compiled", "lines"), [(None, False, 4), (RUN_ID, False, 0), (None, True, 0)]
+)
+def test_a_reader_s_first_start_says_what_the_next_minutes_do(
+    page, tmp_path, monkeypatch, capsys, run_id, compiled, lines
+):
+    monkeypatch.setattr(pages, "_opened", [])
+    monkeypatch.setenv(project.KERNELS, str(tmp_path))
+    monkeypatch.delenv(project.RUN_ID)
+    if run_id:
+        monkeypatch.setenv(project.RUN_ID, run_id)
+    if compiled:
+        (tmp_path / "one.qdc").touch()
+    rg.open_page("l02", "lab")
+    said = capsys.readouterr().out.splitlines()
+    assert [line[:13] for line in said[1:]] == [f"Step {n} of 3: "[:13] for n in range(1, lines)]
+    assert len(said) == lines
+
+
 def test_the_names_are_loaded_without_the_engine_and_only_when_used():
     code = (
         "import sys; import robo_genesis as rg; "

@@ -44,6 +44,21 @@ def git_or_none(root: Path, *arguments: str) -> str | None:
         return None
 
 
+def require_history(root: Path) -> None:
+    """Raise ProjectError if git cannot read the repository that a checkout has.
+
+    Pages, bundles and sitemap would lose commits and dates without a message.
+    """
+    if any((folder / ".git").exists() for folder in (root, *root.parents)):
+        try:
+            git(root, "rev-parse", "--git-dir")
+        except ProjectError as error:
+            raise ProjectError(
+                f"{error}\nPages and bundles name their commit, and the sitemap has dates: let git "
+                "read this checkout as its message says, or build a copy without .git."
+            ) from None
+
+
 def unclean(root: Path, reason: str = "A release is built from one commit") -> list[str]:
     """Return why a checkout differs from its commit, nothing if it does not.
 

@@ -1,6 +1,7 @@
 """Measured values and lists as text, and text that others wrote, made safe for messages."""
 
 import re
+import signal
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 
@@ -29,6 +30,22 @@ MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "1": "%"}
 
 SCALES = dict.fromkeys(SCALED.values(), 1e3) | dict.fromkeys(MICRO.values(), 1e6) | {"%": 100.0}
 """By unit of a text, the factor from the unit in which a value is kept."""
+
+
+def ended(status: int, compiled: str = ".cache/engine") -> str:
+    """Return how a process ended, and what to do if a signal ended it.
+
+    Args:
+        status: as `subprocess` gives it, negative for a signal.
+        compiled: the folder of compiled code.
+    """
+    if status >= 0:
+        return f"exit status {status}"
+    cause = f"the disk is full or compiled code is damaged: free space, or delete {compiled}"
+    if -status == signal.SIGKILL:
+        cause = "the memory was full: close programs. A build needs less memory with JOBS=1"
+    name = f"{signal.Signals(-status).name} ({signal.strsignal(-status)})"
+    return f"{name}. If nobody stopped it, {cause}"
 
 
 def scaled_value(value: float, unit: str) -> str:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.project import BACKEND, BOOK, BUILD_BACKEND, CACHE, RENDER, ProjectError
+from robo_genesis.core.text import ended
 from robo_genesis.evidence.refusals import BundleRefused
 
 TIMEOUT = 1500  # Seconds for one cell; a page's front matter may set another
@@ -109,7 +110,7 @@ def output_of(command: Sequence[str], refusal: str, **options: Any) -> str:
     options |= {"capture_output": True, "text": True, "preexec_fn": end_with_parent()}
     done = subprocess.run(command, check=False, **options)
     if done.returncode:
-        raise ProjectError(f"{refusal}:\n{done.stdout}{done.stderr}")
+        raise ProjectError(f"{refusal}, {ended(done.returncode)}:\n{done.stdout}{done.stderr}")
     return done.stdout
 
 

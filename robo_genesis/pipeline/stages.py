@@ -14,7 +14,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, put, settle, settle_below
-from robo_genesis.core.git import git, unclean
+from robo_genesis.core.git import git, require_history, unclean
 from robo_genesis.pipeline import npm, up_to_date
 from robo_genesis.pipeline.agreement import agree
 from robo_genesis.pipeline.bundles.of_build import verify_results
@@ -181,6 +181,7 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path], dict[str, 
 
     What a killed build left is repaired first.
     """
+    require_history(build.root)
     environment = kernel_environment(build.root, build.cache, build.command)
     settle_below(build.book / "evidence")
     settle_below(build.cache / project.STORE)

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from robo_genesis.core.text import ended
+
 TIMEOUT = 600  # Seconds until a process counts as hanging
 
 
@@ -37,7 +39,7 @@ def run_python(
         raise StartError(_report(problem, error.stdout, error.stderr)) from error
     if done.returncode not in statuses or not done.stdout.strip():
         valid = " or ".join(map(str, statuses))
-        problem = f"ended with exit status {done.returncode}, expected {valid} and some output"
+        problem = f"ended with {ended(done.returncode)}, expected {valid} and some output"
         raise StartError(_report(problem, done.stdout, done.stderr))
     return done.stdout
 

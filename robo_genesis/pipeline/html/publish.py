@@ -1,5 +1,6 @@
 """Publish a rendered site in one move: built beside the old one, swapped in by renames."""
 
+import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
@@ -37,7 +38,9 @@ def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
 
 
 def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None) -> Path:
-    """Replace the published site and its pages' bundles by new ones.
+    """Replace the published site and its pages' bundles by new ones, which everybody may read.
+
+    A web server has a user of its own, so the modes do not depend on the umask.
 
     Args:
         book: the folder that holds `_build`.
@@ -53,6 +56,10 @@ def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda fo
     with replaced(book / PUBLISHED) as following:
         shutil.move(folder, following)
         finish(following)
+        for here, _, files in os.walk(following):
+            os.chmod(here, 0o755)
+            for name in files:
+                os.chmod(os.path.join(here, name), 0o644)
     return book / PUBLISHED / "html"
 
 

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import ANSI, collect_rarely, end_with_parent
 
 if TYPE_CHECKING:  # the process is started before the packages of Jupyter are loaded
@@ -109,10 +110,10 @@ class SphinxProcess:
     def complaints(self) -> list[str]:
         """Wait for the end of the render; return its warnings and errors."""
         assert self.process.stdout is not None
-        said, ended = [f"Sphinx stopped. Log: {self.log}"], True
-        if line := self.process.stdout.readline():
-            said, ended = json.loads(line)
-        if ended:
+        if not (line := self.process.stdout.readline()):
+            return [f"Sphinx stopped with {ended(self.process.wait())}. Log: {self.log}"]
+        said, ends = json.loads(line)
+        if ends:
             self.process.wait()
         return said
 

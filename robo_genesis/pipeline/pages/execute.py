@@ -15,6 +15,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.project import COMMAND
+from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import TIMEOUT
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
@@ -289,7 +290,7 @@ def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) ->
     except (EOFError, ConnectionError):
         process.join()
         cell = f" in cell {underway.cell}" if underway.cell else ""
-        message = f"the worker process ended{cell} with status {process.exitcode}; out of memory?"
+        message = f"the worker process ended{cell} with {ended(process.exitcode)}"
         seconds, failure = 0.0, Failure("WorkerDied", message)
     process.join()
     connection.close()

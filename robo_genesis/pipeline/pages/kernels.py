@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import threading
+import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -14,7 +15,6 @@ from typing import Any
 import psutil  # type: ignore[import-untyped]
 from jupyter_client.kernelspec import KernelSpecManager
 from jupyter_client.manager import AsyncKernelManager
-from jupyter_core.paths import jupyter_runtime_dir
 
 from robo_genesis.core.project import ENGINE_PREFIXES
 
@@ -30,24 +30,30 @@ ARGUMENTS = [f"--IPKernelApp.exec_lines={START}"]
 class CleanKernelManager(AsyncKernelManager):
     """Starts the kernel of this interpreter and knows no installed kernelspec.
 
-    `busy` is set while a cell runs. It is a class attribute because nbclient takes a class, not an
-    instance; each worker process has one kernel.
+    `busy` is set while a cell runs, `process` when the kernel starts. They are class attributes
+    because nbclient takes a class, not an instance; each worker process has one kernel.
     """
 
     busy = False
+    process: subprocess.Popen[bytes] | None = None
 
     def __init__(self, **given: Any) -> None:
         """Set what differs from a usual kernel.
 
         The engine saves what it compiled in its exit handler, for which the usual 5 s are too
-        short; SIGTERM comes after the first half. The sockets are files, because kernels that start
-        at the same time can draw the same TCP port; their path is absolute, because kernels run in
-        other folders.
+        short; SIGTERM comes after the first half. The sockets have names, because kernels that
+        start at the same time can draw the same TCP port. With `@`, a name is one of Linux and not
+        of a file, whose path may have 107 characters only.
         """
-        sockets = {"transport": "ipc", "ip": str(Path(jupyter_runtime_dir()) / "kernel")}
+        sockets = {"transport": "ipc", "ip": f"@robo-{uuid.uuid4().hex}"}
         no_specs = KernelSpecManager(kernel_dirs=[])  # so that only the native kernel is left
         own = {"shutdown_wait_time": 120.0, "kernel_spec_manager": no_specs}
         super().__init__(**given | sockets | own)
+
+    async def start_kernel(self, **given: Any) -> None:  # type: ignore[override]
+        """Start the kernel, and keep its process, whose exit status says why it died."""
+        await super().start_kernel(**given)
+        type(self).process = self.provisioner.process  # type: ignore[union-attr]
 
     async def shutdown_kernel(  # type: ignore[override]
         self, now: bool = False, restart: bool = False
@@ -61,21 +67,18 @@ def users_variables() -> dict[str, str]:
     return {n: v for n, v in os.environ.items() if n in MACHINE or n.startswith(ALLOWED)}
 
 
-def clean_environment(
-    home: Path, runtime: Path, root: Path, extra: Mapping[str, str]
-) -> dict[str, str]:
+def clean_environment(home: Path, root: Path, extra: Mapping[str, str]) -> dict[str, str]:
     """Return the whole environment for a kernel.
 
     Args:
         home: folder for IPython's and Jupyter's own files.
-        runtime: folder for the kernel's sockets; its path must be short (107 characters in all).
         root: the checkout, the only entry of the kernel's PYTHONPATH.
         extra: variables of this run.
     """
     folders = {
         "IPYTHONDIR": home / "ipython",
         **dict.fromkeys(("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR"), home / "jupyter"),
-        "JUPYTER_RUNTIME_DIR": runtime,
+        "JUPYTER_RUNTIME_DIR": home,
     }
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)

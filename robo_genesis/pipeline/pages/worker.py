@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import nbclient
-from nbclient.exceptions import CellExecutionError, CellTimeoutError
+from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
 
 from robo_genesis.core.project import OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
+from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages import kernels, results
 from robo_genesis.pipeline.pages.book import Page, code_digest
@@ -68,16 +69,14 @@ def work(run: PageRun, connection: Connection) -> None:
             connection.recv()
 
     kernels.die_with_parent(run.scratch)
-    runtime = Path(tempfile.mkdtemp(dir=run.scratch))
+    home = Path(tempfile.mkdtemp(dir=run.scratch))
     own = {
         RUN_ID: run.run_id,
         OUTPUTS_DIR: str(run.outputs),
         PAGE_SHA256: code_digest(run.page),
         PAGE_IMPORTS: " ".join(run.page.code.imports),
     }
-    environment = kernels.clean_environment(
-        runtime / "home", runtime, ROOT, {**run.environment, **own}
-    )
+    environment = kernels.clean_environment(home, ROOT, {**run.environment, **own})
     os.environ.clear()
     os.environ.update(environment)
     # The engine's compiled parts write past Python: to a file, because the build prints its
@@ -213,6 +212,8 @@ def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failu
         name, message = error.ename, error.evalue
     elif isinstance(error, CellTimeoutError):
         message = message.splitlines()[0]
+    elif isinstance(error, DeadKernelError) and (process := kernels.CleanKernelManager.process):
+        message += f" with {ended(process.wait())}"
     if not started:
         return Failure(name, message)
     last = started[-1]

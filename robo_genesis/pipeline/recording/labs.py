@@ -10,6 +10,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.files import put, require_replaceable, require_writable, settle_below
+from robo_genesis.core.git import require_history
 from robo_genesis.core.project import BACKEND, RENDER
 from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle_files import MANIFEST
@@ -97,10 +98,12 @@ def record(recording: Recording) -> int:
     with build_lock(recording.cache):
         settle_below(recording.evidence)
         require_writable(recording.evidence)
+        require_history(recording.root)
         project.require_pinned_engine(recording.root)
         labs, progress, outcomes = _labs(recording), Progress(recording.say), list[Outcome]()
         backend = _found_backend(recording, progress)
-        for page in labs:
+        for number, page in enumerate(labs, start=1):
+            progress("lab", f"{number} of {len(labs)}", str(page.lesson))
             outcomes.append(_outcome(recording, page, backend, progress))
             if outcomes[-1].state == "interrupted":
                 break

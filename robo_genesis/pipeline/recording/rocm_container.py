@@ -1,6 +1,6 @@
 """`make evidence-rocm`: record labs in a container with AMD's ROCm and Torch.
 
-This module imports the standard library alone: the host needs Python, but no package of the course.
+The host needs Python, but no other package: what this module imports, imports none.
 """
 
 import os
@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from robo_genesis.core.project import ENGINE_PREFIXES
+
 ENGINES = ("docker", "podman")
 IMAGE = "robo-genesis-rocm"
 DOCKERFILE = ".rocm/Dockerfile"
@@ -19,9 +21,8 @@ PLACE = "/course"  # Where the container sees the checkout
 DEVICES = (Path("/dev/kfd"), Path("/dev/dri"))
 """Compute interface of all AMD GPUs, and the folder with a node for each of them."""
 
-PASSED = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
-"""How the variables begin that the container gets: switches of engine and drivers. It does not
-get ROCM_PATH, because the image has its own ROCm."""
+# How the variables begin that the container gets; the image has a ROCm of its own.
+PASSED = tuple(name for name in ENGINE_PREFIXES if name not in ("ROCM_", "NVIDIA_TF32_"))
 
 WITHOUT = "book/evidence/recording.md describes the steps without a container."
 
@@ -68,15 +69,8 @@ def commands(host: Host) -> list[list[str]]:
         host: see there. LESSON of its environment names the lab.
 
     Raises:
-        ContainerError: docker and podman, or a device is missing, or a setting is not valid.
+        ContainerError: docker and podman, or a device is missing.
     """
-    for name, valid in (("TO", ""), ("BACKEND", "amdgpu")):
-        if (given := host.environment.get(name)) and given != valid:
-            raise ContainerError(
-                f"{name}={given!r} is not valid here: the container records on amdgpu into "
-                f"book/evidence of this checkout. Leave {name} out, or record without the "
-                f"container: {WITHOUT}"
-            )
     engine = next(filter(host.find, ENGINES), None)
     if engine is None:
         raise ContainerError(

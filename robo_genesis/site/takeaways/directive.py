@@ -1,6 +1,6 @@
 """Files to download from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
 
-```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` the first two.
+```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` the first.
 The files are written into the site while the page is read, so that the page can show their sizes.
 """
 
@@ -69,7 +69,7 @@ class TakeawaysBox(PageDirective):
         box += self.parse_text_to_nodes("In that folder:")
         box += nodes.literal_block(commands, commands, language="bash")
         box += self.parse_text_to_nodes(
-            "The second command downloads the engine and Torch, which takes minutes. The first "
+            "The first command downloads the engine and Torch, which takes minutes. The first "
             "cell checks the engine's version and says what to do if yours differs. In its first "
             "run the engine compiles its kernels, which takes minutes too."
         )
@@ -100,7 +100,7 @@ class RunCommands(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the block of code."""
-        lines = run_commands("robo_genesis-*.whl", self.config.torch_index)
+        lines = run_commands(self.config.torch_index)
         if self.arguments not in ([], ["install"]):
             raise ValueError("write nothing or install.")
         if self.arguments:

@@ -20,12 +20,14 @@ import numpy as np
 from nbformat import NotebookNode
 from sphinx.config import Config
 
+from robo_genesis import install
 from robo_genesis.core import project
 from robo_genesis.core.files import NO_SOURCE, derived, files_below, write_whole
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import read_any_trace
+from robo_genesis.install import CONSTRAINTS, ENVIRONMENT
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages.book import Page
@@ -34,8 +36,6 @@ from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.takeaways.notebooks import executed_notebook, student_notebook, version_check
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
-ENVIRONMENT = "course"
-CONSTRAINTS = "constraints.txt"  # The exact versions of the lock, for pip's option -c
 NOT_SHOWN = "*(your run measures it)*"
 """Replaces in the student notebook a value that the site measured."""
 
@@ -92,11 +92,11 @@ def write_takeaways(
     wheel = build_wheel(folder, repository=config.course_repository)
     constraints = Path(shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS))
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
-    commands = run_commands(wheel.name, config.torch_index, student.name)
+    commands = run_commands(config.torch_index, student.name)
     predicate = bundle.read_manifest(run).predicate
-    origin = partial(origin_of, page, predicate, wheel.name, commands, config)
+    origin = partial(origin_of, page, predicate, commands, config)
     needed = {project.ENGINE: project.engine_pin(), project.COURSE: package_facts()["version"]}
-    check = version_check(needed, wheel.name, commands)
+    check = version_check(needed, wheel.name)
     address = f"{site_address()}{page.docname}.html" if site_address() else ""
     writer = Writer(page.path.parent, lambda _: NOT_SHOWN, address)
     _write(student, student_notebook(page, origin("student notebook"), check, writer))
@@ -107,21 +107,17 @@ def write_takeaways(
     return Takeaways(student, ran, wheel, constraints, units, arrays, figures, commands)
 
 
-def run_commands(wheel: str, torch_index: str, notebook: str = "") -> tuple[str, ...]:
+def run_commands(torch_index: str, notebook: str = "") -> tuple[str, ...]:
     """Return the commands that run a student notebook in an environment of its own.
 
-    pip prefers a build of Torch for the CPU to that of PyPI, because its version has the suffix
-    `+cpu`. Where the index cannot be reached, pip says so and takes that of PyPI.
+    The wheel itself installs, because Python can run a module of an archive.
 
     Args:
-        wheel: file name of the package, which pins the engine.
         torch_index: address of an index with builds of Torch for the CPU.
         notebook: file name of the notebook; all files are in the current folder.
     """
-    packages = (f"-c {CONSTRAINTS}", f"--extra-index-url {torch_index}", f"./{wheel} jupyterlab")
     return (
-        f"python3 -m venv {ENVIRONMENT}",
-        " \\\n  ".join((f"{ENVIRONMENT}/bin/pip install {packages[0]}", *packages[1:])),
+        f"PYTHONPATH={wheel_name()} python3 -m {install.__name__} \\\n  {torch_index}",
         f"{ENVIRONMENT}/bin/jupyter lab {notebook}".rstrip(),
     )
 
@@ -132,13 +128,18 @@ def system() -> str:
     return f"Linux with Python {python} (Debian: `apt install {' '.join(DEBIAN)}` first)"
 
 
+def wheel_name() -> str:
+    """Return the name of the wheel's file."""
+    return f"{PACKAGE}-{package_facts()['version']}-py3-none-any.whl"
+
+
 def package_facts() -> dict[str, str]:
     """Return the `project` table of pyproject.toml."""
     return tomllib.loads((project.ROOT / "pyproject.toml").read_text("utf8"))["project"]
 
 
 def origin_of(
-    page: Page, ran: Predicate, wheel: str, commands: Iterable[str], config: Config, kind: str
+    page: Page, ran: Predicate, commands: Iterable[str], config: Config, kind: str
 ) -> str:
     """Return Markdown on the origin of a notebook of a lab, and how to run it."""
     lines = (line for cell in page.notebook.cells for line in cell.source.splitlines())
@@ -148,8 +149,8 @@ def origin_of(
         f"> {config.html_title}, *{title}*: {kind}. Written for Genesis "
         f"{project.engine_pin()}; the site shows run {ran.run_id[:8]} of {ran.started[:10]}.\n"
         f"> © {config.author}. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
-        f"To run it on {system()}, put `{wheel}` and `{CONSTRAINTS}` from the lab's page beside "
-        f"it, and in that folder:\n\n```console\n{console}\n```"
+        f"To run it on {system()}, put `{wheel_name()}` and `{CONSTRAINTS}` from the lab's page "
+        f"beside it, and in that folder:\n\n```console\n{console}\n```"
     )
 
 
@@ -248,7 +249,7 @@ def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -
     ]
     inputs = [part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes())]
     inputs.append(repository.encode())
-    wheel = folder / f"{PACKAGE}-{package_facts()['version']}-py3-none-any.whl"
+    wheel = folder / wheel_name()
     write_whole(wheel, derived("wheel", inputs, lambda: built_wheel(root, repository)))
     return wheel
 

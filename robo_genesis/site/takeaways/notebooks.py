@@ -39,6 +39,7 @@ KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
 CHECK = """\
 # Is this the engine that the lab was written for?
+import sys
 from importlib.metadata import PackageNotFoundError, version
 
 NEEDED = {needed!r}
@@ -51,22 +52,20 @@ for package, needed in NEEDED.items():
         raise RuntimeError(
             f"This notebook needs {{package}} {{needed}}; it is {{found}} here. Install it where\\n"
             "{wheel} lies, then restart the kernel:\\n"
-            "    {install}\\n"
+            f"    {{sys.executable}} -m pip install -c constraints.txt ./{wheel}\\n"
             "To try another version on purpose, change NEEDED in this cell."
         )
 print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\\n")"""
 
 
-def version_check(needed: Mapping[str, str], wheel: str, commands: Sequence[str]) -> str:
+def version_check(needed: Mapping[str, str], wheel: str) -> str:
     """Return code that requires versions of packages, and otherwise names the command to install.
 
     Args:
         needed: version by package.
         wheel: file name of the course's package.
-        commands: see `files.run_commands`.
     """
-    install = next(line for line in commands if " install " in line).replace("\\\n  ", "")
-    return CHECK.format(needed=needed, wheel=wheel, install=install)
+    return CHECK.format(needed=needed, wheel=wheel)
 
 
 def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> NotebookNode:

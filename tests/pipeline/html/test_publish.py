@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -41,6 +42,18 @@ def test_site_and_bundles_are_published_together_and_labs_apart_from_other_pages
     ]
     assert (bundle / "manifest.json").is_file()
     assert names(book) == {"_build"}
+
+
+def test_a_web_server_can_read_the_site_whatever_the_umask(tmp_path, draft):
+    book = make_book(tmp_path)
+    before = os.umask(0o077)
+    try:
+        publish(book, draft.folder, lambda folder: (folder / "build.json").touch())
+    finally:
+        os.umask(before)
+    modes = {p.is_dir(): p.stat().st_mode & 0o777 for p in (book / "_build").rglob("*")}
+    assert modes == {True: 0o755, False: 0o644}
+    assert (book / "_build").stat().st_mode & 0o777 == 0o755
 
 
 def test_a_failure_leaves_the_old_site_alone(tmp_path, draft):

@@ -40,6 +40,7 @@ time.sleep(1)
 os._exit(3)"""
 LINKED = WRITE_BUNDLE + '\n(folder / "log.txt").symlink_to("/etc/hostname")'
 # As the system does when memory runs out.
+MEMORY = "import os\nos.kill(os.getpid(), 9)"
 KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\nimport time; time.sleep(60)"
 BROKEN = {
     "good": notebook(cell(GREEN)),
@@ -52,6 +53,7 @@ BROKEN = {
     "link": notebook(cell(LINKED), front=LAB_FRONT),
     "killed": notebook(cell(KILLS)),
     "long": notebook(cell("for k in range(40): print('x' * 99_999)")),
+    "memory": notebook(cell(MEMORY)),
     "twin": notebook(cell(GREEN)),  # the code of `good`
 }
 
@@ -67,7 +69,9 @@ def execute(folder: Path, **settings):
 def broken(tmp_path_factory):
     folder = tmp_path_factory.mktemp("broken")
     make_book(folder, **BROKEN)
-    return folder, execute(folder, jobs=2, environment={"TMPDIR": "/tmp"})
+    with pytest.MonkeyPatch.context() as changed:  # a socket's path may have 107 characters
+        changed.setattr("tempfile.tempdir", str(tmp_path_factory.mktemp("long" * 30)))
+        return folder, execute(folder, jobs=2, environment={"TMPDIR": "/tmp"})
 
 
 def test_all_pages_are_tried_and_only_good_ones_are_stored(broken):
@@ -84,7 +88,7 @@ def test_all_pages_are_tried_and_only_good_ones_are_stored(broken):
 
 def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     report = failure_report(list(broken[1].values()))
-    assert "7 of 9 pages failed." in report
+    assert "8 of 10 pages failed." in report
     place = report.index("check, code cell 2, line ")
     part = report[place : report.index("\n\n", place)]
     assert part.startswith(
@@ -104,7 +108,8 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
         ("bundle", "BundleMissing", "the run left no l04/more/<backend>/manifest.json", None),
         ("link", "NotStored", "files: outputs/cpu/log.txt is a link or device", None),
         ("long", "OutputSize", "the cell puts out ", 1),
-        ("killed", "WorkerDied", "ended in cell 1 with status -9", None),
+        ("killed", "WorkerDied", "ended in cell 1 with SIGKILL (Killed). If nobody stopped", None),
+        ("memory", "DeadKernelError", "SIGKILL (Killed). If nobody stopped it, the memory", 1),
     ],
 )
 def test_each_kind_of_failure_is_named(broken, name, error, said, cell):

@@ -24,5 +24,5 @@ def test_a_kernel_gets_the_machine_s_variables_the_engine_s_switches_and_its_own
     tmp_path, monkeypatch, name, value
 ):
     monkeypatch.setenv(name, "x")
-    environment = clean_environment(tmp_path, tmp_path, "/checkout", {"OWN": "1"})
+    environment = clean_environment(tmp_path, "/checkout", {"OWN": "1"})
     assert environment.get(name) == value

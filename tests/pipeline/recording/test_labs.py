@@ -57,7 +57,7 @@ def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_pa
         run_ids.append(json.loads((place / "manifest.json").read_text())["predicate"]["run_id"])
     assert run_ids[0] != run_ids[1]
     stages = re.findall(r"^\[.*\] (\w+)", said, re.MULTILINE)
-    assert list(dict.fromkeys(stages)) == ["probe", "execute", "verify", "record"]
+    assert list(dict.fromkeys(stages)) == ["probe", "lab", "execute", "verify", "record"]
     assert "\nCheckout: changed since commit 0123456789ab, and the manifest says so; " in said
     assert checkout(None).startswith("Checkout: no git here, so no commit is recorded")
 

@@ -124,6 +124,15 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
     assert "the engine would start now" in backend["found"]
 
 
+def test_the_wheel_installs_itself_beside_the_constraints(tmp_path):
+    command = [sys.executable, "-m", "robo_genesis.install"]
+    given = os.environ | {"PYTHONPATH": files.build_wheel(tmp_path).name}
+    done = subprocess.run(command, cwd=tmp_path, env=given, capture_output=True, text=True)
+    assert f"{tmp_path}/constraints.txt is not a file" in done.stderr
+    assert done.returncode == 1
+    assert not (tmp_path / "course").exists()
+
+
 @pytest.mark.parametrize(
     ("given", "valid", "offered"),
     [
@@ -143,21 +152,22 @@ def test_a_valid_repository_on_github_alone_offers_a_codespace(given, valid, off
 
 
 def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
-    commands = files.run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb")
+    commands = files.run_commands("https://example.org/cpu", "lab.ipynb")
     page = SimpleNamespace(notebook=new_notebook(cells=[new_markdown_cell("# A lab\n\nText.")]))
     ran = SimpleNamespace(run_id="0" * 32, started="2026-01-02T10:00:00Z")
     config = SimpleNamespace(html_title="Course", author="Its authors")
-    text = files.origin_of(page, ran, "robo.whl", commands, config, "student notebook")
+    text = files.origin_of(page, ran, commands, config, "student notebook")
     first, second, *_ = text.splitlines()
     pin = project.engine_pin()
     assert first.startswith(f"> Course, *A lab*: student notebook. Written for Genesis {pin};")
     assert first.endswith("the site shows run 00000000 of 2026-01-02.")
     assert second.startswith("> © Its authors. Code: MIT licence. Text and figures: CC BY 4.0.")
+    wheel = files.wheel_name()
     assert text.endswith(
-        f"To run it on {files.system()}, put `robo.whl` and `constraints.txt` from the lab's page "
-        "beside it, and in that folder:\n\n```console\npython3 -m venv course\n"
-        "course/bin/pip install -c constraints.txt \\\n  --extra-index-url https://example.org/cpu "
-        "\\\n  ./robo.whl jupyterlab\ncourse/bin/jupyter lab lab.ipynb\n```"
+        f"To run it on {files.system()}, put `{wheel}` and `constraints.txt` from the lab's page "
+        "beside it, and in that folder:\n\n```console\n"
+        f"PYTHONPATH={wheel} python3 -m robo_genesis.install \\\n  https://example.org/cpu\n"
+        "course/bin/jupyter lab lab.ipynb\n```"
     )
 
 
