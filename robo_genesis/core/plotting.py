@@ -6,7 +6,7 @@ theme, so a figure has no colours but the palette's.
 """
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -243,6 +243,15 @@ def legend_above(ax: Axes, title: str) -> None:
     ax.set_title(title, loc="left", pad=8 + 15.5 * rows)
     ax.legend(loc="lower left", bbox_to_anchor=(-0.02, 0.99), borderaxespad=0, labelspacing=0.2,
               columnspacing=1.2, ncols=2)  # fmt: skip
+
+
+def log_axis(ax: Axes, ticks: Iterable[float], label: str) -> None:
+    """Make the horizontal axis logarithmic and name it, with a tick at each of some values alone."""
+    shown = sorted(set(ticks))
+    ax.set_xscale("log")
+    ax.set_xticks(shown, [f"{tick:g}" for tick in shown])
+    ax.minorticks_off()
+    ax.set_xlabel(label)
 
 
 def label_ends(ax: Axes, title: str) -> None:

@@ -71,7 +71,7 @@ def test_a_spoiled_bundle_is_refused_by_its_code(copy, name):
 def test_another_judgement_changes_a_verdict_and_nothing_else(copy, monkeypatch):
     judgements = [
         (spec, "EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 2}, "structure"),
-        (spec, "FINER", (("baseline", "dt20_sub1"),), "one_factor"),
+        (spec, "ONE_FACTOR", {("baseline", "dt20_sub1"): {"substeps"}}, "one_factor"),
         (spec, "COARSE_SHARE", 1e9, "energy_converges"),
     ]
     judged_again(copy("lab"), monkeypatch, judgements)

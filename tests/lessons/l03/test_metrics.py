@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lessons.body_runs import body_at, slide_on_corners
 
-from robo_genesis.lessons.l03 import metrics, plots, spec, study_deeper, study_spec, tables, theory
+from robo_genesis.lessons.l03 import metrics, plots, spec, study, study_spec, tables, theory
 from robo_genesis.lessons.l03.metrics import bounce_metrics, landing_metrics, slide_metrics
 from robo_genesis.lessons.l03.text import readable
 from robo_genesis.sim.bodies.contacts import TOP
@@ -135,7 +135,7 @@ def test_the_kept_share_is_that_of_the_flights(contact_traces):
 
 def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
     traces = experiments["contact"].traces
-    fine = study_deeper.distance_between(traces["dt10_sub1"], traces["mujoco_dt20_sub1"])
+    fine = study.distance_between(traces["dt10_sub1"], traces["mujoco_dt20_sub1"])
     assert len(fine) == 76  # every second state of the finer one
     assert fine[0] == 0
 

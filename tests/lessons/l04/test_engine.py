@@ -13,7 +13,7 @@ from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.batch import run_batch
-from robo_genesis.sim.arm.franka import LINK_PARENTS, Q_START
+from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.joint_control import CaseError, run_case
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 
@@ -53,7 +53,7 @@ def test_a_batch_repeats_and_refuses_cases_that_do_not_fit(lab):
 
 def test_both_engines_give_one_inertia_and_one_gravity_in_each_posture(lab):
     for raised in (0.8, 0.0, spec.STEP):  # a posture must not be read from the one before
-        q = spec.with_entry(Q_START, spec.START_OF_STEP + raised)
+        q = spec.changed(spec.BASELINE, q_target=spec.START_OF_STEP + raised).q_target
         inertia = dynamics.effective_inertia(lab.scene, lab.franka, lab.joints, q)
         gravity = dynamics.gravity_effort(lab.scene, lab.franka, lab.joints, q)
         second_inertia, second_gravity = mujoco_joints.at_rest(q)
