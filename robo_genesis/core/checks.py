@@ -85,11 +85,6 @@ def noted(label: str, found: Any) -> Finding:
     return Finding(label, found, True, "any value")
 
 
-def observed(label: str, found: Any, what: str) -> Finding:
-    """Require any value: what was not observed is None."""
-    return Finding(label, found, found is not None, what)
-
-
 def equal(label: str, found: Any, expected: Any, recorded: bool = True) -> Finding:
     """Require exactly the expected value."""
     value, required = plain(found), plain(expected)

@@ -64,6 +64,7 @@ def use_course_style() -> None:
             "axes.labelcolor": text,
             "axes.spines.right": False,
             "axes.spines.top": False,
+            "axes.titlelocation": "left",
             "axes.titlesize": "medium",
             "figure.constrained_layout.use": True,
             "figure.facecolor": PARTS["ground"].light,
@@ -221,7 +222,8 @@ def _from_the_side(
         for number, line in enumerate(lines):
             ax.plot(*line.T, label="" if number else label, **look(name, **more))
     title = f"Schematic of measured {what}:\nthis is not a camera frame"
-    ax.set(aspect="equal", xlabel="x [m]", ylabel="z [m]", title=title)
+    ax.set(aspect="equal", xlabel="x [m]", ylabel="z [m]")
+    ax.set_title(title, loc="center")
     ax.legend()
     return ax
 
@@ -232,7 +234,7 @@ def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
     if legend == "above":
         legend_above(ax, title)
     else:
-        ax.set_title(title, loc="left")
+        ax.set_title(title)
         ax.legend(loc=legend)  # type: ignore[call-overload]
     return ax
 
@@ -240,13 +242,13 @@ def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
 def legend_above(ax: Axes, title: str) -> None:
     """Put the legend above the axes, in two columns, and the title above it."""
     rows = -(-len(ax.get_legend_handles_labels()[1]) // 2)
-    ax.set_title(title, loc="left", pad=8 + 15.5 * rows)
+    ax.set_title(title, pad=8 + 15.5 * rows)
     ax.legend(loc="lower left", bbox_to_anchor=(-0.02, 0.99), borderaxespad=0, labelspacing=0.2,
               columnspacing=1.2, ncols=2)  # fmt: skip
 
 
 def log_axis(ax: Axes, ticks: Iterable[float], label: str) -> None:
-    """Make the horizontal axis logarithmic and name it, with a tick at each of some values alone."""
+    """Make the horizontal axis logarithmic, with ticks at some values alone, and name it."""
     shown = sorted(set(ticks))
     ax.set_xscale("log")
     ax.set_xticks(shown, [f"{tick:g}" for tick in shown])
@@ -259,7 +261,7 @@ def label_ends(ax: Axes, title: str) -> None:
 
     Call it when all lines are drawn: it fixes the vertical range.
     """
-    ax.set_title(title, loc="left")
+    ax.set_title(title)
     ax.set_ylim(ax.get_ylim())
     lines = [line for line in ax.get_lines() if not str(line.get_label()).startswith("_")]
     places = ax.transData + ax.transAxes.inverted()

@@ -1,13 +1,13 @@
 """Named checks of landings, slides and bounces: all pass, or the invariant that failed is named."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TypeVar
 
 import numpy as np
 
 from robo_genesis.core import checks
 from robo_genesis.core.check_spec import READ_BACK
-from robo_genesis.core.checks import Finding, above, at_most, nearly, observed, within
+from robo_genesis.core.checks import Finding, above, at_most, nearly, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.lessons.l03 import spec, theory
@@ -84,8 +84,14 @@ def settles(run: Experiment) -> Iterator[Finding]:
 
 def stops(run: Experiment) -> Iterator[Finding]:
     """Each pushed cube stops within the window by the declared rule."""
-    for name, found in measured(run, SlideMetrics).items():
-        yield observed(f"{name}.stop_distance_m", found.stop_distance, "a distance")
+    distances = {n: found.stop_distance for n, found in measured(run, SlideMetrics).items()}
+    return stopped(distances)
+
+
+def stopped(distances: Mapping[str, float | None]) -> Iterator[Finding]:
+    """Require that each run has a stopping distance [m]."""
+    for name, distance in distances.items():
+        yield Finding(f"{name}.stop_distance_m", distance, distance is not None, "a distance")
 
 
 def friction_orders(run: Experiment) -> Iterator[Finding]:
@@ -125,7 +131,8 @@ def energy_converges(run: Experiment) -> Iterator[Finding]:
     expected = 100 * theory.kept_at_bounces(run.cases[finest].spring[1])
     yield within(f"{finest}.first_kept_percent", kept[finest], expected, spec.FINE_SHARE)
     for name in coarser:
-        yield observed(f"{name}.first_kept_percent", kept[name], "a share")
+        bounced = kept[name] is not None
+        yield Finding(f"{name}.first_kept_percent", kept[name], bounced, "a share")
     errors = [abs(share - expected) for share in kept.values() if share is not None]
     yield above("largest_difference_percent", max(errors, default=0.0), spec.COARSE_SHARE)
 

@@ -24,7 +24,7 @@ def styles(**marks: str) -> dict[str, dict[str, Any]]:
 
 
 LANDINGS = styles(baseline="baseline", dt10_sub1="first", dt20_sub2="third", dt20_sub1="second")
-SAMPLES = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
+SAMPLES: Styles = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
     "dt20_sub2": {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8},
     "dt20_sub1": {"marker": "^", "markersize": 3},
 }
@@ -54,8 +54,8 @@ def landings(run: Experiment) -> Figure:
         clear = 1000 * metrics.clearance(run.traces[name], run.cases[name])
         ax.plot(run.traces[name].t, clear, **style, **SAMPLES[name])
     ax.axhline(0, **LINE)
-    ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
-    ax.set_title("Below zero, the cube is in the table", loc="left")
+    ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]",
+           title="Below zero, the cube is in the table")  # fmt: skip
     legend_below(figure)
     return figure
 
@@ -72,8 +72,8 @@ def contact_counts(run: Experiment) -> Figure:
         deepest = int(metrics.clearance(run.traces[name], run.cases[name]).argmin())
         ax.step(t, counts, where="post", **style)
         ax.plot(t[deepest], counts[deepest], marker="v", markersize=8, **style)
-        ax.set(xlim=WINDOW, yticks=[0, 4], ylim=(-0.5, 4.8))
-        ax.set_title(f"{spec.LABELS[name]} (triangle: deepest sample)", loc="left")
+        title = f"{spec.LABELS[name]} (triangle: deepest sample)"
+        ax.set(title=title, xlim=WINDOW, yticks=[0, 4], ylim=(-0.5, 4.8))
     axes[-1].set_xlabel("time [s]")
     return figure
 
@@ -115,8 +115,7 @@ def stopping_distances(run: Experiment) -> Figure:
     words = [spec.LABELS[name].replace(" on ", "\non ") for name in SLIDES]
     ax.set_yticks(range(len(words)), words)
     ax.invert_yaxis()
-    ax.set_xlabel("distance [m]")
-    ax.set_title("Bars: measured. Dotted marks: v² / (2 μ g)", loc="left")
+    ax.set(xlabel="distance [m]", title="Bars: measured. Dotted marks: v² / (2 μ g)")
     return figure
 
 
@@ -131,8 +130,7 @@ def ball_energies(run: Experiment) -> Figure:
             share = np.where(clear, 100 * energy(trace, case) / start, np.nan)
             ax.plot(trace.t, share, linewidth=1.5, **style)
     for ax, title in zip(axes, ("Total energy", "Total energy − m g h v / 2"), strict=True):
-        ax.set_title(title, loc="left")
-        ax.set(ylabel="share of the start [%]", ylim=(50, 108))
+        ax.set(title=title, ylabel="share of the start [%]", ylim=(50, 108))
     axes[1].set_xlabel("time [s]")
     axes[1].legend(loc="lower left")
     return figure
@@ -143,7 +141,7 @@ def kept_by_step(run: Experiment) -> Figure:
     figure, ax = plotting.axes(3.2)
     balls = checks.measured(run, metrics.BounceMetrics)
     h = [1000 * run.cases[name].h for name in balls]
-    shares = [found.first_kept for found in balls.values()]
+    shares = np.array([found.first_kept for found in balls.values()], float)
     ax.plot(h, shares, marker="o", label="measured", **look("baseline"))
     expected = 100 * theory.kept_at_bounces(spec.SPRING[1])
     ax.axhline(expected, label="linear spring", **look("target"))

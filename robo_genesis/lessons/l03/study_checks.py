@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted
-from robo_genesis.core.checks import observed, within
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics
@@ -121,7 +120,7 @@ def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
     for name in study.clean(run):
         case, distance = run.cases[name], run.metrics[name].stop_distance
         if distance is None:
-            yield observed(f"{name}.friction", None, "a coefficient")
+            yield Finding(f"{name}.friction", None, False, "a coefficient")
             continue
         apparent = theory.apparent_friction(case, distance + case.speed * case.h / 2)
         both = case.friction, case.surface_friction
@@ -199,8 +198,7 @@ def half_the_step_contradicts(run: Experiment) -> Iterator[Finding]:
     Coulomb's when the solver step of 5 ms is halved.
     """
     found = study.stops_of_lane(run, "high")
-    for name, distance in found.items():
-        yield observed(f"{name}.stop_distance_m", distance, "a distance")
+    yield from checks.stopped(found)
     coarse, half = (found[name] or 0.0 for name in (study.LANES["high"], study_spec.HALF_THE_STEP))
     change = abs(half - coarse) / theory.coulomb_distance(run.cases[study.LANES["high"]])
     yield above("change_at_half_the_step_share", change, study_spec.UNSETTLED)

@@ -47,8 +47,8 @@ def landings_by_step(run: Experiment) -> Figure:
         clear = 1000 * clearance(trace, case)[::every]
         ax.plot(trace.t[::every], clear, label=f"h = {1000 * case.h:g} ms", **style)
     ax.axhline(0, **LINE)
-    ax.set(xlim=(0.2, 0.34), ylim=(-26, 14), xlabel="time [s]", ylabel="clearance [mm]")
-    ax.set_title("Below zero: overlap", loc="left")
+    ax.set(xlim=(0.2, 0.34), ylim=(-26, 14), xlabel="time [s]", ylabel="clearance [mm]",
+           title="Below zero: overlap")  # fmt: skip
     ax.legend(loc="lower right")
     return figure
 
@@ -91,14 +91,12 @@ def hops(run: Experiment) -> Figure:
         h = {name: 1000 * run.cases[name].h for name in names}
         draw_hops(by_step, run, h, mark, label)
     log_axis(by_step, {*h.values()} - {2}, STEP_LABEL)
-    by_step.set_title("Push at 2 m/s", loc="left")
     by_step.legend(loc="lower right")
     speeds = {name: case.speed for name, case in study_spec.HOP_SPEED_CASES.items()}
     draw_hops(by_speed, run, speeds, "first")
     log_axis(by_speed, speeds.values(), "speed of the push [m/s]")
-    by_speed.set_title("h = 5 ms, μ = 0.5", loc="left")
-    for ax in (by_step, by_speed):
-        ax.set(ylabel="hop [mm]", yscale="log", ylim=(0.01, 100))
+    for ax, title in ((by_step, "Push at 2 m/s"), (by_speed, "h = 5 ms, μ = 0.5")):
+        ax.set(title=title, ylabel="hop [mm]", yscale="log", ylim=(0.01, 100))
         ax.set_yticks([0.01, 0.1, 1, 10, 100], ["0.01", "0.1", "1", "10", "100"])
         ax.minorticks_off()
     return figure

@@ -5,9 +5,9 @@ from itertools import product
 
 import numpy as np
 
+from robo_genesis.core import checks
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE, READ_BACK
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, nearly
-from robo_genesis.core.checks import noted
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted
 from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import format_value
@@ -24,7 +24,7 @@ from robo_genesis.sim.common_checks import posture, stamps
 def mapping(run: Experiment) -> Iterator[Finding]:
     """Seven arm joints and two finger joints are found by name, each with its own DOF."""
     model = run.readings["model"]
-    yield from model_counts(model, spec.EXPECTED_MODEL)
+    yield from checks.model_counts(model, spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
     yield equal("joint_types", run.joints.types, spec.EXPECTED_TYPES)
     for what, indices in (("dofs", run.joints.dofs_idx_local), ("qpos", run.joints.qs_idx_local)):

@@ -119,9 +119,9 @@ def defined(run: Experiment) -> Figure:
         if time is not None:
             at = int(np.abs(trace.t - time).argmin())
             arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9, "relpos": start}
-            ax.annotate(f"{name} {format_value(value, unit)}", (float(trace.t[at]), float(q[at])),
-                        (0.98, height), textcoords="axes fraction", ha="right", va="center",
-                        arrowprops=arrow)
+            text, place = f"{name} {format_value(value, unit)}", (float(trace.t[at]), float(q[at]))
+            ax.annotate(text, place, (0.98, height), textcoords="axes fraction", ha="right",
+                        va="center", arrowprops=arrow)  # fmt: skip
     _finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]", START)
     return figure
 
@@ -161,5 +161,4 @@ def _limits(ax: Axes, trace: Trace, until: float) -> None:
 
 
 def _finish(ax: Axes, title: str, ylabel: str, until: float) -> None:
-    ax.set_title(title, loc="left")
-    ax.set(xlabel="time [s]", ylabel=ylabel, xlim=(-0.005, until))
+    ax.set(title=title, xlabel="time [s]", ylabel=ylabel, xlim=(-0.005, until))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.experiment import inputs
-from robo_genesis.core.scene import DT, read_only
+from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
@@ -36,10 +36,11 @@ RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
 
 def changed(case: ControlCase, **entries: float) -> ControlCase:
     """Return a case in which only the stepped joint's entry of some fields differs."""
-    arrays = {field: np.array(getattr(case, field)) for field in entries}
-    for field, value in entries.items():
-        arrays[field][ENTRY] = value
-    return replace(case, **{field: read_only(values) for field, values in arrays.items()})
+    fields: dict[str, Any] = {name: np.array(getattr(case, name)) for name in entries}
+    for name, value in entries.items():
+        fields[name][ENTRY] = value
+        fields[name].setflags(write=False)
+    return replace(case, **fields)
 
 
 START_OF_STEP = float(franka.Q_START[ENTRY])

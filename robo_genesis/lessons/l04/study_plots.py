@@ -80,8 +80,7 @@ def _beside_ideal(
         for label, curve in of_case.items():
             last = look(CASE_MARKS[name] if label == [*of_case][-1] else "other")
             ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else last))
-        ax.set_title(name, loc="left")
-        ax.set(xlim=(0, 0.4), xlabel="time [s]", ylabel=ylabel)
+        ax.set(title=name, xlim=(0, 0.4), xlabel="time [s]", ylabel=ylabel)
         ax.legend(loc="lower right")
         ax.label_outer()
     return figure
@@ -132,7 +131,6 @@ def grid_saturation(run: Experiment) -> Figure:
         ax.grid(visible=False)
         ax.set_xticks(np.arange(len(KV)) + 0.5, [f"{value:g}" for value in KV])
         ax.set_yticks(np.arange(len(KP)) + 0.5, [f"{value:g}" for value in KP])
-        ax.set_title(f"step {step:g} rad", loc="left")
-        ax.set(xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
+        ax.set(title=f"step {step:g} rad", xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
         ax.label_outer()
     return figure

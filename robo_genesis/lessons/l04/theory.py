@@ -7,8 +7,7 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 
-CRITICAL = 1e-9
-"""A damping ratio this close to one counts as critical."""
+CRITICAL = 1e-9  # A damping ratio this close to one counts as critical
 
 
 @dataclass(frozen=True, slots=True)

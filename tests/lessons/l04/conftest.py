@@ -17,14 +17,11 @@ PAGES = {name: page for name, page in LESSON.pages.items() if name not in ("lab"
 @pytest.fixture(scope="session")
 def experiments(joints, frames) -> dict[str, Experiment]:
     """What each of these pages measured in runs that pass every check."""
-    traces = {}
-    for name, case in {n: case for page in PAGES.values() for n, case in page.cases.items()}.items():
-        second = study_spec.SECOND_RUNS.get(name)
-        traces[name] = (
-            mujoco_joints.run_case(case, LINKS, second.timestep, second.integrator)
-            if second
-            else driven(case, LINKS)
-        )
+    cases = {name: case for page in PAGES.values() for name, case in page.cases.items()}
+    second = study_spec.SECOND_RUNS
+    traces = {n: driven(case, LINKS) for n, case in cases.items() if n not in second}
+    for name, of in second.items():
+        traces[name] = mujoco_joints.run_case(cases[name], LINKS, of.timestep, of.integrator)
     traces[study_spec.ASSIGNED] = assigned(spec.BASELINE, LINKS, traces["baseline"])
     known = {"model": spec.EXPECTED_MODEL, study.GROUP: study.by_model(traces)}
     return {

@@ -16,6 +16,7 @@ from robo_genesis.sim.mujoco import joints as mujoco_joints
 
 pytestmark = pytest.mark.engine
 
+
 def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
     first = {name: run(spec.CASES[name]) for name in ("G1", "G2")}
     dofs = lab.joints.dofs_idx_local.tolist()
