@@ -178,6 +178,11 @@ def lecture_parameters() -> dict[str, Any]:
     return parameters() | {"further": case_inputs(MORE)}
 
 
+def solution_parameters() -> dict[str, Any]:
+    """Return the further inputs of the page about many solutions."""
+    return {"questions": case_inputs(QUESTIONS)}
+
+
 def view_parameters() -> dict[str, Any]:
     """Return the inputs of the page about cameras."""
     return parameters() | {"cut": CUT, "hand_fov": HAND_FOV, "on_hand": ON_HAND}
