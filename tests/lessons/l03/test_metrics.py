@@ -148,8 +148,8 @@ def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):
     ("value", "unit", "words"),
     [
         (0.006431, "m", "6.43 mm"), (-2.5e-5, "m", "−0.0250 mm"), (0.41040, "m", "0.4104 m"),
-        (0.00123, "J", "1.23 mJ"), (2.5e-7, "J", "0.250 µJ"), (0.22, "s", "0.22 s"),
-        (None, "m", "not observed"),
+        (0.00123, "J", "1.23 mJ"), (0.13074, "J", "131 mJ"), (2.5e-7, "J", "0.250 µJ"),
+        (0.22, "s", "0.22 s"), (0.0, "m", "0 mm"), (None, "m", "not observed"),
     ],
 )  # fmt: skip
 def test_a_value_has_a_unit_of_its_size(value, unit, words):
