@@ -145,7 +145,7 @@ CASES_OF = {
 }
 """The same without scenes."""
 
-# What only judges. A share is a tolerance relative to the expected value.
+# Limits, and tolerances of what comments name, that only judge; a share is relative
 
 DEPTH_SHARES = {"h_125us": 0.1, STIFF: 0.2}
 """Of a depth against v T / e, by scene with fine steps: at depths of a millimetre, with a time

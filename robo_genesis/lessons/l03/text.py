@@ -8,7 +8,7 @@ from robo_genesis.core.text import MICRO, SCALED, blocks, format_value, scaled_v
 
 MEASURES = False
 
-SHORT = {"m": 0.1, "J": 1.0}  # By unit, the value below which it is a thousand times smaller
+SHORT = {"m": 0.1, "J": 1.0}  # By unit, smaller values are written in its thousandth
 
 SENTENCES = {
     "The landings": {

@@ -51,13 +51,13 @@ def measure(trace: Trace, case: ControlCase) -> StepMetrics:
 
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     """Read passive damping, inertia and gravity effort at the start, in Genesis."""
-    q = spec.BASELINE.q_start
-    found = (
-        dynamics.passive_damping(robot, joints.dofs_idx_local.tolist()),
-        dynamics.effective_inertia(scene, robot, joints, q),
-        dynamics.gravity_effort(scene, robot, joints, q),
-    )
-    return {name: float(of[ENTRY]) for name, of in zip(AT_START, found, strict=True)}
+    q, dofs = spec.BASELINE.q_start, joints.dofs_idx_local.tolist()
+    found = {
+        "passive_damping": dynamics.passive_damping(robot, dofs),
+        "inertia_Genesis": dynamics.effective_inertia(scene, robot, joints, q),
+        "gravity_at_start_Genesis": dynamics.gravity_effort(scene, robot, joints, q),
+    }
+    return {name: float(values[ENTRY]) for name, values in found.items()}
 
 
 def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
