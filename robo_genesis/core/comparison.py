@@ -14,8 +14,7 @@ from robo_genesis.core.trace import TimeSeries
 
 HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"
 
-SAME_FLOAT = 1e-9
-"""Relative tolerance of a recorded value against the one that is computed again."""
+SAME_FLOAT = 1e-9  # Relative tolerance of a recorded value against the one that is computed again
 
 ROUNDING = 1e-12  # Tolerance of such a value near zero, in its own unit
 

@@ -6,7 +6,7 @@ theme, so a figure has no colours but the palette's.
 """
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -69,6 +69,7 @@ def use_course_style() -> None:
             "axes.prop_cycle": cycler("color", [MARKS[name].light for name in CYCLE]),
             "axes.spines.right": False,
             "axes.spines.top": False,
+            "axes.titlelocation": "left",
             "axes.titlesize": "medium",
             "figure.constrained_layout.use": True,
             "figure.facecolor": PARTS["ground"].light,
@@ -228,7 +229,8 @@ def _from_the_side(
         for number, line in enumerate(lines):
             ax.plot(*line.T, label="" if number else label, **look(name, **more))
     title = f"Schematic of measured {what}:\nthis is not a camera frame"
-    ax.set(aspect="equal", xlabel="x [m]", ylabel="z [m]", title=title)
+    ax.set(aspect="equal", xlabel="x [m]", ylabel="z [m]")
+    ax.set_title(title, loc="center")
     ax.legend()
     return ax
 
@@ -239,7 +241,7 @@ def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
     if legend == "above":
         legend_above(ax, title)
     else:
-        ax.set_title(title, loc="left")
+        ax.set_title(title)
         ax.legend(loc=legend)  # type: ignore[call-overload]
     return ax
 
@@ -247,9 +249,18 @@ def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
 def legend_above(ax: Axes, title: str) -> None:
     """Put the legend above the axes, in two columns, and the title above it."""
     rows = -(-len(ax.get_legend_handles_labels()[1]) // 2)
-    ax.set_title(title, loc="left", pad=8 + 15.5 * rows)
+    ax.set_title(title, pad=8 + 15.5 * rows)
     ax.legend(loc="lower left", bbox_to_anchor=(-0.02, 0.99), borderaxespad=0, labelspacing=0.2,
               columnspacing=1.2, ncols=2)  # fmt: skip
+
+
+def log_axis(ax: Axes, ticks: Iterable[float], label: str) -> None:
+    """Make the horizontal axis logarithmic, with ticks at some values alone, and name it."""
+    shown = sorted(set(ticks))
+    ax.set_xscale("log")
+    ax.set_xticks(shown, [f"{tick:g}" for tick in shown])
+    ax.minorticks_off()
+    ax.set_xlabel(label)
 
 
 def label_ends(ax: Axes, title: str) -> None:
@@ -257,7 +268,7 @@ def label_ends(ax: Axes, title: str) -> None:
 
     Call it when all lines are drawn: it fixes the vertical range.
     """
-    ax.set_title(title, loc="left")
+    ax.set_title(title)
     ax.set_ylim(ax.get_ylim())
     lines = [line for line in ax.get_lines() if not str(line.get_label()).startswith("_")]
     places = ax.transData + ax.transAxes.inverted()

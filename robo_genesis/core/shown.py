@@ -25,8 +25,7 @@ METADATA = "robo_genesis"
 
 TEXT, DRAWING = "text/markdown", "image/svg+xml"
 
-CHECKS = "robo_genesis.core.tables.checks_of_run"
-"""The function whose table `page.finish` shows."""
+CHECKS = "robo_genesis.core.tables.checks_of_run"  # The function whose table `page.finish` shows
 
 
 class ShownError(ValueError):

@@ -25,7 +25,7 @@ SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s",
 """The thousandth of a unit, in which small values are easier to read."""
 
 
-MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "1": "%"}
+MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "J": "µJ", "1": "%"}
 """A smaller unit still, and the hundredth of a share."""
 
 SCALES = dict.fromkeys(SCALED.values(), 1e3) | dict.fromkeys(MICRO.values(), 1e6) | {"%": 100.0}

@@ -4,7 +4,7 @@ A law yields nothing where it holds, and a finding where it is broken. Checks of
 laws, so the page, the recorder and the verification judge arrays alike.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
@@ -97,11 +97,16 @@ def mean_speed(
     yield from apart("motion", what, beyond, ZERO, room)
 
 
-def copied(trace: TimeSeries, others: Mapping[str, TimeSeries]) -> Iterator[Finding]:
-    """Yield the first run of another engine whose arrays of motion are the same to the last bit."""
+def copied(
+    trace: TimeSeries, traces: Mapping[str, TimeSeries], second: Collection[str]
+) -> Iterator[Finding]:
+    """Yield the first run of Genesis that has the motion of a run of another engine.
+
+    Arrays are the same to the last bit. `second` has the names of `traces` of the other engine.
+    """
     of_motion = ("q", "qd", "link_pos", "link_quat", "link_vel", "link_ang")
     motion = [field.name for field in fields(trace) if field.name in of_motion]
-    for label, other in others.items():
-        if same_arrays(trace, other, *motion):
+    for label, other in traces.items():
+        if label not in second and same_arrays(trace, other, *motion):
             what = f"run with the same motion as {label}, to the last bit,"
             yield broken("second-engine", what, "of another engine", "different")

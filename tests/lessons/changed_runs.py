@@ -86,6 +86,11 @@ def metric(name, **fields):
     )
 
 
+def joints(**fields):
+    """Change the map of the robot's joints."""
+    return lambda run: replace(run, joints=with_fields(run.joints, fields))
+
+
 def frames(**names):
     """Take each named camera frame from another one of the run."""
     return lambda run: replace(run, frames={n: run.frames[of] for n, of in names.items()})

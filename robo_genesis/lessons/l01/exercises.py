@@ -11,8 +11,7 @@ from robo_genesis.sim.bodies.free_fall import summed_drop
 
 MEASURES = False
 
-TINY = 1e-9
-"""Largest difference that rounding explains in float64 [m]."""
+TINY = 1e-9  # Largest difference that rounding explains in float64 [m]
 
 
 @as_test

@@ -13,19 +13,16 @@ MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 
-RADIUS = 0.08
-"""Radius of the sphere [m]."""
+RADIUS = 0.08  # Radius of the sphere [m]
 
 BASELINE = Drop(size=2 * RADIUS, density=500.0, height=0.5, steps=20)
 """The fall; `size` is the diameter of the sphere."""
 
 CASES = {"baseline": BASELINE}
 
-ASKED_STEPS = 15
-"""Outer steps after which the lab asks for the height."""
+ASKED_STEPS = 15  # Outer steps after which the lab asks for the height
 
-LINK = "sphere_baselink"
-"""The engine's name of the sphere's only link."""
+LINK = "sphere_baselink"  # The engine's name of the sphere's only link
 
 EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
 """`entities` counts those of the scene with the ground, the others belong to the sphere."""

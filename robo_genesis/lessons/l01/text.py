@@ -8,8 +8,7 @@ from robo_genesis.lessons.l01 import spec
 
 MEASURES = False
 
-COLUMNS = 42
-"""Longest line of printed text that a phone shows without scrolling [characters]."""
+COLUMNS = 42  # Longest line of printed text that a phone shows without scrolling [characters]
 
 
 def doctor_lines(steps: list[dict[str, str]]) -> str:

@@ -16,14 +16,11 @@ from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 MEASURES = False
 
-TINY = 1e-6
-"""Largest difference of a height [m] that rounding explains."""
+TINY = 1e-6  # Largest difference of a height [m] that rounding explains
 
-FAST = 1e-5
-"""Largest difference of a speed [m/s] that rounding explains."""
+FAST = 1e-5  # Largest difference of a speed [m/s] that rounding explains
 
-UNTIL_REST = 100
-"""Outer steps after which a dropped box lies on the ground."""
+UNTIL_REST = 100  # Outer steps after which a dropped box lies on the ground
 
 
 @as_test

@@ -14,11 +14,9 @@ from robo_genesis.lessons.l02.spec import AFTER, BEFORE
 GROUP = "life_cycle"
 """Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused it."""
 
-REFUSAL = "GenesisException"
-"""The exception with which the engine refuses a call."""
+REFUSAL = "GenesisException"  # The exception with which the engine refuses a call
 
-RENDER = "camera.render"
-"""The call that needs a camera."""
+RENDER = "camera.render"  # The call that needs a camera
 
 Attempts = Mapping[tuple[str, str], str | None]
 """By call and side: the engine's refusal, None if it accepted the call."""

@@ -15,11 +15,9 @@ from robo_genesis.sim.camera.frames import FrameError, require_frame
 
 MEASURES = False
 
-LEAP = 0.5
-"""Rise from which a box counts as leaping, as a share of its edge."""
+LEAP = 0.5  # Rise from which a box counts as leaping, as a share of its edge
 
-FALL_STEPS = 60
-"""Steps in which a box without collision geometry falls past the ground."""
+FALL_STEPS = 60  # Steps in which a box without collision geometry falls past the ground
 
 
 def second_init(gs: Any) -> Mistake:

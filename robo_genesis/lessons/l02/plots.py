@@ -29,7 +29,7 @@ def trays(run: Experiment) -> Figure:
     ax.bar(list(found), list(found.values()), color=look("baseline")["color"], width=0.4)
     ax.axhline(spec.RIM, **plotting.LINE)
     ax.set(ylabel="height of the ball [m]")
-    ax.set_title("Measured heights; the line is the rim:\nthis is not a camera frame", loc="left")
+    ax.set_title("Measured heights; the line is the rim:\nthis is not a camera frame")
     return figure
 
 
@@ -97,7 +97,7 @@ def gaps(run: Experiment) -> Figure:
     ax.loglog(h, expected, label="g h t / 2", **look("target"))
     ax.loglog(h, measured, "o", markersize=6, label="measured", color=look("baseline")["color"])
     ax.set(xlabel="solver step h [ms]", ylabel="farther down at the end [mm]")
-    ax.set_title("Difference at the end, by solver step", loc="left")
+    ax.set_title("Difference at the end, by solver step")
     ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
     ax.minorticks_off()

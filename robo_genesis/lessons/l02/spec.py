@@ -31,8 +31,7 @@ LABELS = {
 }
 """Words of a reader for runs: number and length of the solver steps in an outer step."""
 
-LINK = "box_baselink"
-"""The engine's name of the box's only link."""
+LINK = "box_baselink"  # The engine's name of the box's only link
 
 EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
 """`entities` counts those of the scene with the ground, the others belong to the box."""
@@ -44,8 +43,7 @@ AT_REST = 1e-6
 """Sideways motion [m], angular speed [rad/s] and a change of the unit quaternion up to this value
 count as zero."""
 
-SPEED_SHARE = 1e-5
-"""Tolerance of a speed against g t, as a share of the last speed: float32."""
+SPEED_SHARE = 1e-5  # Tolerance of a speed against g t, as a share of the last speed: float32
 
 FIRST_ORDER_SHARE = 0.02
 """Relative tolerance of a measured gap against g h t / 2: at the smallest step the gap is small and
@@ -72,11 +70,9 @@ RIM, BALL = 0.145, 0.03
 """Height of a tray's rim and radius of the ball that falls into it [m]. The tray's mesh is 0.15 m
 high, and its URDF file places it 5 mm lower."""
 
-RESTING = 2e-3
-"""How far a body at rest may be from where it just touches [m]."""
+RESTING = 2e-3  # How far a body at rest may be from where it just touches [m]
 
-TRAYS = "trays"
-"""The camera frame of both trays."""
+TRAYS = "trays"  # The camera frame of both trays
 
 FURTHER_TOLERANCE = 1e-6
 """Tolerance of a further fall against the exact sum: float32 heights of up to a metre [m]."""

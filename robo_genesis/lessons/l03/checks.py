@@ -1,22 +1,13 @@
 """Named checks of landings, slides and bounces: all pass, or the invariant that failed is named."""
 
-from collections.abc import Iterator
-from itertools import combinations
+from collections.abc import Iterator, Mapping
 from typing import TypeVar
 
 import numpy as np
 
+from robo_genesis.core import checks
 from robo_genesis.core.check_spec import READ_BACK
-from robo_genesis.core.checks import (
-    Finding,
-    above,
-    at_most,
-    factors,
-    masses,
-    model_counts,
-    nearly,
-    within,
-)  # fmt: skip
+from robo_genesis.core.checks import Finding, above, at_most, nearly, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.lessons.l03 import spec, theory
@@ -35,12 +26,13 @@ def measured(run: Experiment, metrics: type[Metrics]) -> dict[str, Metrics]:
 
 def structure(run: Experiment) -> Iterator[Finding]:
     """The scene has two entities; the cube is one link, one geom, one joint, 6 DOFs and 7 qpos."""
-    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
+    return checks.model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def mass(run: Experiment) -> Iterator[Finding]:
     """The engine's masses are density times volume."""
-    return masses(run.readings["mass"], {case.shape: case.mass for case in run.cases.values()})
+    expected = {case.shape: case.mass for case in run.cases.values()}
+    return checks.masses(run.readings["mass"], expected)
 
 
 def settings(run: Experiment) -> Iterator[Finding]:
@@ -54,15 +46,7 @@ def settings(run: Experiment) -> Iterator[Finding]:
 
 def one_factor(run: Experiment) -> Iterator[Finding]:
     """Compared cases differ in the declared factors and in nothing else."""
-    allowed = {
-        **{pair: {"substeps"} for pair in spec.FINER},
-        spec.EQUAL_STEP: {"dt", "substeps"},
-        ("low_on_050", "high_on_050"): {"friction", "start"},
-        **{(f"{own}_on_050", f"{own}_on_030"): {"surface_friction"} for own in ("low", "high")},
-    }
-    finest = max(spec.BOUNCES, key=lambda name: spec.BOUNCES[name].substeps)
-    allowed |= {(name, finest): {"substeps"} for name in spec.BOUNCES if name != finest}
-    return factors(run.cases, allowed)
+    return checks.factors(run.cases, spec.ONE_FACTOR)
 
 
 def lands(run: Experiment) -> Iterator[Finding]:
@@ -86,14 +70,10 @@ def reported_late(run: Experiment) -> Iterator[Finding]:
 
 def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
     """Runs with equal solver steps and different outer steps share states at shared times."""
-    for pair in combinations(measured(run, LandingMetrics), 2):
-        short, long = sorted(pair, key=lambda name: run.cases[name].dt)
-        if run.cases[short].h != run.cases[long].h or run.cases[short].dt == run.cases[long].dt:
-            continue
-        for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
-            one, other = aligned(run.traces[short], run.traces[long], name)
-            error = np.abs(one - other).max()
-            yield at_most(f"{short}.{name}_against_{long}", error, spec.SAME_STATE)
+    short, long = spec.EQUAL_STEP
+    for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
+        one, other = aligned(run.traces[short], run.traces[long], name)
+        yield at_most(f"{short}.{name}_against_{long}", np.abs(one - other).max(), spec.SAME_STATE)
 
 
 def settles(run: Experiment) -> Iterator[Finding]:
@@ -104,9 +84,14 @@ def settles(run: Experiment) -> Iterator[Finding]:
 
 def stops(run: Experiment) -> Iterator[Finding]:
     """Each pushed cube stops within the window by the declared rule."""
-    for name, found in measured(run, SlideMetrics).items():
-        stopped = found.stop_distance is not None
-        yield Finding(f"{name}.stop_distance_m", found.stop_distance, stopped, "a distance")
+    distances = {n: found.stop_distance for n, found in measured(run, SlideMetrics).items()}
+    return stopped(distances)
+
+
+def stopped(distances: Mapping[str, float | None]) -> Iterator[Finding]:
+    """Require that each run has a stopping distance [m]."""
+    for name, distance in distances.items():
+        yield Finding(f"{name}.stop_distance_m", distance, distance is not None, "a distance")
 
 
 def friction_orders(run: Experiment) -> Iterator[Finding]:

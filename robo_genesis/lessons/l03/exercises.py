@@ -15,11 +15,9 @@ from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 
 MEASURES = False
 
-TINY = 1e-6
-"""Largest difference of a returned length or time that rounding explains."""
+TINY = 1e-6  # Largest difference of a returned length or time that rounding explains
 
-SUNK = 2e-3
-"""How deep a cube at rest may be in the table [m]."""
+SUNK = 2e-3  # How deep a cube at rest may be in the table [m]
 
 
 @as_test

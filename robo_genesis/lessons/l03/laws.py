@@ -26,9 +26,7 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
 def in_mujoco(run: Experiment, name: str) -> Iterator[Finding]:
     """Yield what a run of `mujoco_contacts.run_case` does not have."""
     trace, case, own_defaults = run.traces[name], run.cases[name], name == study_spec.OWN_DEFAULTS
-    yield from copied(
-        trace, {n: of for n, of in run.traces.items() if n not in study_spec.IN_MUJOCO}
-    )
+    yield from copied(trace, run.traces, study_spec.IN_MUJOCO)
     yield from times(trace, case.steps, case.dt)
     yield from start(trace, case)
     for array, of in mujoco_contacts.each_step(trace, case, own_defaults).items():

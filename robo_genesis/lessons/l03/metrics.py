@@ -13,8 +13,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace, first_time, settled_from
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 
-CLEAR = 1e-4
-"""Clearance from which a body without contact points counts as separated [m]."""
+CLEAR = 1e-4  # Clearance from which a body without contact points counts as separated [m]
 
 RESTING_BAND = 5e-4
 """Half width of the band around the resting height in which a body has settled [m]."""
@@ -22,11 +21,9 @@ RESTING_BAND = 5e-4
 STOP_SPEED, STOP_HOLD = 0.01, 0.10
 """A body has stopped at the first sample from which it is slower [m/s] for this time [s]."""
 
-BOUNCES_COUNTED = 4
-"""Number of bounces after which the remaining energy is measured."""
+BOUNCES_COUNTED = 4  # Number of bounces after which the remaining energy is measured
 
-SHORTEST = 3
-"""Smallest number of consecutive states in the air that count as a flight."""
+SHORTEST = 3  # Smallest number of consecutive states in the air that count as a flight
 
 POSE = ("link_pos_m", "link_quat_wxyz")
 FLIGHT = ("contacts", *POSE, "t_s")

@@ -16,8 +16,7 @@ from robo_genesis.sim.bodies.contacts import TOP, ContactCase, build_world, run_
 
 MEASURES = False
 
-INSIDE = 1e-3
-"""Depth below the surface from which a body counts as inside [m]."""
+INSIDE = 1e-3  # Depth below the surface from which a body counts as inside [m]
 
 
 def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Mistake:

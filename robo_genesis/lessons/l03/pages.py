@@ -9,7 +9,7 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_deeper, study_spec
+from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_checks, study_spec
 from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 
 MEASURES = False
@@ -40,13 +40,10 @@ CUBE = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
-LAB = with_functions(CUBE, "make_scene", "read_contacts", "landing", "push", "stop")
 
 
-def further(
-    name: str, *own: Callable[[Experiment], Iterable[Finding]], camera: bool = False
-) -> MeasuringPage:
-    """Return a page with runs in Genesis and checks of its own."""
+def further(name: str, *own: Callable[[Experiment], Iterable[Finding]]) -> MeasuringPage:
+    """Return a page with runs in Genesis and checks of its own, and without a camera."""
     cases = study_spec.CASES_OF[name]
     return replace(
         CUBE,
@@ -54,20 +51,16 @@ def further(
         readings=readings(cases),
         checks=(*checks.OF_ALL_PAGES, *own),
         parameters=lambda: spec.parameters() | study_spec.parameters(name),
-        camera=camera,
+        camera=False,
     )
 
 
-LECTURE = further("lecture", *study.CHECKS, checks.posture, camera=True)
-LECTURE = replace(LECTURE, frames=(*LECTURE.frames, *study_spec.DEEPEST))
-CONTACT = further("contact", *study_deeper.OF_CONTACT)
+LECTURE = further("lecture", *study_checks.LECTURE, checks.posture)
+CONTACT = further("contact", *study_checks.CONTACT)
 IN_MUJOCO = {
     name: Run(case, note="run in MuJoCo, not in Genesis")
     for name, case in study_spec.IN_MUJOCO.items()
 }
-CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
-ENERGY = further("energy", *study_deeper.OF_ENERGY)
-MISTAKES = further("mistakes")
 
 LESSON = Lesson(
     spec=spec,
@@ -77,11 +70,11 @@ LESSON = Lesson(
         **dict.fromkeys(spec.BOUNCES, metrics.BounceMetrics),
     },
     pages={
-        "lab": LAB,
-        "lecture": LECTURE,
-        "mistakes": MISTAKES,
-        "contact": CONTACT,
-        "energy": ENERGY,
+        "lab": with_functions(CUBE, "make_scene", "read_contacts", "landing", "push", "stop"),
+        "lecture": replace(LECTURE, camera=True, frames=(*CUBE.frames, *study_spec.DEEPEST)),
+        "mistakes": further("mistakes"),
+        "contact": replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO}),
+        "energy": further("energy", *study_checks.ENERGY),
     },
     replays={
         "drops": Replay(

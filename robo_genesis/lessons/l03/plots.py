@@ -1,48 +1,39 @@
 """Figures of the lab: functions of the experiment."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import LINE, body_schematic, legend_above, look
+from robo_genesis.core.plotting import LINE, body_schematic, legend_above, log_axis, look
 from robo_genesis.lessons.l03 import checks, metrics, spec, theory
 from robo_genesis.sim.bodies.contacts import TOP
 
 MEASURES = False
 
-DOT = {"marker": "o", "markersize": 3}
-LANDINGS: Mapping[str, tuple[str, Mapping[str, Any]]] = {
-    "baseline": ("baseline", DOT),
-    "dt10_sub1": ("first", DOT),
-    "dt20_sub2": (
-        "third", {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8}),
-    "dt20_sub1": ("second", {"marker": "^", "markersize": 3}),
-}  # fmt: skip
-"""By landing, its mark and the style of its samples: two of these landings coincide, and one stays
-visible through the other's markers."""
-
-SLIDE_MARKS = {
-    "low_on_050": "first", "high_on_050": "second", "low_on_030": "third", "high_on_030": "other",
-}  # fmt: skip
-EQUAL_BELOW = {"high_on_050": {"linewidth": 4.0, "alpha": 0.45}}
-"""Style of a curve that lies below an equal one."""
-
-BOUNCES_SHOWN = {"bounce_sub1": "second", "bounce_sub2": "other", "bounce_sub100": "third"}
-WINDOW = (0.18, 0.44)
-"""Around the landing of the lab [s]."""
+Styles = Mapping[str, Mapping[str, Any]]
+"""By run, the style of its line and the line's label in the legend."""
 
 
-def steps_axis(ax: Axes, steps: Iterable[float]) -> None:
-    """Name the axis of solver steps [ms], with a tick at each."""
-    ticks = sorted(set(steps))
-    ax.set_xticks(ticks, [f"{step:g}" for step in ticks])
-    ax.minorticks_off()
-    ax.set_xlabel("solver step h [ms]")
+def styles(**marks: str) -> dict[str, dict[str, Any]]:
+    """Return the styles of runs with their marks of the palette."""
+    return {name: look(mark, label=spec.LABELS[name]) for name, mark in marks.items()}
+
+
+LANDINGS = styles(baseline="baseline", dt10_sub1="first", dt20_sub2="third", dt20_sub1="second")
+SAMPLES: Styles = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
+    "dt20_sub2": {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8},
+    "dt20_sub1": {"marker": "^", "markersize": 3},
+}
+"""Markers of the samples: two landings coincide, and one stays visible through the other's."""
+
+SLIDES = styles(low_on_050="first", high_on_050="second", low_on_030="third", high_on_030="other")
+BOUNCES = styles(bounce_sub1="second", bounce_sub2="other", bounce_sub100="third")
+WINDOW = (0.18, 0.44)  # Around the landing of the lab [s]
+STEP_LABEL = "solver step h [ms]"
 
 
 def legend_below(figure: Figure) -> None:
@@ -59,13 +50,12 @@ def posture(run: Experiment) -> Figure:
 def landings(run: Experiment) -> Figure:
     """Draw the clearance below each dropped cube at every sample, zero at the surface."""
     figure, ax = plotting.axes(4.6)
-    for name, (mark, samples) in LANDINGS.items():
-        trace, case = run.traces[name], run.cases[name]
-        clear = 1000 * metrics.clearance(trace, case)
-        ax.plot(trace.t, clear, label=spec.LABELS[name], **look(mark, **samples))
+    for name, style in LANDINGS.items():
+        clear = 1000 * metrics.clearance(run.traces[name], run.cases[name])
+        ax.plot(run.traces[name].t, clear, **style, **SAMPLES[name])
     ax.axhline(0, **LINE)
-    ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
-    ax.set_title("Below zero, the cube is in the table", loc="left")
+    ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]",
+           title="Below zero, the cube is in the table")  # fmt: skip
     legend_below(figure)
     return figure
 
@@ -77,43 +67,33 @@ def contact_counts(run: Experiment) -> Figure:
     """
     figure = plotting.figure(4)
     axes = figure.subplots(4, 1, sharex=True, sharey=True)
-    for ax, (name, (mark, _)) in zip(axes, LANDINGS.items(), strict=True):
+    for ax, (name, style) in zip(axes, LANDINGS.items(), strict=True):
         t, counts = run.traces[name].t, run.traces[name].contacts[:, 0]
         deepest = int(metrics.clearance(run.traces[name], run.cases[name]).argmin())
-        ax.step(t, counts, where="post", **look(mark))
-        ax.plot(t[deepest], counts[deepest], marker="v", **look(mark, markersize=8))
-        ax.set(xlim=WINDOW, yticks=[0, 4], ylim=(-0.5, 4.8))
-        ax.set_title(f"{spec.LABELS[name]} (triangle: deepest sample)", loc="left")
+        ax.step(t, counts, where="post", **style)
+        ax.plot(t[deepest], counts[deepest], marker="v", markersize=8, **style)
+        title = f"{spec.LABELS[name]} (triangle: deepest sample)"
+        ax.set(title=title, xlim=WINDOW, yticks=[0, 4], ylim=(-0.5, 4.8))
     axes[-1].set_xlabel("time [s]")
     return figure
 
 
 def pushed(run: Experiment) -> Figure:
     """Draw speed, clearance and angular speed of the lab's pushed cubes."""
-    return slides(run, SLIDE_MARKS, spec.LABELS, EQUAL_BELOW)
+    below = SLIDES["high_on_050"] | {"linewidth": 4.0, "alpha": 0.45}  # It lies below an equal one
+    return slides(run, SLIDES | {"high_on_050": below})
 
 
-def slides(
-    run: Experiment,
-    marks: Mapping[str, str],
-    labels: Mapping[str, str],
-    styles: Mapping[str, Mapping[str, Any]],
-) -> Figure:
-    """Draw speed along x, clearance and angular speed of pushed cubes.
-
-    Args:
-        run: the experiment.
-        marks: of the palette, by case to draw.
-        labels: by case.
-        styles: by case, what differs from the style of its mark.
-    """
+def slides(run: Experiment, styles: Styles) -> Figure:
+    """Draw speed along x, clearance and angular speed of pushed cubes."""
     figure = plotting.figure(7)
     axes = figure.subplots(3, 1, sharex=True)
-    for name, mark in marks.items():
-        trace, style = run.traces[name], look(mark, **styles.get(name, {}))
-        axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=labels[name], **style)
-        axes[1].plot(trace.t, 1000 * metrics.clearance(trace, run.cases[name]), **style)
-        axes[2].plot(trace.t, trace.link_ang[:, 0, 1], **style)
+    for name, style in styles.items():
+        trace = run.traces[name]
+        clear = 1000 * metrics.clearance(trace, run.cases[name])
+        curves = trace.link_vel[:, 0, 0], clear, trace.link_ang[:, 0, 1]
+        for ax, curve in zip(axes, curves, strict=True):
+            ax.plot(trace.t, curve, **style)
     heads = ("speed along x [m/s]", "clearance [mm]", "turning about y [rad/s]")
     for ax, head in zip(axes, heads, strict=True):
         ax.axhline(0, **LINE)
@@ -126,17 +106,16 @@ def slides(
 def stopping_distances(run: Experiment) -> Figure:
     """Draw stopping distances as bars, each with Coulomb's distance as a mark [m]."""
     figure, ax = plotting.axes(3.2)
-    for place, (name, mark) in enumerate(SLIDE_MARKS.items()):
+    for place, (name, style) in enumerate(SLIDES.items()):
         length = run.metrics[name].stop_distance
         if length is not None:
-            ax.barh(place, length, height=0.55, color=look(mark)["color"])
+            ax.barh(place, length, height=0.55, color=style["color"])
         formula = theory.coulomb_distance(run.cases[name])
         ax.plot([formula] * 2, [place - 0.4, place + 0.4], **look("target"))
-    words = [spec.LABELS[name].replace(" on ", "\non ") for name in SLIDE_MARKS]
+    words = [spec.LABELS[name].replace(" on ", "\non ") for name in SLIDES]
     ax.set_yticks(range(len(words)), words)
     ax.invert_yaxis()
-    ax.set_xlabel("distance [m]")
-    ax.set_title("Bars: measured. Dotted marks: v² / (2 μ g)", loc="left")
+    ax.set(xlabel="distance [m]", title="Bars: measured. Dotted marks: v² / (2 μ g)")
     return figure
 
 
@@ -144,15 +123,14 @@ def ball_energies(run: Experiment) -> Figure:
     """Draw the total energy of balls in the air, and the energy that the steps conserve."""
     figure = plotting.figure(6)
     axes = figure.subplots(2, 1, sharex=True)
-    for name, mark in BOUNCES_SHOWN.items():
+    for name, style in BOUNCES.items():
         trace, case = run.traces[name], run.cases[name]
         start, clear = metrics.total_energy(trace, case)[0], metrics.clearance(trace, case) > 0
         for ax, energy in zip(axes, (metrics.total_energy, metrics.conserved_energy), strict=True):
             share = np.where(clear, 100 * energy(trace, case) / start, np.nan)
-            ax.plot(trace.t, share, label=spec.LABELS[name], **look(mark, linewidth=1.5))
+            ax.plot(trace.t, share, linewidth=1.5, **style)
     for ax, title in zip(axes, ("Total energy", "Total energy − m g h v / 2"), strict=True):
-        ax.set_title(title, loc="left")
-        ax.set(ylabel="share of the start [%]", ylim=(50, 108))
+        ax.set(title=title, ylabel="share of the start [%]", ylim=(50, 108))
     axes[1].set_xlabel("time [s]")
     axes[1].legend(loc="lower left")
     return figure
@@ -163,13 +141,12 @@ def kept_by_step(run: Experiment) -> Figure:
     figure, ax = plotting.axes(3.2)
     balls = checks.measured(run, metrics.BounceMetrics)
     h = [1000 * run.cases[name].h for name in balls]
-    shares = [found.first_kept for found in balls.values()]
-    ax.semilogx(h, shares, marker="o", label="measured", **look("baseline"))
-    _, damping_ratio = spec.SPRING
-    expected = 100 * theory.kept_at_bounces(damping_ratio)
+    shares = np.array([found.first_kept for found in balls.values()], float)
+    ax.plot(h, shares, marker="o", label="measured", **look("baseline"))
+    expected = 100 * theory.kept_at_bounces(spec.SPRING[1])
     ax.axhline(expected, label="linear spring", **look("target"))
     ax.axhline(100, label="no loss", **LINE)
     ax.set_ylabel("kept at the first bounce [%]")
-    steps_axis(ax, h)
+    log_axis(ax, h, STEP_LABEL)
     legend_above(ax, "")
     return figure

@@ -18,8 +18,7 @@ from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
-LINK = "body"
-"""The record's name of the only link of each run; the engine's name depends on the shape."""
+LINK = "body"  # The record's name of the only link; the engine's name depends on the shape
 
 BASELINE = ContactCase(start=(0.0, 0.0, 1.0), duration=1.5)
 LANDINGS = {
@@ -47,8 +46,7 @@ SLIDES = {
 }
 """Two cubes of low and high own friction, side by side on two surfaces."""
 
-SPRING = (1.0, 0.01)
-"""Time constant [s] and damping ratio of a nearly undamped contact."""
+SPRING = (1.0, 0.01)  # Time constant [s] and damping ratio of a nearly undamped contact
 
 DROPPED_BALL = ContactCase(
     start=(0.0, 0.0, TOP + 0.04 + 0.10), duration=2.0, shape="ball", spring=SPRING
@@ -73,37 +71,37 @@ LABELS = {
 }
 """Words of a reader for runs: the steps of a landing, the frictions of a slide, the solver step."""
 
-FINER = (("dt10_sub1", "baseline"), ("dt20_sub1", "dt20_sub2"))
-"""Pairs that differ in substeps alone, the coarser one first."""
-
 EQUAL_STEP = ("dt10_sub1", "dt20_sub2")
 """A pair with equal solver steps and different outer steps."""
+
+ONE_FACTOR = {
+    ("dt10_sub1", "baseline"): {"substeps"},
+    ("dt20_sub1", "dt20_sub2"): {"substeps"},
+    EQUAL_STEP: {"dt", "substeps"},
+    ("low_on_050", "high_on_050"): {"friction", "start"},
+    ("low_on_050", "low_on_030"): {"surface_friction"},
+    ("high_on_050", "high_on_030"): {"surface_friction"},
+    **{(name, "bounce_sub100"): {"substeps"} for name in BOUNCES if name != "bounce_sub100"},
+}
+"""The only settings in which compared cases may differ."""
 
 EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
 """`entities` counts those of the scene with the surface, the others belong to the cube."""
 
-SAME_STATE = 1e-6
-"""Tolerance of states at shared times where the solver steps are equal [m]."""
+# Tolerances that only judge
 
-SAME_SLIDE = 1e-4
-"""Tolerance of a stopping distance where the friction of the pair did not change [m]."""
+SAME_STATE = 1e-6  # Of states at shared times where the solver steps are equal [m]
+SAME_SLIDE = 1e-4  # Of a stopping distance where the friction of the pair did not change [m]
+COULOMB_SHARE = 0.20  # Relative, of a stopping distance against Coulomb's: these cubes hop
+DEPTH_TOLERANCE = 1e-4  # Of a reported depth against that of the positions [m]: corners differ
 
-COULOMB_SHARE = 0.20
-"""Relative tolerance of a stopping distance against Coulomb's: these cubes hop."""
-
-# Tolerance of the conserved energy in a flight, as a share of the energy at the start: float32
-# rounds in each of up to some thousand solver steps. The bounded error of the total energy is at
-# least ten times as large.
+# Of the conserved energy in a flight, as a share of the energy at the start: float32 rounds in each
+# of up to some thousand solver steps. The bounded error of the total energy is at least ten times
+# as large.
 LEVEL_SHARE = 1e-4
 
-FINE_SHARE = 0.3
-"""Tolerance of the share kept at the first bounce with the finest step, against a spring [%]."""
-
-COARSE_SHARE = 1.5
-"""With some coarser step, that share differs from a spring's by more [%]."""
-
-DEPTH_TOLERANCE = 1e-4
-"""Tolerance of a reported depth against that of the positions [m]: corners differ a little."""
+FINE_SHARE = 0.3  # Of the share kept at the first bounce with the finest step, against a spring [%]
+COARSE_SHARE = 1.5  # With some coarser step, that share differs from a spring's by more [%]
 
 VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.87), "fov": 16}
 """The lesson's camera, close enough to show the cube large and its whole path."""

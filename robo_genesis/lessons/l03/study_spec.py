@@ -23,10 +23,7 @@ HOPPED = {name: SLIDES[name] for name in ("low_on_050", "high_on_050")}
 
 
 def by_step(kind: str, *steps: tuple[float, int]) -> dict[str, dict[str, Any]]:
-    """Return settings with each outer step [s] and number of substeps, named by the solver step.
-
-    The names have microseconds: `h_2500us`.
-    """
+    """Return settings by outer step [s] and substeps, named by the solver step: `h_2500us`."""
     return {f"{kind}_{1e6 * dt / n:.0f}us": {"dt": dt, "substeps": n} for dt, n in steps}
 
 
@@ -48,18 +45,13 @@ def side_by_side(
     }
 
 
-STEP_CASES = {
-    name: side_by_side(name, **step)
-    for name, step in by_step(
-        "h",
-        (0.02, 1), (0.01, 1), (0.005, 1), (0.004, 1), (0.0025, 1), (0.001, 1), (0.001, 2),
-        (0.001, 8),
-    ).items()
-}  # fmt: skip
+STEPS = (
+    (0.02, 1), (0.01, 1), (0.005, 1), (0.004, 1), (0.0025, 1), (0.001, 1), (0.001, 2), (0.001, 8),
+)  # fmt: skip
+STEP_CASES = {name: side_by_side(name, **step) for name, step in by_step("h", *STEPS).items()}
 """By solver step, the landing from each height with the default time constant."""
 
-AS_BASELINE = "h_5000us_10000"
-"""The landing with the baseline's height and solver step, with each solver step recorded."""
+AS_BASELINE = "h_5000us_10000"  # With its height and solver step, and each solver step recorded
 
 STIFF = "T_2ms"
 STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.0005, substeps=5)}
@@ -123,27 +115,19 @@ HOP_SPEED_CASES = {
 }  # fmt: skip
 """The cube with the low coefficient, pushed at each speed [m/s] with a solver step of 5 ms."""
 
-HALF_THE_STEP = "stop_2500us_high"
-"""The push of the cube with the higher coefficient at half the solver step of `HOPPED`."""
+HALF_THE_STEP = "stop_2500us_high"  # The push at half the solver step of `HOPPED`
 
 # The second engine
 
-COMPARED = ("baseline", "dt10_sub1", "dt20_sub1")
-"""Landings that also run in MuJoCo."""
+COMPARED = ("baseline", "dt10_sub1", "dt20_sub1")  # Landings that also run in MuJoCo
 
 BY_BOTH = {name: LANDINGS[name] for name in COMPARED} | HOPPED | CONVEX_SLIDES
 ENGINE_PAIRS = {name: f"mujoco_{name}" for name in BY_BOTH}
 """Runs in Genesis and in MuJoCo with equal settings."""
 
-OWN_DEFAULTS = "mujoco_own_baseline"
-"""The baseline in MuJoCo with MuJoCo's default contact."""
+OWN_DEFAULTS = "mujoco_own_baseline"  # The baseline in MuJoCo with MuJoCo's default contact
 
 IN_MUJOCO = {ENGINE_PAIRS[name]: case for name, case in BY_BOTH.items()} | {OWN_DEFAULTS: BASELINE}
-
-
-def flat(scenes: dict[str, dict[str, ContactCase]]) -> dict[str, ContactCase]:
-    """Return the cases of scenes by name."""
-    return {name: case for cases in scenes.values() for name, case in cases.items()}
 
 
 SCENES = {
@@ -155,86 +139,50 @@ SCENES = {
 }  # fmt: skip
 """The runs in Genesis of each page, by scene or by the studies that belong together."""
 
-CASES_OF = {page: flat(scenes) for page, scenes in SCENES.items()}
+CASES_OF = {
+    page: {name: case for cases in scenes.values() for name, case in cases.items()}
+    for page, scenes in SCENES.items()
+}
 """The same without scenes."""
 
-# What only judges
+# Limits, and tolerances of what comments name, that only judge; a share is relative
 
-DEPTH_SHARE = 0.1
-"""Tolerance of a depth at the finest step against v T / e, as a share."""
+DEPTH_SHARES = {"h_125us": 0.1, STIFF: 0.2}
+"""Of a depth against v T / e, by scene with fine steps: at depths of a millimetre, with a time
+constant of 2 ms, the contact is softer."""
 
-STIFF_SHARE = 0.2
-"""The same for a time constant of 2 ms: at depths of a millimetre the contact is softer."""
+FIRST_DEPTH = 2e-5  # Of a depth against that of the first sample in the table [m]
+SCATTER_COARSE = 0.5  # Least scatter of depth / (v T / e) over the heights at h = T / 2
+SCATTER_FINE = 0.05  # Largest one at the finest step
+TIME_CONSTANT = 1e-8  # Of the engine's time constant of a contact [s]
+RELEASE_SHARE = 0.1  # Of the speed of release against e⁻² of the impact speed
+REBOUND_SHARE = 0.25  # Of a rebound against that of a linear contact
 
-FIRST_DEPTH = 2e-5
-"""Largest difference of a depth from that of the first sample in the table [m]."""
-
-SCATTER_COARSE, SCATTER_FINE = 0.5, 0.05
-"""Scatter of depth / (v T / e) over the heights: at least this at h = T / 2, at most this at the
-finest step."""
-
-TIME_CONSTANT = 1e-8
-"""Tolerance of the engine's time constant of a contact [s]."""
-
-HOP = 0.01
-"""Clearance from which a slide counts as a hop [m]."""
-
-HOP_SHARE = 0.25
-"""Tolerance of a hop against the formula of one step, as a share, where it applies."""
-
+HOP = 0.01  # Clearance from which a slide counts as a hop [m]
+HOP_SHARE = 0.25  # Of a hop against the formula of one step, where it applies
 HOP_APPLIES = ("hop_10000us", "hop_5000us", "hop_2500us", "hop_2000us")
 """The steps at which the formula of one step is compared: the first step throws the cube off."""
+HOP_LEFT = 0.15  # Largest share of the hop at 5 ms that is left at the smaller steps studied
+INVISIBLE = 1e-3  # Height of a hop that nobody sees in a film of the scene [m]
+SLOW = 0.2  # Speed up to which a hop is invisible at a solver step of 5 ms [m/s]
 
-HOP_LEFT = 0.15
-"""Largest share of the hop at 5 ms that is left at the smaller steps studied."""
-
-SLOW = 0.2
-"""Speed up to which a hop is below `INVISIBLE` at a solver step of 5 ms [m/s]."""
-
-INVISIBLE = 1e-3
-"""Height of a hop that nobody sees in a film of the scene [m]."""
-
-SAME_HOP = 1e-4
-"""Tolerance of a hop between two engines with equal settings [m]."""
-
-STEPPED_TOLERANCE = 2e-4
-"""Tolerance of a slide on four corners against the stepped formula [m]."""
-
-NEARLY = 0.05
-"""Relative tolerance of a stopping distance that counts as nearly Coulomb's."""
-
-BLOW = 5.0
-"""Loss of speed, in multiples of μ g dt, above which it is more than friction under the weight."""
-
-RATIO_TOLERANCE = 0.02
-"""Relative tolerance of the ratio of two impulses against the coefficient of friction."""
-
-RULE_TOLERANCE = 0.02
-"""Tolerance of the coefficient that a clean slide shows against that of a rule."""
-
-ENGINES_APART = 5e-5
-"""Tolerance of landings between two engines with equal settings [m]."""
-
-FINEST = 6
-"""Number of the smallest steps that are compared for convergence, all at most T / 10."""
-
+STEPPED_TOLERANCE = 2e-4  # Of a slide on four corners against the stepped formula [m]
+RULE_TOLERANCE = 0.02  # Of the coefficient that a clean slide shows against that of a rule
+NEARLY = 0.05  # Share of a stopping distance that counts as nearly Coulomb's
+RATIO_TOLERANCE = 0.02  # Share of the ratio of two impulses against the coefficient of friction
+BLOW = 5.0  # Loss of speed, in multiples of μ g dt, that friction under the weight cannot cause
+FINEST = 6  # Number of the smallest steps that are compared for convergence, all at most T / 10
 UNSETTLED = 0.05
 """Change at half the step, or spread over the finest steps, from which a stopping distance depends
 on the step, as a share of Coulomb's distance."""
 
-RELEASE_SHARE = 0.1
-"""Tolerance of the speed of release against e⁻² of the impact speed, as a share."""
-
-REBOUND_SHARE = 0.25
-"""Tolerance of a rebound against that of a linear contact, as a share."""
+SAME_HOP = 1e-4  # Of a hop between two engines with equal settings [m]
+ENGINES_APART = 5e-5  # Of landings between them [m]
 
 
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
-    found: dict[str, Any] = {
-        "cases": case_inputs(CASES_OF[page]),
-        "scenes": {name: list(cases) for name, cases in SCENES[page].items()},
-    }
+    found: dict[str, Any] = {name: case_inputs(cases) for name, cases in SCENES[page].items()}
     if page == "contact":
         found |= {"engine_pairs": ENGINE_PAIRS, "with_its_own_contact": OWN_DEFAULTS}
     return {"studies": found}

@@ -1,7 +1,7 @@
 """Tables of landings, slides and bounces: functions of the experiment."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import wraps
 
 import numpy as np
@@ -10,7 +10,7 @@ from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.text import NOT_OBSERVED, format_value
-from robo_genesis.lessons.l03 import checks, spec, study, study_deeper, study_spec, theory
+from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, BounceMetrics, LandingMetrics, SlideMetrics
 from robo_genesis.lessons.l03.text import millimetres, milliseconds, readable
 from robo_genesis.sim.bodies.contacts import ContactCase
@@ -45,30 +45,30 @@ def span(values: Sequence[float], digits: int = 2) -> str:
 # The lab
 
 
-def by_run(metrics: Mapping[str, CaseMetrics], left_out: str = "") -> Iterator[Row]:
-    """Yield one row per run with one column per metric; one may be left out for room."""
-    for run, of in metrics.items():
-        labels = of.about("label")
+def by_run(run: Experiment, kind: type[CaseMetrics], left_out: str = "") -> Iterator[Row]:
+    """Yield one row per run of a kind with one column per metric; one may be left out for room."""
+    labels = kind.about("label")
+    for name, of in checks.measured(run, kind).items():
         cells = {labels[n]: readable(v, unit) for n, v, unit in of.items() if n != left_out}
-        yield {"run": spec.LABELS[run]} | cells
+        yield {"run": spec.LABELS[name]} | cells
 
 
 @as_table
 def landings(run: Experiment) -> Iterator[Row]:
     """Return the metrics of the dropped cubes."""
-    return by_run(checks.measured(run, LandingMetrics), left_out="touchdown")
+    return by_run(run, LandingMetrics, left_out="touchdown")
 
 
 @as_table
 def slides(run: Experiment) -> Iterator[Row]:
     """Return the metrics of the pushed cubes."""
-    return by_run(checks.measured(run, SlideMetrics), left_out="first_speed")
+    return by_run(run, SlideMetrics, left_out="first_speed")
 
 
 @as_table
 def bounces(run: Experiment) -> Iterator[Row]:
     """Return the metrics of the balls."""
-    return by_run(checks.measured(run, BounceMetrics))
+    return by_run(run, BounceMetrics)
 
 
 # The lecture
@@ -178,7 +178,7 @@ def settings_of_cones(run: Experiment) -> Iterator[Row]:
 def first_impulses(run: Experiment) -> Iterator[Row]:
     """Return the impulses of the first outer step of the pushed cubes."""
     for name in study_spec.HOPPED:
-        case, (lost, gained) = run.cases[name], study_deeper.first_impulses(run, name)
+        case, (lost, gained) = run.cases[name], study.first_impulses(run, name)
         mu = theory.pair_friction(case)
         yield {
             "μ of the pair": f"{mu:g}",
@@ -193,7 +193,7 @@ def first_impulses(run: Experiment) -> Iterator[Row]:
 @as_table
 def stops_by_step(run: Experiment) -> Iterator[Row]:
     """Return the stopping distances of both pushed cubes by solver step."""
-    low, high = (study_deeper.stops_of_lane(run, lane) for lane in study_deeper.LANES)
+    low, high = (study.stops_of_lane(run, lane) for lane in study.LANES)
     for one, other in zip(low, high, strict=True):
         yield {
             "h": milliseconds(run.cases[one].h),
@@ -207,7 +207,7 @@ def stops_by_step(run: Experiment) -> Iterator[Row]:
 def engines(run: Experiment) -> Iterator[Row]:
     """Return how far each pair of runs is apart, and from when they are farther than 0.05 mm."""
     for pair in (*study_spec.ENGINE_PAIRS.items(), ("baseline", study_spec.OWN_DEFAULTS)):
-        distance = study_deeper.distance_between(*(run.traces[name] for name in pair))
+        distance = study.distance_between(*(run.traces[name] for name in pair))
         excess = np.flatnonzero(distance > study_spec.ENGINES_APART)
         since, counts = "never", ["–", "–"]
         if len(excess):

@@ -4,12 +4,11 @@ from types import SimpleNamespace
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import sentence_of
-from robo_genesis.core.text import MICRO, NOT_OBSERVED, blocks, format_value
+from robo_genesis.core.text import MICRO, SCALED, blocks, format_value, scaled_value
 
 MEASURES = False
 
-SHORT = {"m": ("mm", 0.1), "J": ("mJ", 1.0)}
-"""By unit, a unit a thousand times smaller for values below a limit."""
+SHORT = {"m": 0.1, "J": 1.0}  # By unit, smaller values are written in its thousandth
 
 SENTENCES = {
     "The landings": {
@@ -79,16 +78,12 @@ def conclusions(run: Experiment) -> str:
 
 def readable(value: float | None, unit: str) -> str:
     """Write a value with a unit of its size and three digits: `6.43 mm`; a longer one in metres."""
-    small, limit = SHORT.get(unit, ("", 0.0))
-    if value is None:
-        return NOT_OBSERVED
-    if value == 0 and small:
-        return f"0 {small}"
-    if not small or abs(value) >= limit:
+    if value == 0 and unit in SHORT:
+        return f"0 {SCALED[unit]}"
+    if value is None or abs(value) >= SHORT.get(unit, 0.0):
         return format_value(value, unit).replace("-", "−")
-    tiny = MICRO.get(unit, f"µ{unit}")
-    factor, unit = (1e6, tiny) if abs(value) < 1e-5 else (1e3, small)
-    return f"{factor * value:#.3g} {unit}".removesuffix(".").replace("-", "−")
+    smaller = SCALED[unit] if abs(value) >= 1e-5 else MICRO[unit]
+    return scaled_value(value, smaller).replace("-", "−")
 
 
 def milliseconds(seconds: float) -> str:

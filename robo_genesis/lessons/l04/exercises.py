@@ -23,8 +23,7 @@ from robo_genesis.sim.arm.laws import LAW
 
 MEASURES = False
 
-TINY = 1e-6
-"""Largest difference of a returned time or angle that rounding explains."""
+TINY = 1e-6  # Largest difference of a returned time or angle that rounding explains
 
 INVENTED = {
     "not_clipped": (1.1, 3500.0, 100.0, 1.0, np.inf, 0.0, 0.005, 0.005, 80),

@@ -15,18 +15,16 @@ from robo_genesis.core.text import decimal, format_value
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
-from robo_genesis.lessons.l04.tables import margin_text, share_text
+from robo_genesis.lessons.l04.tables import NOUNS, UNITS, margin_text, share_text
 
 MEASURES = False
 
 PACKED = {"q": 1e-4, "force": 1e-2}
 """Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays."""
 
-UNTIL = 0.6
-"""End of the time axis of the curves [s]; after it, no run of the grid moves visibly."""
+UNTIL = 0.6  # End of the time axis of the curves [s]; after it, no run of the grid moves visibly
 
-LABELS = StepMetrics.about("label")
-SHOWN = tuple(name for name in LABELS if name != "initial_error")
+LABELS = {n: label for n, label in StepMetrics.about("label").items() if n != "initial_error"}
 """The metrics shown for a run. The initial error is left out: it equals the step."""
 
 REPEATED = "saturation_duration"
@@ -44,6 +42,11 @@ declared margin, so a reader can be asked for the order of two runs."""
 NAMES = {point: name for name, point in CASE_POINTS.items()}
 
 
+def written(measured: StepMetrics) -> dict[str, str]:
+    """Return the metrics shown for a run as texts."""
+    return {n: format_value(value, unit) for n, value, unit in measured.items() if n in LABELS}
+
+
 def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     """Describe a point, its overshoot, and whether it saturated."""
     name = f" (the case {NAMES[point]})" if point in NAMES else ""
@@ -59,12 +62,11 @@ def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
 def explored(run: Experiment) -> dict[str, Any]:
     """Return the grid for the explorer: a map for each step, with curves packed as integers."""
     first = run.traces[POINTS[0].name]
-    start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
     return {
         "choices": (f"Step of {STEPPED_JOINT}", "Map shows"),
-        "maps": [_map(run, step, start, limit) for step in STEP_SIZES],
+        "maps": [_map(run, step) for step in STEP_SIZES],
         "measures": [_measure(name) for name in CELLS],
-        "columns": [LABELS[name] for name in SHOWN],
+        "columns": [*LABELS.values()],
         "notes": {"–": "A dash: not observed."},
         "curves": {
             "of": STEPPED_JOINT,
@@ -72,7 +74,7 @@ def explored(run: Experiment) -> dict[str, Any]:
             "until": UNTIL,
             "drawn": [
                 {"key": "q", "name": "Position", "title": "Position [rad], target dotted",
-                 "unit": PACKED["q"], "zero": start, "first": 0},
+                 "unit": PACKED["q"], "zero": float(first.q[0, ENTRY]), "first": 0},
                 {"key": "force", "name": "Control force", "unit": PACKED["force"], "zero": 0,
                  "title": "Control force [N·m], limits dashed", "first": 1},
             ],
@@ -82,21 +84,21 @@ def explored(run: Experiment) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _map(run: Experiment, step: float, start: float, limit: float) -> dict[str, Any]:
+def _map(run: Experiment, step: float) -> dict[str, Any]:
     """Return the runs of one step: KP upwards, KV to the right, and the axes of their curves."""
-    points = [point for point in POINTS if point.step == step]
-    cells = [_cell(run, point, start) for point in points]
-    size = len(KV)
+    cells = {point: _cell(run, point) for point in POINTS if point.step == step}
+    first = run.traces[POINTS[0].name]
+    start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
     target, room = start + step, 0.08 * step
-    highest = max(start + PACKED["q"] * max(max(cell["q"]) for cell in cells), target)
+    highest = max(start + PACKED["q"] * max(max(cell["q"]) for cell in cells.values()), target)
     return {
         "label": f"{step:g} rad",
         "setting": f"step {step:g} rad",
         "caption": "Map of the runs: KP upwards, KV to the right.",
         "columns": [f"{kv:g}" for kv in KV],
         "rows": [
-            {"label": f"{kp:g}", "cells": cells[k * size : (k + 1) * size]}
-            for k, kp in reversed([*enumerate(KP)])
+            {"label": f"{kp:g}", "cells": [cells[GridPoint(step, kp, kv)] for kv in KV]}
+            for kp in reversed(KP)
         ],
         "axes": {
             "q": _axis((start, start + step / 2, target), (start - room, highest + room), 3,
@@ -121,46 +123,41 @@ def _axis(
 
 def _measure(name: str) -> dict[str, Any]:
     """Return a metric that cells show and questions are about."""
-    unit, noun = (StepMetrics.about(what)[name] for what in ("unit", "noun"))
-    words = ("earlier", "later") if unit == "s" else ("lower", "higher")
+    words = ("earlier", "later") if UNITS[name] == "s" else ("lower", "higher")
     return {
         "label": f"{LABELS[name]} [{CELLS[name][2]}]",
-        "column": SHOWN.index(name),
-        "noun": noun,
+        "column": [*LABELS].index(name),
+        "noun": NOUNS[name],
         "lower": words[0],
         "higher": words[1],
-        "margin": max(MARGINS[name], RESOLUTION[unit]),
+        "margin": max(MARGINS[name], RESOLUTION[UNITS[name]]),
         "within": margin_text(name),
     }
 
 
-def _cell(run: Experiment, point: GridPoint, start: float) -> dict[str, Any]:
-    """Return one run of the grid as JSON values; `start` [rad] is subtracted from positions."""
+def _cell(run: Experiment, point: GridPoint) -> dict[str, Any]:
+    """Return one run of the grid as JSON values; positions are from the start."""
     trace, measured = run.traces[point.name], run.metrics[point.name]
-    drawn = round(UNTIL / trace.dt)
+    drawn, q = round(UNTIL / trace.dt), trace.q[:, ENTRY].astype(float)
     numbers = {name: getattr(measured, name) for name in CELLS}
     return {
         "name": f"KP {point.kp:g}, KV {point.kv:g}",
         "tag": NAMES.get(point, ""),
         "opens": point == CASE_POINTS["G2"],
         "sentence": sentence(point, measured, trace.steps),
-        "values": [v for n, v in _written(measured).items() if n in SHOWN],
-        "numbers": list(numbers.values()),
+        "values": [*written(measured).values()],
+        "numbers": [*numbers.values()],
         "texts": [
             "–" if value is None else decimal(value * CELLS[name][0], CELLS[name][1])
             for name, value in numbers.items()
         ],
-        "q": _integers(trace.q[: drawn + 1, ENTRY].astype(float) - start, PACKED["q"]),
+        "q": _integers(q[: drawn + 1] - q[0], PACKED["q"]),
         "force": _integers(trace.control_force[:drawn, ENTRY].astype(float), PACKED["force"]),
     }
 
 
 def _integers(values: FloatArray, unit: float) -> list[int]:
     return [int(value) for value in np.rint(values / unit)]
-
-
-def _written(measured: StepMetrics) -> dict[str, str]:
-    return {name: format_value(value, unit) for name, value, unit in measured.items()}
 
 
 @as_table
@@ -174,4 +171,4 @@ def table(run: Experiment) -> Iterator[dict[str, str]]:
             "KV": f"{point.kv:g}",
             "case": NAMES.get(point, ""),
             "overshoot, share": share_text(measured.overshoot / point.step),
-        } | {LABELS[name]: _written(measured)[name] for name in SHOWN if name != REPEATED}
+        } | {LABELS[n]: text for n, text in written(measured).items() if n != REPEATED}

@@ -27,6 +27,5 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
 def in_mujoco(run: Experiment, name: str) -> Iterator[Finding]:
     """Yield what a run in MuJoCo does not have."""
     trace, case, second = run.traces[name], run.cases[name], study_spec.SECOND_RUNS[name]
-    by_genesis = {n: of for n, of in run.traces.items() if n not in study_spec.SECOND_RUNS}
-    yield from copied(trace, by_genesis)
+    yield from copied(trace, run.traces, study_spec.SECOND_RUNS)
     yield from driven_in_mujoco(trace, case, run.links, second.timestep, second.integrator)

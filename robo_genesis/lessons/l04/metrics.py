@@ -12,11 +12,9 @@ from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace, first_time, settled_from
 
-RISE_FRACTION = 0.9
-"""Share of the step that counts as risen."""
+RISE_FRACTION = 0.9  # Share of the step that counts as risen
 
-SETTLING_BAND = 0.01
-"""Half width of the settling band around the target [rad or m]."""
+SETTLING_BAND = 0.01  # Half width of the settling band around the target [rad or m]
 
 SATURATION_THRESHOLD = 0.99
 """Share of the read-back limit from which a sample is called saturated. It detects saturation; the

@@ -20,8 +20,7 @@ from robo_genesis.sim.arm.joints import JointMap, to_numpy
 
 MEASURES = False
 
-SMALL = 0.05
-"""Share of the commanded step that counts as negligible."""
+SMALL = 0.05  # Share of the commanded step that counts as negligible
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import checks, lecture_checks, spec, study, study_checks, study_spec
+from robo_genesis.lessons.l04 import checks, spec, study, study_checks, study_spec
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 
@@ -37,7 +37,7 @@ LECTURE = STEPS.with_more(
     partial(study_spec.parameters, "lecture"),
     runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES) | {study_spec.ASSIGNED: ASSIGNED},
     {study.GROUP: Readings(study.GRAVITY)},
-    (study_checks.study_factors, study_checks.same_model, *lecture_checks.LECTURE),
+    (study_checks.study_factors, study_checks.same_model, *checks.LECTURE),
 )
 FORMULA = MISTAKES.with_more(
     partial(study_spec.parameters, "formula"),

@@ -1,16 +1,17 @@
 """Figures of lesson L04: functions of the experiment; no numerics, no show()."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import marks_of
 from robo_genesis.core.plotting import BAND, LIMIT, LINE, look
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
@@ -20,24 +21,23 @@ from robo_genesis.sim.arm.franka import LINK_PARENTS
 
 MEASURES = False
 
-START = 0.4
-"""End of the time axis where the compared cases differ [s]."""
+START = 0.4  # End of the time axis where the compared cases differ [s]
+BEFORE_REST = 0.6  # End of the time axis of the baseline [s]
+DOTS = {"marker": ".", "markersize": 5}
 
 Label = tuple[float, tuple[float, float]]
 """Time of the labelled sample [s], and where its text is relative to it [pt]."""
 
-GAINS_LABELS: Mapping[str, Mapping[str, Label]] = {
-    "position": {"G1": (0.11, (10, -18)), "G2": (0.15, (8, 3)), "G3": (0.1, (12, -12))},
-    "velocity": {"G1": (0.06, (-26, 6)), "G2": (0.1, (8, 0)), "G3": (0.11, (10, 2))},
-    "control force": {"G1": (0.09, (-24, -4)), "G2": (0.2, (-10, -16)), "G3": (0.1, (8, -24))},
-}
-
-PANELS = {
-    "position": ("q", "q [rad]"),
-    "velocity": ("qd", "q̇ [rad/s]"),
-    "control force": ("control_force", "control force [N·m]"),
-}
-"""The array of a trace that each panel of a response shows, and the label of its axis."""
+PANELS: Mapping[str, tuple[str, str, Mapping[str, Label]]] = {
+    "position": ("q", "q [rad]",
+                 {"G1": (0.11, (10, -18)), "G2": (0.15, (8, 3)), "G3": (0.1, (12, -12))}),
+    "velocity": ("qd", "q̇ [rad/s]",
+                 {"G1": (0.06, (-26, 6)), "G2": (0.1, (8, 0)), "G3": (0.11, (10, 2))}),
+    "control force": ("control_force", "control force [N·m]",
+                      {"G1": (0.09, (-24, -4)), "G2": (0.2, (-10, -16)), "G3": (0.1, (8, -24))}),
+}  # fmt: skip
+"""The array of a trace that each panel of a response shows, the label of its axis, and those of the
+compared cases."""
 
 
 def posture(run: Experiment) -> Figure:
@@ -51,33 +51,25 @@ def assigned(run: Experiment) -> Figure:
     written, commanded = run.traces[ASSIGNED], run.traces["baseline"]
     _target(ax, float(commanded.target[0, ENTRY]))
     crosses = look("other", linestyle="", marker="x", markersize=4)
-    for trace, every, text, style, label in (
-        (written, 4, "set_dofs_position", crosses, (0.6, (10, -20))),
-        (commanded, 1, "control_dofs_position", look("baseline"), (0.27, (2, -18))),
-    ):
-        (line,) = ax.plot(trace.t[::every], trace.q[::every, ENTRY], **style)
-        _direct(ax, line, text, label)
-    title = f"Assigned or commanded, {STEPPED_JOINT}"
-    _finish(ax, title, "q [rad]", float(commanded.t[-1]))
+    t, q = written.t[::4], written.q[::4, ENTRY]
+    _curve(ax, t, q, crosses, "set_dofs_position", (0.6, (10, -20)))
+    t, q = commanded.t, commanded.q[:, ENTRY]
+    _curve(ax, t, q, look("baseline"), "control_dofs_position", (0.27, (2, -18)))
+    _finish(ax, f"Assigned or commanded, {STEPPED_JOINT}", "q [rad]", float(t[-1]))
     return figure
 
 
 def baseline(run: Experiment) -> Figure:
     """Draw position, velocity and control force of the stepped joint in the baseline."""
-    return _response(7, {"baseline": run.traces["baseline"]}, 0.6, {})
+    return _response(7, {"baseline": run.traces["baseline"]}, BEFORE_REST)
 
 
 def compared(run: Experiment) -> Figure:
     """Draw the beginning of the compared cases: position, velocity, control force of the joint."""
-    return _response(8, {name: run.traces[name] for name in COMPARED}, START, GAINS_LABELS)
+    return _response(8, {name: run.traces[name] for name in COMPARED}, START)
 
 
-def _response(
-    height: float,
-    traces: Mapping[str, Trace],
-    until: float,
-    labels: Mapping[str, Mapping[str, Label]],
-) -> Figure:
+def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figure:
     """Draw position, velocity and control force of the stepped joint up to `until` [s].
 
     The position has the common target and its settling band, the force the limits read back.
@@ -87,14 +79,12 @@ def _response(
     _target(position, float(first.target[0, ENTRY]), SETTLING_BAND)
     velocity.axhline(0, **LINE)
     _limits(force, first, until)
-    for ax, (panel, (field, ylabel)) in zip(axes, PANELS.items(), strict=True):
+    for ax, (panel, (field, ylabel, labels)) in zip(axes, PANELS.items(), strict=True):
         for name, mark in marks_of(list(traces), CASE_MARKS).items():
             values = getattr(traces[name], field)[:, ENTRY]
             t = traces[name].t[-len(values) :]
-            t, values = t[t <= until], values[t <= until]
-            (line,) = ax.plot(t, values, marker=".", markersize=5, **look(mark))
-            if labels:
-                _direct(ax, line, name, labels[panel][name])
+            shown = t <= until
+            _curve(ax, t[shown], values[shown], look(mark, **DOTS), name, labels.get(name))
         _finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel, until)
         ax.label_outer()
     return figure
@@ -102,15 +92,14 @@ def _response(
 
 def baseline_forces(run: Experiment) -> Figure:
     """Draw both force getters of the baseline: they answer different questions."""
-    (figure, ax), trace, until = plotting.axes(3.4), run.traces["baseline"], 0.6
-    _limits(ax, trace, until)
+    (figure, ax), trace = plotting.axes(3.4), run.traces["baseline"]
+    _limits(ax, trace, BEFORE_REST)
     for name, array, mark, label in (
         ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
         ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
     ):
-        (line,) = ax.plot(trace.t_step, array[:, ENTRY], marker=".", markersize=5, **look(mark))
-        _direct(ax, line, name, label)
-    _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", until)
+        _curve(ax, trace.t_step, array[:, ENTRY], look(mark, **DOTS), name, label)
+    _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", BEFORE_REST)
     return figure
 
 
@@ -120,45 +109,34 @@ def defined(run: Experiment) -> Figure:
     q = trace.q[:, ENTRY]
     _target(ax, float(trace.target[0, ENTRY]), SETTLING_BAND)
     ax.plot(trace.t, q, marker=".", markersize=6, **look("further"))
-    times = (
-        (m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
-        (m.settling_time, "settling time, in the band\nfrom here on:", 0.42, (0.35, 1)),
-    )
-    for time, name, height, start in times:
+    for value, unit, time, name, height, start in (
+        (m.rise_time, "s", m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
+        (m.settling_time, "s", m.settling_time,
+         "settling time, in the band\nfrom here on:", 0.42, (0.35, 1)),
+        (m.overshoot, "rad", trace.t[q.argmax()], "overshoot:", 0.94, (0, 0.5)),
+        (m.final_error, "rad", START, "final error:", 0.62, (0.8, 1)),
+    ):  # fmt: skip
         if time is not None:
-            at = time, float(q[round(time / trace.dt)])
-            _note(ax, at, f"{name} {format_value(time, 's')}", height, start)
-    peak, last = int(q.argmax()), int(np.abs(trace.t - START).argmin())
-    overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
-    _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", 0.94, (0, 0.5))
-    _note(ax, (START, float(q[last])), f"final error: {error}", 0.62, (0.8, 1))
+            at = int(np.abs(trace.t - time).argmin())
+            arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9, "relpos": start}
+            text, place = f"{name} {format_value(value, unit)}", (float(trace.t[at]), float(q[at]))
+            ax.annotate(text, place, (0.98, height), textcoords="axes fraction", ha="right",
+                        va="center", arrowprops=arrow)  # fmt: skip
     _finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]", START)
     return figure
 
 
-def _direct(ax: Axes, line: Line2D, text: str, label: Label) -> None:
-    """Write a name beside the sample of a curve that is nearest to a time."""
-    (time, offset), (t, values) = label, np.array(line.get_data(), float)
-    n = int(np.abs(t - time).argmin())
-    ax.annotate(text, (float(t[n]), float(values[n])), offset, textcoords="offset points",
-                color=line.get_color(), fontweight="bold")  # fmt: skip
-
-
-def _note(
-    ax: Axes, at: tuple[float, float], text: str, height: float, start: tuple[float, float]
-) -> None:
-    """Point to a place from a note at the right.
-
-    Args:
-        ax: the axes.
-        at: the place, in data coordinates.
-        text: the note.
-        height: of the note, as a share of the axes.
-        start: of the arrow, as shares of the note's width and height.
-    """
-    arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9, "relpos": start}
-    ax.annotate(text, at, (0.98, height), textcoords="axes fraction", ha="right", va="center",
-                arrowprops=arrow)  # fmt: skip
+def _curve(
+    ax: Axes, t: FloatArray, values: FloatArray, style: Mapping[str, Any], name: str,
+    label: Label | None,
+) -> None:  # fmt: skip
+    """Draw a curve, and with a label its name beside the sample that is nearest to a time."""
+    ax.plot(t, values, **style)
+    if label:
+        time, offset = label
+        n = int(np.abs(t - time).argmin())
+        ax.annotate(name, (float(t[n]), float(values[n])), offset, textcoords="offset points",
+                    color=style["color"], fontweight="bold")  # fmt: skip
 
 
 def _target(ax: Axes, value: float, band: float | None = None) -> None:
@@ -183,5 +161,4 @@ def _limits(ax: Axes, trace: Trace, until: float) -> None:
 
 
 def _finish(ax: Axes, title: str, ylabel: str, until: float) -> None:
-    ax.set_title(title, loc="left")
-    ax.set(xlabel="time [s]", ylabel=ylabel, xlim=(-0.005, until))
+    ax.set(title=title, xlabel="time [s]", ylabel=ylabel, xlim=(-0.005, until))

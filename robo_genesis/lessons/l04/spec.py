@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.experiment import inputs
-from robo_genesis.core.scene import DT, FloatArray, read_only
+from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.franka import JOINT_NAMES
@@ -22,15 +22,10 @@ MEASURES = False
 MINIMUM_HARDWARE = "cpu"
 
 STEPPED_JOINT = "joint4"
-ENTRY = JOINT_NAMES.index(STEPPED_JOINT)
-"""Column of the stepped joint in all arrays."""
+ENTRY = JOINT_NAMES.index(STEPPED_JOINT)  # Column of the stepped joint in all arrays
 
-STEP = 0.25
-"""Height of the commanded step [rad]."""
-
-WINDOW = 1.2
-"""Length of every run [s]."""
-
+STEP = 0.25  # Height of the commanded step [rad]
+WINDOW = 1.2  # Length of every run [s]
 STEPS = round(WINDOW / DT)
 
 EXPECTED_MODEL, EXPECTED_TYPES = franka.MODEL_COUNTS, franka.JOINT_TYPES
@@ -39,19 +34,22 @@ RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
 """By unit: values that differ by no more than this are called equal, the noise floor."""
 
 
-def with_entry(values: FloatArray, value: float) -> FloatArray:
-    """Return a read-only copy of `values` (9,) in which only the stepped joint's entry differs."""
-    changed = np.array(values)
-    changed[ENTRY] = value
-    return read_only(changed)
+def changed(case: ControlCase, **entries: float) -> ControlCase:
+    """Return a case in which only the stepped joint's entry of some fields differs."""
+    fields: dict[str, Any] = {name: np.array(getattr(case, name)) for name in entries}
+    for name, value in entries.items():
+        fields[name][ENTRY] = value
+        fields[name].setflags(write=False)
+    return replace(case, **fields)
 
 
 START_OF_STEP = float(franka.Q_START[ENTRY])
 
-BASELINE = ControlCase(q_target=with_entry(franka.Q_START, START_OF_STEP + STEP), steps=STEPS)
-G1 = replace(BASELINE, kp=with_entry(BASELINE.kp, 3500.0), kv=with_entry(BASELINE.kv, 100.0))
-G2 = replace(G1, kp=with_entry(G1.kp, 7000.0))
-G3 = replace(G2, kv=with_entry(G2.kv, 300.0))
+AT_START = ControlCase(q_target=franka.Q_START, steps=STEPS)
+BASELINE = changed(AT_START, q_target=START_OF_STEP + STEP)
+G1 = changed(BASELINE, kp=3500.0, kv=100.0)
+G2 = changed(G1, kp=7000.0)
+G3 = changed(G2, kv=300.0)
 
 CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
 CASE_MARKS = {"baseline": "baseline", "G1": "first", "G2": "second", "G3": "third"}
@@ -59,15 +57,6 @@ CASE_MARKS = {"baseline": "baseline", "G1": "first", "G2": "second", "G3": "thir
 
 ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}
 """The only entry that may differ between two compared cases."""
-
-PREDICTIONS = {
-    ("G1", "G2"): (
-        ("rise_time", "no later"), ("peak_speed", "higher"), ("overshoot", "higher"),
-        ("saturation_samples", "higher"),
-    ),
-    ("G2", "G3"): (("peak_speed", "lower"), ("overshoot", "lower"), ("rise_time", "later")),
-}  # fmt: skip
-"""How the second case of a pair compares with the first; not fitted to a run."""
 
 MARGINS = {
     "rise_time": 1.5 * DT, "settling_time": 1.5 * DT, "peak_speed": 0.05, "overshoot": 1e-3,
@@ -78,10 +67,18 @@ MARGINS = {
 
 RELATIONS = tuple(
     (pair, metric, order, MARGINS[metric])
-    for pair, predicted in PREDICTIONS.items()
-    for metric, order in predicted
+    for pair, metric, order in (
+        (("G1", "G2"), "rise_time", "no later"),
+        (("G1", "G2"), "peak_speed", "higher"),
+        (("G1", "G2"), "overshoot", "higher"),
+        (("G1", "G2"), "saturation_samples", "higher"),
+        (("G2", "G3"), "peak_speed", "lower"),
+        (("G2", "G3"), "overshoot", "lower"),
+        (("G2", "G3"), "rise_time", "later"),
+    )
 )
-"""The orderings that the lesson claims. A refreshed run must still show them."""
+"""The lesson's predictions: how the second case of a pair compares with the first. They are not
+fitted to a run, and a refreshed run must still show them."""
 
 TOLERANCES = {
     "rad": (1e-4, 1e-3), "rad/s": (1e-3, 1e-3), "s": (DT / 2, 0.0), "N·m": (1e-2, 1e-3),
@@ -91,9 +88,7 @@ TOLERANCES = {
 """By unit, or by metric or array: (atol, rtol) of a value between engine versions
 or backends. A time on the grid of samples must not move at all; counts are exact."""
 
-
-LIMIT_EXCESS = 1e-3
-"""Tolerance of a control force above its limit [N·m or N]."""
+LIMIT_EXCESS = 1e-3  # Tolerance of a control force above its limit [N·m or N]
 
 
 def parameters() -> dict[str, Any]:

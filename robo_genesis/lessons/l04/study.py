@@ -12,6 +12,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
+from robo_genesis.lessons.l04.spec import ENTRY
 from robo_genesis.lessons.l04.theory import IdealJoint, overshoot_share, step_share, stepped_joint
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
@@ -22,7 +23,10 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 """Genesis, and MuJoCo by its integrator."""
 
-COMPARED_KV = sorted({float(case.kv[spec.ENTRY]) for case in study_spec.COMPARED.values()})
+SUBSTEPS, H = spec.G1.substeps, spec.G1.dt / spec.G1.substeps
+"""The lesson's number of solver steps, and the length of one [s]."""
+
+COMPARED_KV = sorted({float(case.kv[ENTRY]) for case in study_spec.COMPARED.values()})
 """Velocity gains of the compared cases [N·m·s/rad]."""
 
 GROUP = "readings"
@@ -42,7 +46,7 @@ GRAVITY = {f"gravity_{case}": "N·m" for case in spec.CASES}
 
 def measure(trace: Trace, case: ControlCase) -> StepMetrics:
     """Return the metrics of the stepped joint."""
-    return step_metrics(trace, spec.ENTRY)
+    return step_metrics(trace, ENTRY)
 
 
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
@@ -53,7 +57,7 @@ def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
         "inertia_Genesis": dynamics.effective_inertia(scene, robot, joints, q),
         "gravity_at_start_Genesis": dynamics.gravity_effort(scene, robot, joints, q),
     }
-    return {name: float(values[spec.ENTRY]) for name, values in found.items()}
+    return {name: float(values[ENTRY]) for name, values in found.items()}
 
 
 def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
@@ -62,7 +66,7 @@ def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     for case in (spec.G1, spec.G3):
         run_case(scene, robot, joints, replace(case, q_target=case.q_start, steps=1))
         masses = dynamics.mass_diagonal(robot, joints.dofs_idx_local.tolist())
-        found[f"mass_KV_{case.kv[spec.ENTRY]:g}"] = float(masses[spec.ENTRY])
+        found[f"mass_KV_{case.kv[ENTRY]:g}"] = float(masses[ENTRY])
     return found
 
 
@@ -72,23 +76,23 @@ def read_gravity(
     """Read the gravity effort at the end state of each case, in Genesis."""
     ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES}
     efforts = {n: dynamics.gravity_effort(scene, robot, joints, q) for n, q in ends.items()}
-    return {name: float(of[spec.ENTRY]) for name, of in efforts.items()}
+    return {name: float(of[ENTRY]) for name, of in efforts.items()}
 
 
 def by_model(traces: Mapping[str, Trace]) -> dict[str, float]:
     """Return every value of `GROUP` by the model in MuJoCo, for the cases that have a trace."""
-    start, h = mujoco_kinematics.at_rest(spec.G1.q_start), spec.G1.dt / spec.G1.substeps
-    inertia, gravity, damping = (float(of[spec.ENTRY]) for of in start)
+    start = mujoco_kinematics.at_rest(spec.G1.q_start)
+    inertia, gravity, damping = (float(of[ENTRY]) for of in start)
     found = dict(zip(AT_START, (damping, inertia, gravity), strict=True))
-    found |= {f"mass_KV_{kv:g}": inertia + h * (damping + kv) for kv in COMPARED_KV}
+    found |= {f"mass_KV_{kv:g}": inertia + H * (damping + kv) for kv in COMPARED_KV}
     ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES if name in traces}
     efforts = {name: mujoco_kinematics.gravity_effort(q) for name, q in ends.items()}
-    return found | {name: float(of[spec.ENTRY]) for name, of in efforts.items()}
+    return found | {name: float(of[ENTRY]) for name, of in efforts.items()}
 
 
 def implicit_term(run: Experiment, kv: float) -> float:
     """Return what the engine's integrator adds to the inertia of the stepped joint [kg·m²]."""
-    return spec.G1.dt / spec.G1.substeps * (run.readings[GROUP]["passive_damping"] + kv)
+    return H * (run.readings[GROUP]["passive_damping"] + kv)
 
 
 def without_term(run: Experiment, kv: float) -> float:
@@ -100,20 +104,20 @@ def damping_ratio(case: str) -> FloatArray:
     """Return h (KV + d) / I of each joint (d,) at the start, by the model in MuJoCo."""
     settings = study_spec.COMPARED[case]
     inertia, _, damping = mujoco_kinematics.at_rest(settings.q_start)
-    return np.asarray(settings.dt / settings.substeps * (settings.kv + damping) / inertia)
+    return np.asarray(H * (settings.kv + damping) / inertia)
 
 
 def ideal(run: Experiment, case: str) -> IdealJoint:
     """Return the linear joint with a compared case's gains and the inertia of Genesis."""
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
-    damping = float(gains.kv[spec.ENTRY]) + readings["passive_damping"]
-    return IdealJoint(readings["inertia_Genesis"], damping, float(gains.kp[spec.ENTRY]))
+    damping = float(gains.kv[ENTRY]) + readings["passive_damping"]
+    return IdealJoint(readings["inertia_Genesis"], damping, float(gains.kp[ENTRY]))
 
 
 def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
     """Return a response as a share of its step: the lesson's, or with `kind` the small one."""
     step = run.traces[f"{case}_{kind}" if kind else case]
-    return step_share(step, run.traces[f"{case}_hold"], spec.ENTRY)
+    return step_share(step, run.traces[f"{case}_hold"], ENTRY)
 
 
 def off_ideal(run: Experiment, case: str, kind: str = "") -> float:
@@ -124,7 +128,7 @@ def off_ideal(run: Experiment, case: str, kind: str = "") -> float:
 
 def supports(run: Experiment, case: str) -> tuple[float, float]:
     """Return KP × final error of a case, and the gravity effort at its end [N·m]."""
-    kp = float(spec.CASES[case].kp[spec.ENTRY])
+    kp = float(spec.CASES[case].kp[ENTRY])
     return kp * run.metrics[case].final_error, run.readings[GROUP][f"gravity_{case}"]
 
 
@@ -137,13 +141,11 @@ def model_overshoot(run: Experiment, case: str, height: float) -> float:
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
     limit, gravity = np.inf, 0.0
     if height >= spec.STEP:
-        limit = float(gains.effort_limit[spec.ENTRY])
+        limit = float(gains.effort_limit[ENTRY])
         gravity = (readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]) / 2
-    path = stepped_joint(
-        ideal(run, case), readings["passive_damping"], height, gains.dt / gains.substeps,
-        gains.steps * gains.substeps, limit, gravity,
-    )  # fmt: skip
-    return float(max(0.0, path[:: gains.substeps].max()))
+    passive, n = readings["passive_damping"], gains.steps * SUBSTEPS
+    path = stepped_joint(ideal(run, case), passive, height, H, n, limit, gravity)
+    return float(max(0.0, path[::SUBSTEPS].max()))
 
 
 def overshoots(run: Experiment, case: str, height: float) -> tuple[float, float, float]:
@@ -163,8 +165,8 @@ def leaves_ideal(run: Experiment, case: str) -> tuple[int, float]:
     The sample is the last one if the distance [rad] never exceeds `PARTING_THRESHOLD`.
     """
     trace = run.traces[case]
-    q = trace.q[:, spec.ENTRY].astype(float)
-    step = float(study_spec.COMPARED[case].q_target[spec.ENTRY]) - q[0]
+    q = trace.q[:, ENTRY].astype(float)
+    step = float(study_spec.COMPARED[case].q_target[ENTRY]) - q[0]
     distance = np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
     beyond = np.flatnonzero(distance > study_spec.PARTING_THRESHOLD)
     return int(beyond[0]) if beyond.size else trace.steps, float(distance.max())
@@ -175,11 +177,10 @@ def at_limit_until(trace: Trace) -> float:
 
     It is 0 if the effort is below the limit at t = 0 or at the first sample.
     """
-    first, limit = trace.start_control_force[spec.ENTRY], trace.effort_limit[spec.ENTRY]
-    force = trace.control_force[:, spec.ENTRY]
-    held = is_saturated(force, limit) & (np.sign(force) == np.sign(first))
-    held &= is_saturated(float(first), float(limit))
-    return float(trace.t[int(np.append(held, False).argmin())])
+    limit, force = trace.effort_limit[ENTRY], trace.control_force[:, ENTRY]
+    forces = np.append(trace.start_control_force[ENTRY], force)
+    held = is_saturated(forces, limit) & (np.sign(forces) == np.sign(forces[0]))
+    return float(trace.t[max(0, int(np.append(held, False).argmin()) - 1)])
 
 
 def braking_error(trace: Trace) -> float:
@@ -187,8 +188,8 @@ def braking_error(trace: Trace) -> float:
 
     It is 0 for an effort that never brakes.
     """
-    brakes = trace.control_force[:, spec.ENTRY] < 0
-    left = (trace.target - trace.q[1:])[:, spec.ENTRY]
+    brakes = trace.control_force[:, ENTRY] < 0
+    left = (trace.target - trace.q[1:])[:, ENTRY]
     return float(left[brakes.argmax()] * brakes.any())
 
 
@@ -200,13 +201,11 @@ def first_speed(run: Experiment, case: str, term: float) -> float:
         case: one of the compared cases; the demand on its motor is far above the limit.
         term: the integrator's addition to the passive damping on the inertia's side [N·m·s/rad].
     """
-    gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
-    damping, h = readings["passive_damping"], gains.dt / gains.substeps
+    readings, limit = run.readings[GROUP], float(study_spec.COMPARED[case].effort_limit[ENTRY])
+    damping, gravity = (readings[n] for n in ("passive_damping", "gravity_at_start_Genesis"))
     joint = replace(ideal(run, case), damping=damping + term)
-    limit = float(gains.effort_limit[spec.ENTRY])
-    gravity = readings["gravity_at_start_Genesis"]
-    path = stepped_joint(joint, damping, spec.STEP, h, gains.substeps, limit, gravity)
-    return float(path[-1] - path[-2]) / h
+    path = stepped_joint(joint, damping, spec.STEP, H, SUBSTEPS, limit, gravity)
+    return float(path[-1] - path[-2]) / H
 
 
 def unstable_joints(trace: Trace) -> list[str]:
@@ -215,47 +214,46 @@ def unstable_joints(trace: Trace) -> list[str]:
     return [JOINT_NAMES[k] for k in np.flatnonzero(share > study_spec.CHATTER_SHARE)]
 
 
-def unstable(run: Experiment, engine: str, substeps: int = spec.G2.substeps) -> bool:
-    """Return whether a run of an engine is unstable: of G1 to G3, or of G2 with other substeps."""
-    cases = study_spec.COMPARED if substeps == spec.G2.substeps else ("G2",)
-    return any(unstable_joints(run.traces[run_name(engine, case, substeps)]) for case in cases)
+# By engine
 
 
-def spread(run: Experiment, substeps: int) -> float:
-    """Return how far the stable engines' overshoots of G2 differ [rad]."""
-    engines = (engine for engine in ENGINES if not unstable(run, engine, substeps))
-    values = [overshoot_by_substeps(run, engine)[substeps] for engine in engines]
-    return max(values) - min(values)
-
-
-def overshoot_by_substeps(run: Experiment, engine: str) -> dict[int, float]:
-    """Return G2's overshoot [rad] for each number of substeps, in Genesis or an integrator."""
-    names = {n: run_name(engine, "G2", n) for n in study_spec.SUBSTEPS_STUDIED}
-    return {n: run.metrics[name].overshoot for n, name in names.items()}
+def run_name(engine: str, case: str, substeps: int = SUBSTEPS) -> str:
+    """Return the name of a compared case's run, in Genesis or by MuJoCo's integrator."""
+    if engine == "Genesis":
+        return case if substeps == SUBSTEPS else f"{case}_substeps_{substeps}"
+    return study_spec.SecondRun(case, engine, substeps).name
 
 
 def by_engine(run: Experiment, case: str) -> dict[str, Trace]:
     """Return a compared case's runs at the lesson's solver step, by engine."""
-    substeps = study_spec.COMPARED[case].substeps
-    return {engine: run.traces[run_name(engine, case, substeps)] for engine in ENGINES}
+    return {engine: run.traces[run_name(engine, case)] for engine in ENGINES}
 
 
-def compared(run: Experiment, engine: str, n: int = spec.G1.substeps) -> dict[str, StepMetrics]:
-    """Return the metrics of G1 to G3 in one engine, with the lesson's substeps or `n`."""
-    names = {name: run_name(engine, name, n) for name in study_spec.COMPARED}
-    return {case: run.metrics[name] for case, name in names.items()}
+def compared(run: Experiment, engine: str, substeps: int = SUBSTEPS) -> dict[str, StepMetrics]:
+    """Return the metrics of G1 to G3 in one engine."""
+    return {case: run.metrics[run_name(engine, case, substeps)] for case in study_spec.COMPARED}
 
 
-def run_name(engine: str, case: str, substeps: int) -> str:
-    """Return the name of a run's arrays, in Genesis or by MuJoCo's integrator."""
-    if engine == "Genesis":
-        declared = study_spec.COMPARED[case].substeps
-        return case if substeps == declared else f"{case}_substeps_{substeps}"
-    return study_spec.SecondRun(case, engine, substeps).name
+def unstable(run: Experiment, engine: str, substeps: int = SUBSTEPS) -> bool:
+    """Return whether a run of an engine is unstable: of G1 to G3, or of G2 with other substeps."""
+    cases = study_spec.COMPARED if substeps == SUBSTEPS else ("G2",)
+    return any(unstable_joints(run.traces[run_name(engine, case, substeps)]) for case in cases)
+
+
+def overshoot_by_substeps(run: Experiment, engine: str) -> dict[int, float]:
+    """Return G2's overshoot [rad] for each number of substeps."""
+    numbers = study_spec.SUBSTEPS_STUDIED
+    return {n: run.metrics[run_name(engine, "G2", n)].overshoot for n in numbers}
+
+
+def spread(run: Experiment, substeps: int) -> float:
+    """Return how far the stable engines' overshoots of G2 differ [rad]."""
+    stable = [engine for engine in ENGINES if not unstable(run, engine, substeps)]
+    return float(np.ptp([overshoot_by_substeps(run, engine)[substeps] for engine in stable]))
 
 
 def relation_outcome(
-    run: Experiment, engine: str, relation: Relation, substeps: int = spec.G1.substeps
+    run: Experiment, engine: str, relation: Relation, substeps: int = SUBSTEPS
 ) -> tuple[str, str]:
     """Return whether an engine's runs show one claimed ordering, and the two values."""
     cases, metric, *_ = relation

@@ -8,8 +8,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.lecture_checks import orders
+from robo_genesis.lessons.l04 import checks, spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import is_saturated
 from robo_genesis.lessons.l04.theory import overshoot_share
 from robo_genesis.sim.arm.joint_control import differences
@@ -121,7 +120,7 @@ def second_engine_order(run: Experiment) -> Iterator[Finding]:
     stable = [engine for engine in study.ENGINES if not study.unstable(run, engine)]
     yield noted("stable", stable)
     for engine in stable:
-        yield from orders(run, engine)
+        yield from checks.orders(run, engine)
 
 
 def order_at_finer_step(run: Experiment) -> Iterator[Finding]:
@@ -129,7 +128,7 @@ def order_at_finer_step(run: Experiment) -> Iterator[Finding]:
     with a tenth.
     """
     for substeps in study_spec.REFINED:
-        yield from orders(run, "Genesis", substeps)
+        yield from checks.orders(run, "Genesis", substeps)
 
 
 def stable_engines(run: Experiment) -> Iterator[Finding]:

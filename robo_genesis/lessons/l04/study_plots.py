@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import MARKS, PARTS
-from robo_genesis.core.plotting import LINE, look
+from robo_genesis.core.plotting import LINE, log_axis, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.explorer import NAMES
@@ -80,8 +80,7 @@ def _beside_ideal(
         for label, curve in of_case.items():
             last = look(CASE_MARKS[name] if label == [*of_case][-1] else "other")
             ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else last))
-        ax.set_title(name, loc="left")
-        ax.set(xlim=(0, 0.4), xlabel="time [s]", ylabel=ylabel)
+        ax.set(title=name, xlim=(0, 0.4), xlabel="time [s]", ylabel=ylabel)
         ax.legend(loc="lower right")
         ax.label_outer()
     return figure
@@ -103,12 +102,11 @@ def overshoot_by_step(run: Experiment) -> Figure:
         if hollow.any():
             empty = style | {"linestyle": "", "markerfacecolor": PARTS["ground"].light}
             ax.plot(steps[hollow], values[hollow], label=f"{label}, unstable", **empty)
-    declared = 1000 * spec.G2.dt / spec.G2.substeps
-    ax.axvline(declared, **LINE)
-    ax.annotate("the lesson's step", (declared, 0), (-4, 4), textcoords="offset points", ha="right")
-    ax.set(xscale="log", xlabel="solver step h [ms]", ylabel="overshoot of G2 [rad]")
-    ax.set_xticks(sorted(steps), [f"{h:g}" for h in sorted(steps)])
-    ax.minorticks_off()
+    ax.axvline(1000 * study.H, **LINE)
+    ax.annotate("the lesson's step", (1000 * study.H, 0), (-4, 4), textcoords="offset points",
+                ha="right")  # fmt: skip
+    log_axis(ax, steps, "solver step h [ms]")
+    ax.set_ylabel("overshoot of G2 [rad]")
     ax.set_ylim(0, 1.4 * ax.get_ylim()[1])  # space for the legend
     ax.legend(loc="upper left")
     return figure
@@ -133,7 +131,6 @@ def grid_saturation(run: Experiment) -> Figure:
         ax.grid(visible=False)
         ax.set_xticks(np.arange(len(KV)) + 0.5, [f"{value:g}" for value in KV])
         ax.set_yticks(np.arange(len(KP)) + 0.5, [f"{value:g}" for value in KP])
-        ax.set_title(f"step {step:g} rad", loc="left")
-        ax.set(xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
+        ax.set(title=f"step {step:g} rad", xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
         ax.label_outer()
     return figure

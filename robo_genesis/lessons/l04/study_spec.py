@@ -2,33 +2,24 @@
 
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import ENTRY, G1, G2, G3, START_OF_STEP, STEP, with_entry
+from robo_genesis.lessons.l04.spec import ENTRY, G1, G2, G3, START_OF_STEP, STEP, changed
 from robo_genesis.sim.arm.joint_control import ControlCase
 
 MEASURES = False
 
 COMPARED = {"G1": G1, "G2": G2, "G3": G3}
 
-PARTING_THRESHOLD = SETTLING_BAND
-"""A measured position has left the ideal one at this distance [rad]."""
-
 SMALL_STEP = 0.005
 """Height of a step whose demand stays below the effort limit with the gains of G1 and G2 [rad]."""
 
-
-def commanded(case: ControlCase, height: float) -> ControlCase:
-    """Return the case with another height of the stepped joint's step [rad]."""
-    return replace(case, q_target=with_entry(case.q_target, START_OF_STEP + height))
-
-
 SMALL_STEPPED = ("G1", "G2")
 STEP_CASES = {
-    f"{name}_{kind}": commanded(COMPARED[name], height)
+    f"{name}_{kind}": changed(COMPARED[name], q_target=START_OF_STEP + height)
     for name in SMALL_STEPPED
     for kind, height in (("small", SMALL_STEP), ("hold", 0.0))
 }
@@ -47,12 +38,14 @@ SUBSTEP_CASES = {
 """The solver's step is the one factor. Each number of substeps needs its own scene."""
 
 EXAMPLE = "example"
-EXAMPLE_CASES = {EXAMPLE: replace(G1, kv=with_entry(G1.kv, 50.0))}
+EXAMPLE_CASES = {EXAMPLE: changed(G1, kv=50.0)}
 """Illustrates the metrics before the comparison: it overshoots, and is not one of the cases."""
 
 LONGER = "G2_longer"
 LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
 """The length of the window is the one factor."""
+
+ASSIGNED = "assigned"  # Name of the run whose states are assigned, without control and steps
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,48 +78,15 @@ SECOND_RUNS = {
 }
 """All compared cases at the lesson's solver step, and G2 at every studied one."""
 
-ASSIGNED = "assigned"
-"""Name of the run whose states are assigned, without control and steps."""
-
-SMALL_STEP_TOLERANCE = 0.03
-"""Largest difference in overshoot between a model of one joint and a small unsaturated step, as a
-share of the step."""
-
-ONE_JOINT_TOLERANCE = 0.015
-"""Largest difference in overshoot between the stepped model of one joint and a large step [rad]."""
-
-CHATTER_SHARE = 0.5
-"""A run is called unstable if the effort of a joint is clipped in more than this share of its
-samples."""
-
-AT_REST = 0.01
-"""Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone explain the
-final error, so this selects the cases that `gravity_support` checks."""
-
-GRAVITY_AGREEMENT = 0.01
-"""Share within which KP × final error and gravity agree."""
-
-SAME_MODEL = 3e-4
-"""Share within which the readings of the stepped joint agree with the model in MuJoCo; the largest
-difference is 1.1e-4, of gravity at an end."""
-
-SPREAD_SHARE = 0.2
-"""Largest spread between the engines at the finest solver step, as a share of their spread at the
-lesson's step."""
-
-
 STEP_SIZES = (0.02, 0.05, 0.1, STEP)
 """Heights of the commanded step in the grid [rad]."""
 
 KP = (3500.0, 4375.0, 5250.0, 6125.0, 7000.0)
-"""Position gains of the stepped joint in the grid [N·m/rad]."""
-
 KV = (100.0, 150.0, 200.0, 250.0, 300.0)
-"""Velocity gains of the stepped joint in the grid [N·m·s/rad]."""
+"""Gains of the stepped joint in the grid [N·m/rad, N·m·s/rad]."""
 
 
-@dataclass(frozen=True, slots=True)
-class GridPoint:
+class GridPoint(NamedTuple):
     """One run of the grid: step [rad], KP [N·m/rad] and KV [N·m·s/rad] of the stepped joint."""
 
     step: float
@@ -138,17 +98,14 @@ class GridPoint:
         """Name of the run's arrays."""
         return f"grid_step_{1000 * self.step:.0f}mrad_KP_{self.kp:.0f}_KV_{self.kv:.0f}"
 
-    @property
-    def case(self) -> ControlCase:
-        """The control case: G1 except for step, KP and KV of the stepped joint."""
-        gains = replace(G1, kp=with_entry(G1.kp, self.kp), kv=with_entry(G1.kv, self.kv))
-        return commanded(gains, self.step)
-
 
 POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
 """All points; KV changes fastest, the step slowest."""
 
-GRID_CASES = {point.name: point.case for point in POINTS}
+GRID_CASES = {
+    point.name: changed(G1, kp=point.kp, kv=point.kv, q_target=START_OF_STEP + point.step)
+    for point in POINTS
+}
 """The runs of the grid: one batch, one environment for each."""
 
 
@@ -162,7 +119,24 @@ def point_of(case: ControlCase) -> GridPoint:
 CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}
 """The points of the lesson's own cases."""
 
-BOUNDS = {"kp": (3500.0, 7000.0), "kv": (100.0, 300.0), "step": (0.0, STEP)}
+# What only judges
+
+PARTING_THRESHOLD = SETTLING_BAND  # Distance at which a position has left the ideal one [rad]
+AT_REST = 0.01
+"""Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone explain the
+final error, so this selects the cases that `gravity_support` checks."""
+GRAVITY_AGREEMENT = 0.01  # Share within which KP × final error and gravity agree
+SAME_MODEL = 3e-4
+"""Share within which the readings of the stepped joint agree with the model in MuJoCo; the largest
+difference is 1.1e-4, of gravity at an end."""
+SMALL_STEP_TOLERANCE = 0.03
+"""Largest difference in overshoot between a model of one joint and a small unsaturated step, as a
+share of the step."""
+ONE_JOINT_TOLERANCE = 0.015  # The same of the stepped model and a large step [rad]
+CHATTER_SHARE = 0.5  # A run is unstable if a joint's effort is clipped in a larger share of samples
+SPREAD_SHARE = 0.2  # Largest spread of the engines at the finest step, by that at the lesson's step
+
+BOUNDS = {"step": (0.0, STEP), "kp": (3500.0, 7000.0), "kv": (100.0, 300.0)}
 """Smallest and largest value of each axis: no point is more violent than the compared cases."""
 
 AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}

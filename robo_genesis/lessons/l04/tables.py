@@ -14,11 +14,15 @@ from robo_genesis.lessons.l04.theory import overshoot_share
 
 MEASURES = False
 
-CLOSE = "too close to call"
-"""The outcome where two values differ by less than the margin."""
+CLOSE = "too close to call"  # The outcome where two values differ by less than the margin
+OUTCOMES = {
+    (False, True): "held", (False, False): "**did not hold**",
+    (True, True): f"held ({CLOSE})", (True, False): CLOSE,
+}  # fmt: skip
+"""By whether it is close, and whether it held, the outcome of a prediction."""
 
-ENGINE_LABELS = {"Genesis": "Genesis"} | {
-    name: f"MuJoCo {name}" for name in study_spec.SECOND_INTEGRATORS
+ENGINE_LABELS = {
+    engine: engine if engine == "Genesis" else f"MuJoCo {engine}" for engine in study.ENGINES
 }
 
 Row = dict[str, Any]
@@ -97,12 +101,7 @@ def outcomes_of_predictions(run: Experiment) -> Iterator[Row]:
         found = compare(metric, run.metrics[one], run.metrics[other], spec.RESOLUTION, margin)
         close = found.order == "equal" and found.first != found.second
         held = {found.order, order(found.first, found.second, 0)} <= {*HELD_BY[claim]}
-        if found.order is None:
-            outcome = "cannot be judged"
-        elif close:
-            outcome = f"held ({CLOSE})" if held else CLOSE
-        else:
-            outcome = "held" if held else "**did not hold**"
+        outcome = OUTCOMES[close, held] if found.order else "cannot be judged"
         yield {
             "prediction": f"{found.label}: {other} {claim} than {one}",
             "measured": _change((found.first, found.second), metric),

@@ -56,12 +56,11 @@ def conclusions(run: Experiment) -> str:
 
 def pair_sentences(run: Experiment, names: tuple[str, str]) -> Iterator[str]:
     """Compare two cases that should differ in one entry, and judge the predictions about them."""
-    predictions = spec.PREDICTIONS[names]
-    cases = run.cases[names[0]], run.cases[names[1]]
-    yield factor_sentence(names, differences(*cases, run.joints))
+    first, second = (run.cases[name] for name in names)
+    yield factor_sentence(names, differences(first, second, run.joints))
     for metric in COMPARED_METRICS:
         yield comparison_sentence(names, compared(run, names, metric))
-    for metric, order in predictions:
+    for metric, order in (of[1:3] for of in spec.RELATIONS if of[0] == names):
         yield prediction_sentence(names, compared(run, names, metric), order, INSPECT)
 
 

@@ -7,8 +7,7 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 
-CRITICAL = 1e-9
-"""A damping ratio this close to one counts as critical."""
+CRITICAL = 1e-9  # A damping ratio this close to one counts as critical
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,17 +47,13 @@ class IdealJoint:
 
         Åström and Murray, Feedback Systems, section on second-order systems.
         """
-        omega, zeta = self.omega, self.zeta
-        t = np.asarray(t, dtype=np.float64)
+        omega, zeta, t = self.omega, self.zeta, np.asarray(t, dtype=np.float64)
         if abs(zeta - 1) < CRITICAL:
             return 1 - np.exp(-omega * t) * (1 + omega * t)
-        if zeta < 1:
-            omega_d = omega * np.sqrt(1 - zeta**2)
-            swing = np.cos(omega_d * t) + zeta * omega / omega_d * np.sin(omega_d * t)
-            return 1 - np.exp(-zeta * omega * t) * swing
-        root = np.sqrt(zeta**2 - 1)
+        root = np.sqrt(complex(zeta**2 - 1))  # imaginary for an underdamped joint
         slow, fast = omega * (zeta - root), omega * (zeta + root)  # both decay
-        return 1 - (fast * np.exp(-slow * t) - slow * np.exp(-fast * t)) / (fast - slow)
+        decay = (fast * np.exp(-slow * t) - slow * np.exp(-fast * t)) / (fast - slow)
+        return np.asarray(1 - decay.real)
 
 
 def stepped_joint(

@@ -4,17 +4,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import (
-    Finding,
-    above,
-    at_most,
-    below,
-    equal,
-    model_counts,
-    nearly,
-    noted,
-    within,
-)
+from robo_genesis.core import checks
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l05 import spec, study
@@ -35,7 +26,7 @@ OF_CHAIN = slice(HAND - ARM, HAND + 1)
 
 def mapping(run: Experiment) -> Iterator[Finding]:
     """The engine has the joints, limits and links that our forward kinematics uses."""
-    yield from model_counts(run.readings["model"], spec.EXPECTED_MODEL)
+    yield from checks.model_counts(run.readings["model"], spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
     chain = tuple(name for name, *_ in CHAIN)
     yield equal("links_of_the_chain", tuple(run.links[OF_CHAIN]), chain)

@@ -17,8 +17,7 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 MEASURES = False
 
-TINY = 1e-9
-"""Largest difference that rounding explains in float64."""
+TINY = 1e-9  # Largest difference that rounding explains in float64
 
 ROUNDED = 1e-6
 """Largest difference of a pixel coordinate [pixel] or of a point [m] that rounding explains."""

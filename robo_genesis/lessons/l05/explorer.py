@@ -13,8 +13,7 @@ from robo_genesis.sim.camera.record import DEPTH_UNIT, SEGMENTS, view_of
 
 MEASURES = False
 
-COLUMNS = 9
-"""Most cells in a row of a map."""
+COLUMNS = 9  # Most cells in a row of a map
 
 PLACES = {
     "vertical": ("Plane y = 0", ("z", "x"), spec.GRID_Z),

@@ -8,14 +8,7 @@ import numpy as np
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import (
-    MeasuringPage,
-    Readings,
-    Run,
-    case_inputs,
-    counts,
-    runs_of,
-)
+from robo_genesis.core.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import checks, spec, study
 from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
@@ -62,9 +55,7 @@ LAB = with_functions(RECORDED, "chain", "damped", "accept", "project", "back_pro
 
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
 ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
-SOLUTIONS = MOTION.with_more(
-    lambda: {"questions": case_inputs(spec.QUESTIONS)}, ANSWERS, checks=checks.SOLUTIONS
-)
+SOLUTIONS = MOTION.with_more(spec.solution_parameters, ANSWERS, checks=checks.SOLUTIONS)
 """The page about many solutions, the map of targets and the target beyond reach."""
 
 BASELINE = replace(MOTION, runs=runs_of({"baseline": spec.BASELINE}))

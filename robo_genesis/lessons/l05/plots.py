@@ -14,8 +14,7 @@ from robo_genesis.sim.camera.record import view_of
 
 MEASURES = False
 
-AROUND = 45
-"""Half the width of the shown part of the picture around the marker [pixel]."""
+AROUND = 45  # Half the width of the shown part of the picture around the marker [pixel]
 
 
 def posture(run: Experiment) -> Figure:

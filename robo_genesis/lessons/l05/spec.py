@@ -61,14 +61,11 @@ LABELS = {
     name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ") for name in CASES
 }
 LABELS |= {f"{name}_fine": f"{LABELS[name]}, {FINE} substeps" for name in CASES}
-LABELS["unlimited"] = "KP doubled, ten times the force limits"
-"""Words of a reader for runs."""
+LABELS["unlimited"] = "KP doubled, ten times the force limits"  # Words of a reader for runs
 
-VIEWED = "world"
-"""The recorded view of the camera, before the first step."""
+VIEWED = "world"  # The recorded view of the camera, before the first step
 
-FOV = 42.0
-"""Vertical field of view of the lesson's camera [degree]."""
+FOV = 42.0  # Vertical field of view of the lesson's camera [degree]
 
 VIEW = CAMERA | {
     "pos": (1.5, -1.1, 1.0), "lookat": (0.4, 0.0, 0.3), "fov": FOV, "near": 0.1, "far": 20.0,
@@ -78,8 +75,7 @@ VIEW = CAMERA | {
 CUT = (1.65, 2.2)
 """Near and far limit of the view `cut` [m]: one is inside the hand, the other on the floor."""
 
-HAND_FOV = 60.0
-"""Vertical field of view of the camera on the hand [degree]."""
+HAND_FOV = 60.0  # Vertical field of view of the camera on the hand [degree]
 
 ON_HAND = ((0.0, -1, 0, 0.05), (-1, 0, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
 """The camera in the frame of the hand, z backwards: it looks along the fingers [m]."""
@@ -106,8 +102,7 @@ GRID_X, GRID_Y, GRID_Z = (
     tuple(np.round(np.linspace(*ends), 3).tolist())
     for ends in ((0.1, 0.9, 9), (-0.6, 0.6, 7), (0.05, 0.95, 7))
 )
-HEIGHT = 0.35
-"""Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0."""
+HEIGHT = 0.35  # Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0
 
 PLANES = {
     "vertical": read_only([(x, 0.0, z) for z in GRID_Z for x in GRID_X]),
@@ -169,8 +164,7 @@ postures a search finds."""
 SAG_SHARE = 0.02
 """Share of the displacement that gravity, KP and the Jacobian may leave unexplained."""
 
-ANGLE_WEIGHT = 0.5
-"""Metres that count as much as one radian, where the nearest pose is sought."""
+ANGLE_WEIGHT = 0.5  # Metres that count as much as one radian, where the nearest pose is sought
 
 BEYOND_NEAREST = 0.01
 """The engine's answer for the target beyond reach is farther than the nearest pose by more [m]."""
@@ -186,6 +180,11 @@ def parameters() -> dict[str, Any]:
 def lecture_parameters() -> dict[str, Any]:
     """Return the inputs of the lecture, which has more runs than the lab."""
     return parameters() | {"further": case_inputs(MORE)}
+
+
+def solution_parameters() -> dict[str, Any]:
+    """Return the further inputs of the page about many solutions."""
+    return {"questions": case_inputs(QUESTIONS)}
 
 
 def view_parameters() -> dict[str, Any]:

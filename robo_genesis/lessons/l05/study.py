@@ -182,8 +182,7 @@ def one_way(q: FloatArray, along: FloatArray, target: Pose, step: float) -> list
     return way
 
 
-LONGEST_CURVE = 400
-"""Most postures of a self-motion in one direction."""
+LONGEST_CURVE = 400  # Most postures of a self-motion in one direction
 
 
 def null_vector(q: FloatArray) -> FloatArray:
@@ -212,8 +211,7 @@ def families(solutions: FloatArray, target: Pose) -> list[tuple[FloatArray, list
 
 
 # Two steps along the curve, of which one may be missing at a joint limit.
-SAME_CURVE = 0.1
-"""A solution within this distance of a curve belongs to it [rad]."""
+SAME_CURVE = 0.1  # A solution within this distance of a curve belongs to it [rad]
 
 
 def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:

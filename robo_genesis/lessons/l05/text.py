@@ -23,11 +23,9 @@ MEASURES = False
 
 NO_PICTURE = "SKIP: no camera"
 
-SHOWN = 3
-"""Joints with a row of their own in the table of gravity."""
+SHOWN = 3  # Joints with a row of their own in the table of gravity
 
-AT_LIMIT = 0.99
-"""Share of the force limit from which a sample is counted as at the limit."""
+AT_LIMIT = 0.99  # Share of the force limit from which a sample is counted as at the limit
 
 CRITERIA = {
     "nearest to the present posture": ("from_start", min),

@@ -28,8 +28,7 @@ SAME_POSE, SAME_RESIDUAL = reaching.SAME_POSE, reaching.SAME_RESIDUAL
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
 
-HAND_MASS = 0.73
-"""Mass of the hand in the model file [kg]."""
+HAND_MASS = 0.73  # Mass of the hand in the model file [kg]
 
 TARGETS = read_only(
     [(0.42, -0.12, 0.35), (0.48, -0.04, 0.4), (0.48, 0.06, 0.32), (0.4, 0.14, 0.38)]
@@ -42,8 +41,7 @@ LATER = {1: [(0.44, -0.16, 0.32)], 3: [(0.50, 0.12, 0.40)]}
 SWITCH, STEPS = 180, 360
 """Outer steps until the second command, and of the whole run."""
 
-RESET_AFTER = 30
-"""Outer steps until the partial reset, while all arms are moving."""
+RESET_AFTER = 30  # Outer steps until the partial reset, while all arms are moving
 
 MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
 """Targets of which one is refused [m]."""
@@ -128,8 +126,7 @@ LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
 } | {name: f"environment {name[-1]} alone" for name in ALONE}  # fmt: skip
 """Words of a reader for runs."""
 
-SPACING = 1.0
-"""Distance of neighbouring environments in pictures [m]; no state depends on it."""
+SPACING = 1.0  # Distance of neighbouring environments in pictures [m]; no state depends on it
 
 PLACES = ((-0.81, -0.75), (-0.54, 0.09), (0.34, -0.09), (0.61, 0.75))
 """Where the replay draws the environments [m]: from left to right, none hides another."""

@@ -18,8 +18,7 @@ from robo_genesis.sim.throughput import Calls, Clock, calls_of
 GROUP, EQUAL = "throughput", "rows_that_differ"
 """Groups of a bundle's metrics: times and memory, and how many environments did other work."""
 
-RAISED = 0.1
-"""Angle by which the timed command turns each arm joint from its start [rad]."""
+RAISED = 0.1  # Angle by which the timed command turns each arm joint from its start [rad]
 
 NEAR = RAISED / 5
 """Largest distance of an arm joint from its commanded angle at the end [rad], sag included."""

@@ -4,21 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import case, copied, frames, metric, put, reading, trace, with_fields
+from lessons.changed_runs import case, copied, failed, frames, joints, metric, put, reading, trace
+from lessons.experiments import checks_of, each, run_with
 
-from robo_genesis.core.checks import CheckFailed, evaluate, require
+from robo_genesis.core.checks import CheckFailed, require
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.laws import laws_of_motion
 from robo_genesis.lessons.l04.pages import LAB
+from robo_genesis.lessons.l04.study_checks import study_factors
 
 K = spec.ENTRY
 GRID_G2 = study_spec.CASE_POINTS["G2"].name
-MOTION = "MuJoCo_Euler_G2_substeps_50"
+IMPLICIT_G2 = "MuJoCo_implicitfast_G2_substeps_2"
 REPORTED = ("passive_damping", "inertia_Genesis", "mass_KV_300", "gravity_G1")
-
-
-def joints(**fields):
-    return lambda run: replace(run, joints=with_fields(run.joints, fields))
 
 
 def overshoot(name, value):
@@ -43,10 +41,15 @@ def as_theory(run):
     return trace("G1", q=put((slice(None), K), ideal))(run)
 
 
+def moving_at_the_end(run):
+    moving = {name: replace(m, final_velocity=1.0) for name, m in run.metrics.items()}
+    return replace(run, accepted=moving)
+
+
 SPOILERS = {
     "mapping": [
-        reading("model", "links", 10), joints(types=("SPHERICAL",) * 9),
-        joints(names=("base", *LAB.joints[1:])), joints(dofs_idx_local=np.arange(9) // 2),
+        reading("model", "links", 10), joints(names=("base", *LAB.joints[1:])),
+        joints(types=("SPHERICAL",) * 9), joints(dofs_idx_local=np.arange(9) // 2),
     ],
     "configuration": [
         case("baseline", kp=put(0, np.nan)), case("baseline", kv=spec.BASELINE.kv[:8]),
@@ -71,26 +74,19 @@ SPOILERS = {
         trace("G1", effort_limit=put(0, 90.0)),
     ],
     "posture": [frames(), lambda run: replace(run, rendered=False)],
-    "study_factors": [],  # of the specification: a test of its own
-    "same_model": [reading(study.GROUP, name, 1.01) for name in REPORTED],
     "claimed_orders": [copied("G2", "G1"), overshoot("G3", 0.1)],
     "clipped_start": [
         trace("G1", start_control_force=put(K, 80.0)), copied("G2", "G1"), copied("G3", "G2"),
         trace("G2", control_force=np.abs), trace("G1", qd=put((6, K), 0.0)),
         trace("G3", control_force=np.abs),
     ],
-    "gravity_support": [
-        reading(study.GROUP, "gravity_G2", 30.0),
-        lambda run: replace(run, accepted={n: replace(m, final_velocity=1.0)
-                                           for n, m in run.metrics.items()}),
-    ],
+    "gravity_support": [reading(study.GROUP, "gravity_G2", 30.0), moving_at_the_end],
     "ends_at_rest": [metric("G3", final_velocity=-0.02), metric("G1", final_error=0.011)],
     "same_beginning": [copied("G2_longer", "G1"), trace("G2_longer", qd=put((3, 0), 9.0))],
     "same_metrics": [metric("G2_longer", settling_time=1.5)],
+    "same_model": [reading(study.GROUP, name, 1.01) for name in REPORTED],
     "implicit_term": [reading(study.GROUP, "mass_KV_300", 2.5)],
-    "clipped_before_parting": [
-        trace("G2", start_control_force=put(K, 80.0)), as_theory,
-    ],
+    "clipped_before_parting": [trace("G2", start_control_force=put(K, 80.0)), as_theory],
     "small_step_unsaturated": [
         trace("G2_small", start_control_force=put(K, -87.0)),
         trace("G2_hold", control_force=put((7, K), 87.0)),
@@ -105,9 +101,7 @@ SPOILERS = {
     ],
     "convergence": [overshoot("G2_substeps_4", 0.07), overshoot("G2_substeps_50", 0.07)],
     "one_limit": [overshoot("G2_substeps_50", 0.0415)],
-    "second_engine_order": [
-        copied("MuJoCo_implicitfast_G2_substeps_2", "MuJoCo_implicitfast_G1_substeps_2")
-    ],
+    "second_engine_order": [copied(IMPLICIT_G2, "MuJoCo_implicitfast_G1_substeps_2")],
     "order_at_finer_step": [
         copied("G2_substeps_4", "G1_substeps_4"), copied("G3_substeps_20", "G2_substeps_20"),
     ],
@@ -122,34 +116,25 @@ SPOILERS = {
 }  # fmt: skip
 
 
-def of_check(run, name):
-    """Return the outcome of one check."""
-    checks = [check for check in run.page.checks if check.__name__ == name]
-    (outcome,) = evaluate(checks, run)
-    return outcome
-
-
-def test_sound_runs_pass_every_check_and_each_has_a_spoiler(study_runs):
-    outcomes = study_runs.outcomes()
-    assert require("l04", outcomes) == "L04 CHECK: PASSED"
-    assert [*SPOILERS] == [check.name for check in outcomes if check.name != "laws_of_motion"]
-
-
-@pytest.mark.parametrize(
-    ("name", "spoil"), [(name, spoil) for name, of in SPOILERS.items() for spoil in of]
-)
-def test_a_spoiled_run_fails_by_the_name_of_its_check(study_runs, monkeypatch, name, spoil):
-    run = spoil(study_runs)
+@pytest.mark.parametrize(("check", "spoil"), each(SPOILERS))
+def test_a_spoiled_run_fails_its_check(experiments, monkeypatch, check, spoil):
+    sound = run_with(experiments, check)
+    assert not failed(sound)
+    run = spoil(sound)
     monkeypatch.setattr(spec, "CASES", {case: run.cases[case] for case in spec.CASES})
-    outcome = of_check(run, name)
-    with pytest.raises(CheckFailed, match=rf"^L04 CHECK: FAILED \[{name}\] \S.* expected "):
-        require("l04", [outcome])
+    with pytest.raises(CheckFailed, match=rf"^L04 CHECK: FAILED \[{check}\] \S.* expected "):
+        require("l04", run.outcomes())
 
 
-def test_a_study_case_with_a_second_factor_fails(study_runs, monkeypatch):
+def test_each_check_has_a_spoiled_run(experiments):
+    assert {*SPOILERS, "study_factors"} == checks_of(experiments)
+
+
+def test_a_study_case_with_a_second_factor_fails(experiments, monkeypatch):
     second = replace(study_spec.STEP_CASES["G1_small"], seed=1)
     monkeypatch.setitem(study_spec.STEP_CASES, "G1_small", second)
-    assert "is seed, q_target[joint4], expected" in of_check(study_runs, "study_factors").detail
+    found = [one for one in study_factors(experiments["formula"]) if not one.passed]
+    assert [one.found for one in found] == ["seed, q_target[joint4]"]
 
 
 @pytest.mark.parametrize(
@@ -157,14 +142,11 @@ def test_a_study_case_with_a_second_factor_fails(study_runs, monkeypatch):
     [
         ("assigned", trace("assigned", qd=put((3, 1), 0.1))),
         ("assigned", trace("assigned", internal_force=put(..., 1e-6))),
-        (MOTION, trace(MOTION, qd=put((9, 1), 0.1))),
-        ("MuJoCo_implicitfast_G2_substeps_2", copied("MuJoCo_implicitfast_G2_substeps_2", "G2")),
+        (IMPLICIT_G2, trace(IMPLICIT_G2, qd=put((9, 1), 0.1))),
+        (IMPLICIT_G2, copied(IMPLICIT_G2, "G2")),
     ],
 )
-def test_a_run_that_breaks_its_laws_is_named(study_runs, name, spoil):
-    page = replace(study_runs.page, runs={n: study_runs.page.runs[n] for n in {name, "G2"}})
-    alone = replace(study_runs, page=page)
-    assert evaluate([laws_of_motion], alone)[0].passed
-    (broken,) = evaluate([laws_of_motion], spoil(alone))
-    assert not broken.passed
-    assert name in broken.detail
+def test_a_run_that_breaks_its_laws_is_named(experiments, name, spoil):
+    run = next(run for run in experiments.values() if name in run.traces)
+    broken = [found.label for found in laws_of_motion(spoil(run)) if not found.passed]
+    assert [label.partition(":")[0] for label in broken] == [name]

@@ -5,20 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.engine_scenes import robot_in_scene
-from lessons.l04.conftest import LINKS
 
 from robo_genesis.core.comparison import same_arrays
-from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l04 import spec, study_spec
-from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.sim.arm.batch import run_batch
 from robo_genesis.sim.arm.franka import LINK_PARENTS
-from robo_genesis.sim.arm.joint_control import CaseError, run_case
-from robo_genesis.sim.mujoco import joints as mujoco_joints
+from robo_genesis.sim.arm.joint_control import CaseError
 
 pytestmark = pytest.mark.engine
-
-K = spec.ENTRY
 
 
 def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
@@ -48,14 +42,3 @@ def test_a_batch_repeats_and_refuses_cases_that_do_not_fit(lab):
         run_batch(*batch, {"G1": spec.G1, "G2": spec.G2})
     with pytest.raises(CaseError, match="cases of equal length"):
         run_batch(*batch, few | {"G1": replace(spec.G1, steps=10)})
-
-
-def test_with_one_explicit_integrator_both_engines_agree(lab):
-    """At a step fine enough for Euler to hold the stiff wrist without chatter."""
-    case = replace(spec.G2, substeps=20)
-    scene = robot_in_scene(lab.gs, substeps=20, integrator=lab.gs.integrator.Euler)
-    first = run_case(*vars(scene).values(), case)
-    second = mujoco_joints.run_case(case, LINKS, DT / 20, "Euler")
-    apart = step_metrics(first, K).overshoot - step_metrics(second, K).overshoot
-    assert abs(apart) < 5e-4
-    assert np.abs(first.q - second.q)[:, :7].max() < 2e-3

@@ -98,8 +98,8 @@ CASES = {  # of each exercise the right solution, then wrong ones
 
 
 @pytest.mark.parametrize(("name", "k"), [(n, k) for n, of in CASES.items() for k in range(len(of))])
-def test_only_the_right_solution_passes(study_runs, name, k):
-    joints, traces = study_runs.joints, study_runs.traces
+def test_only_the_right_solution_passes(experiment, name, k):
+    joints, traces = experiment.joints, experiment.traces
     robot = SimpleNamespace(
         get_joint=lambda name: exercises._joint(int(joints.dofs_idx_local[joints.entry(name)]))
     )
@@ -108,7 +108,7 @@ def test_only_the_right_solution_passes(study_runs, name, k):
         "resolver": (robot, joints),
         "control_loop": (playback, playback, joints, spec.BASELINE, traces["baseline"]),
         "pd_law": ([(traces[n], case) for n, case in spec.CASES.items()],),
-        "step_response": ([(traces[n], study_runs.metrics[n]) for n in spec.CASES],),
+        "step_response": ([(traces[n], experiment.metrics[n]) for n in spec.CASES],),
     }
     check = getattr(exercises, name)(CASES[name][k], *more.get(name, ()))
     assert check.passed == (k == 0), check.detail

@@ -19,13 +19,13 @@ def cells_of(data):
     return [cell for row in rows for cell in row["cells"]]
 
 
-def test_the_packed_runs_are_the_measured_ones(study_runs):
-    data = json.loads(json.dumps(explorer.explored(study_runs)))
+def test_the_packed_runs_are_the_measured_ones(experiments):
+    data = json.loads(json.dumps(explorer.explored(experiments["batch"])))
     assert len(gzip.compress(json.dumps(data).encode(), mtime=0)) < SHIPPED
     curves = {curve["key"]: curve for curve in data["curves"]["drawn"]}
     drawn = round(data["curves"]["until"] / data["curves"]["dt"])
     for point, cell in zip(POINTS, cells_of(data), strict=True):
-        run = study_runs.traces[point.name]
+        run = experiments["batch"].traces[point.name]
         q, force = (np.array(cell[n]) * of["unit"] + of["zero"] for n, of in curves.items())
         assert np.abs(q - run.q[: drawn + 1, spec.ENTRY]).max() < 0.51 * explorer.PACKED["q"]
         off = np.abs(force - run.control_force[:drawn, spec.ENTRY]).max()
@@ -33,9 +33,9 @@ def test_the_packed_runs_are_the_measured_ones(study_runs):
         assert np.ptp(run.q[drawn:, spec.ENTRY]) < 5e-4  # rad, no motion after the drawn part
 
 
-def test_metrics_measures_and_sentence_of_a_point(study_runs):
-    data, number = explorer.explored(study_runs), POINTS.index(G2)
-    measured, cell = study_runs.metrics[G2.name], cells_of(data)[number]
+def test_metrics_measures_and_sentence_of_a_point(experiments):
+    data, number = explorer.explored(experiments["batch"]), POINTS.index(G2)
+    measured, cell = experiments["batch"].metrics[G2.name], cells_of(data)[number]
     overshoot = cell["values"][data["columns"].index("overshoot")]
     assert overshoot == format_value(measured.overshoot, "rad")
     share = f"{100 * measured.overshoot / 0.25:.1f} %"
@@ -48,5 +48,5 @@ def test_metrics_measures_and_sentence_of_a_point(study_runs):
         assert (measure["margin"], found) == (spec.MARGINS[name], getattr(measured, name))
     rise, peak = f"{1000 * measured.rise_time:.0f}", f"{measured.peak_speed:.2f}"
     assert cell["texts"][1::2] == [rise, peak]
-    rows = explorer.table(study_runs).splitlines()[2:]
+    rows = explorer.table(experiments["batch"]).splitlines()[2:]
     assert [k for k, row in enumerate(rows) if "| G2 |" in row] == [number]

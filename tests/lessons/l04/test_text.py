@@ -74,9 +74,9 @@ def test_a_prediction_within_the_margin_is_too_close_to_call(experiment, rise, o
     assert row.split("|")[4].strip() == outcome
 
 
-def test_tables_mark_unstable_runs_and_name_regimes(study_runs):
-    table = tables.relation_table(study_runs)
+def test_tables_mark_unstable_runs_and_name_regimes(experiments):
+    table = tables.relation_table(experiments["integrator"])
     assert table.count("| unstable: ") == table.count("\n") - 2
-    assert tables.convergence_table(study_runs).count(" (unstable)") == 4
+    assert tables.convergence_table(experiments["integrator"]).count(" (unstable)") == 4
     words = [tables.damping_word(zeta) for zeta in (0.9, 1.0, 1.1)]
     assert words == ["underdamped", "critically damped", "overdamped"]

@@ -4,8 +4,8 @@ import control
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l04 import study, study_spec
-from robo_genesis.lessons.l04.theory import IdealJoint, step_share, stepped_joint
+from robo_genesis.lessons.l04 import study
+from robo_genesis.lessons.l04.theory import IdealJoint, step_share
 
 T = np.linspace(0, 1.2, 24001)
 
@@ -30,21 +30,6 @@ def test_the_regimes_meet_at_critical_damping(off):
     assert near.overshoot == pytest.approx(0.0)
 
 
-@pytest.mark.parametrize(
-    ("case", "step", "forces", "overshoot"),
-    [
-        ("G1", 0.005, {}, 0.031 * 0.005),
-        ("G2", 0.005, {}, 0.145 * 0.005),
-        ("G2", 0.25, {"limit": 87.0, "gravity": 22.09}, 0.0536),
-    ],
-)
-def test_the_stepped_joint_overshoots_by_known_amounts(case, step, forces, overshoot):
-    kp, kv = study_spec.COMPARED[case].kp[3], study_spec.COMPARED[case].kv[3]
-    path = stepped_joint(IdealJoint(1.077, kv + 1.0, kp), 1.0, step, 0.005, 240, **forces)
-    assert max(0.0, path.max()) == pytest.approx(overshoot, rel=2e-3, abs=2.5e-6)
-    assert path[-1] == pytest.approx(-forces.get("gravity", 0.0) / kp, abs=1e-5)  # at rest
-
-
 def test_what_acts_on_both_runs_is_gone_from_the_share(make_trace):
     response, sag = np.array([0.0, 0.2, 0.5, 0.8, 1.0]), -0.02 * np.arange(5)
     share = step_share(make_trace(0.5 * response + sag, 0.5), make_trace(sag, 0.0), 0)
@@ -52,10 +37,11 @@ def test_what_acts_on_both_runs_is_gone_from_the_share(make_trace):
 
 
 @pytest.mark.parametrize("term", [0.0, 100.0])
-def test_the_joint_alone_is_the_equation_by_hand(study_runs, term):
-    given = study_runs.readings[study.GROUP]
+def test_the_joint_alone_is_the_equation_by_hand(experiments, term):
+    run = experiments["integrator"]
+    given = run.readings[study.GROUP]
     damping, h = given["passive_damping"], 0.005
     mass = given["inertia_Genesis"] + h * (damping + term)
     after_one = h * (87.0 - given["gravity_at_start_Genesis"]) / mass
     more = h * (87.0 - given["gravity_at_start_Genesis"] - damping * after_one) / mass
-    assert study.first_speed(study_runs, "G1", term) == pytest.approx(after_one + more)
+    assert study.first_speed(run, "G1", term) == pytest.approx(after_one + more)
