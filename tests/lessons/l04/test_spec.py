@@ -3,7 +3,6 @@ import json
 import pytest
 
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
-from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 PAGES = ("lecture", "formula", "integrator", "batch")
 MODEL = spec.EXPECTED_MODEL
@@ -15,8 +14,6 @@ MODEL = spec.EXPECTED_MODEL
         (spec, "STEPPED_JOINT", "joint2", PAGES),
         (spec, "EXPECTED_MODEL", {**MODEL, "cameras": 1}, PAGES),  # its names are read
         (spec, "EXPECTED_MODEL", {**MODEL, "links": 12}, ()),
-        (spec, "FRANKA_MJCF", "another.xml", PAGES),
-        (spec, "JOINT_NAMES", JOINT_NAMES[::-1], PAGES),
         (spec, "RISE_FRACTION", 0.8, PAGES),
         (spec, "SETTLING_BAND", 0.02, PAGES),
         (spec, "SATURATION_THRESHOLD", 0.9, PAGES),
