@@ -188,8 +188,8 @@ def _of_metadata(cell: NotebookNode, head: Sequence[str]) -> Iterator[str]:
     """Yield what is wrong in the tags and options of a cell, which its first lines give."""
     given, valid = cell.metadata, OPTIONS.get(cell.cell_type, ())
     tags, mystnb = given.get("tags", []), given.get("mystnb", {})
-    if not isinstance(tags, list) or not isinstance(mystnb, dict):
-        yield f"tags are {tags!r}, and mystnb is {mystnb!r}. Valid are a list and a mapping."
+    if not isinstance(mystnb, dict):
+        yield f"mystnb is {mystnb!r}. Valid is a mapping: `mystnb: {{image: {{alt: …}}}}`."
         return
     known = TAGS if cell.cell_type == "code" else ("site-only",)
     for what, names, choices in (("tag", tags, known), ("option", given, valid)):
