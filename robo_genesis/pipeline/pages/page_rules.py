@@ -23,7 +23,7 @@ from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
 from robo_genesis.pipeline.pages.syntax import PACKAGE, plain_python
 
 SOLUTION = "solution"  # The tag of a code cell and the class of a directive that contain a solution
-EXPLANATION = "explanation"  # The class of a fold that a site without solutions shows, too
+EXPLANATION = "explanation"  # The class of a fold that a site without solutions keeps
 
 TAGS = (
     "after-yours", "alone", "figure", "hide-cell", "hide-input", "hide-output", "inputs",
