@@ -268,6 +268,14 @@ def test_invalid_settings_are_refused_before_any_page(tmp_path, settings, said):
     assert not (tmp_path / "cache" / "pages").exists()
 
 
+@pytest.mark.parametrize("script", ["book.py", "execute.py"])
+def test_a_bad_source_is_refused_before_any_page(tmp_path, script):
+    make_book(tmp_path, page=notebook(cell("1")), bad="# Bad\n\n:::{note}\n")
+    report = fails(script, tmp_path, PAGE="page", TO=str(tmp_path / "to"))
+    assert f"{tmp_path}/book/bad.md:3: the block :::{{note}} has no end" in report
+    assert not (tmp_path / "cache" / "pages").exists()
+
+
 def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monkeypatch):
     make_book(tmp_path, page=notebook(cell("1")))
     monkeypatch.setattr("robo_genesis.core.project.installed_version", lambda name: "0.0.1")

@@ -143,7 +143,7 @@ def page_files(book: Path) -> dict[str, Path]:
 
 
 def _is_stray(path: Path, book: Path, files: Mapping[str, Path]) -> bool:
-    """Whether a file looks like a page that _toc.yml lacks; folders named `_…` have none."""
+    """Whether a file looks like a page, and no line of the table of contents names it."""
     hidden = any(part.startswith("_") for part in path.relative_to(book).parts)
     is_text = path.suffix.lower() in PAGES and path.name != WORK_SHEET
     return is_text and not hidden and path not in files.values()

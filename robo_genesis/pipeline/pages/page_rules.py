@@ -23,7 +23,7 @@ from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
 from robo_genesis.pipeline.pages.syntax import PACKAGE, plain_python
 
 SOLUTION = "solution"  # The tag of a code cell and the class of a directive that contain a solution
-EXPLANATION = "explanation"  # The class of a fold that a site without solutions also shows
+EXPLANATION = "explanation"  # The class of a fold that a site without solutions keeps
 
 TAGS = (
     "after-yours", "alone", "figure", "hide-cell", "hide-input", "hide-output", "inputs",
@@ -188,8 +188,8 @@ def _of_metadata(cell: NotebookNode, head: Sequence[str]) -> Iterator[str]:
     """Yield what is wrong in the tags and options of a cell, which its first lines give."""
     given, valid = cell.metadata, OPTIONS.get(cell.cell_type, ())
     tags, mystnb = given.get("tags", []), given.get("mystnb", {})
-    if not isinstance(tags, list) or not isinstance(mystnb, dict):
-        yield f"tags are {tags!r}, and mystnb is {mystnb!r}. Valid are a list and a mapping."
+    if not isinstance(mystnb, dict):
+        yield f"mystnb is {mystnb!r}. Valid is a mapping: `mystnb: {{image: {{alt: …}}}}`."
         return
     known = TAGS if cell.cell_type == "code" else ("site-only",)
     for what, names, choices in (("tag", tags, known), ("option", given, valid)):

@@ -122,7 +122,7 @@ class LoggingClient(nbclient.NotebookClient):
         msg["content"]["text"] = last_states(text)
         found = super().process_message(msg, cell, cell_index)
         if [out.get("name") for out in cell.outputs[-2:]] == ["stderr", "stdout"]:
-            cell.outputs[-2:] = cell.outputs[:-3:-1]  # their order is random as well
+            cell.outputs[-2:] = cell.outputs[:-3:-1]  # their order is random
         return found
 
 

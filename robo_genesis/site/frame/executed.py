@@ -44,8 +44,7 @@ class ExecutedPage(NotebookClientBase):
             executed = None
         if executed is None or code_and_kernel(executed) != code_and_kernel(self.notebook):
             raise ExtensionError(
-                f"{self.path} is not executed, and Sphinx executes nothing. "
-                "Build with `make book`; if you did, a code cell is nested in another directive."
+                f"{self.path} is not executed, and Sphinx executes nothing. Build with `make book`."
             )
         executed_cells = iter(executed.cells)
         for cell in self.notebook.cells:

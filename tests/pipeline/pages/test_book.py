@@ -48,6 +48,7 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     (notebook(cell("1", ":tags: [solution]\n:tags: [inputs]\n")), 9, "the cell has tags twice"),
     (notebook(cell("1", ":tags: [a\n")), 9, "cannot be read"),
     (notebook(cell("1", ":mystnb: {code_prompt_show: A solution}\n")), 9, "is behind 'A solution'"),
+    (notebook(cell("1", ":mystnb: 1\n")), 9, "mystnb is 1. Valid is a mapping"),
     (notebook(cell("1", ":tags: [figure]\n")), 9, "a figure needs a text"),
     (notebook(cell("1", ":tags: [raises-exception]\n")), 9, "the tag raises-exception needs"),
     (notebook(cell("1", ':expects: "KeyError: a"\n')), 9, "the tag raises-exception needs"),

@@ -52,7 +52,7 @@ BROKEN = {
     "bundle": notebook(cell("5 + 1"), front=LAB_FRONT.replace("lab", "more")),
     "link": notebook(cell(LINKED), front=LAB_FRONT),
     "killed": notebook(cell(KILLS)),
-    "long": notebook(cell("for k in range(40): print('x' * 99_999)")),
+    "long": notebook(cell("for k in range(9): print('x' * 600_000, flush=True)")),
     "memory": notebook(cell(MEMORY)),
     "twin": notebook(cell(GREEN)),  # the code of `good`
 }
@@ -107,7 +107,7 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
         ("slow", "CellTimeoutError", "2 seconds", 1),
         ("bundle", "BundleMissing", "the run left no l04/more/<backend>/manifest.json", None),
         ("link", "NotStored", "files: outputs/cpu/log.txt is a link or device", None),
-        ("long", "OutputSize", "the cell puts out ", 1),
+        ("long", "OutputSize", "puts out 2 lines, 1,200,002 characters.", 1),
         ("killed", "WorkerDied", "ended in cell 1 with SIGKILL (Killed). If nobody stopped", None),
         ("memory", "DeadKernelError", "SIGKILL (Killed). If nobody stopped it, the memory", 1),
     ],
