@@ -40,6 +40,7 @@ class Tree:
         self.root = root
         self.module: Callable[[str], Path | None] = cache(self._module)
         self.text: Callable[[Path], str] = cache(partial(Path.read_text, encoding="utf8"))
+        self.digest: Callable[[Path], str] = cache(sha256)
 
     def _module(self, name: str) -> Path | None:
         """Return the file of a module, None if the name is not a module."""
@@ -85,13 +86,15 @@ class Tree:
         return inside and not silent
 
     @cached_property
-    def data(self) -> dict[Path, str]:
-        """The digest of each file that is not a module, except in what no page can import."""
+    def data(self) -> list[Path]:
+        """The files that are not modules, except in what no page can import."""
         files = files_below(self.root / PACKAGE, USED_BY_NO_PAGE, NO_SOURCE)
-        return {path: sha256(path) for path in files if path.suffix != ".py"}
+        return [path for path in files if path.suffix != ".py"]
 
     def data_for(self, used: Iterable[Path]) -> dict[str, str]:
         """Return digests by names below the package: of a lesson only if a file of it is used.
+
+        Others are not read, because a page that runs must read nothing of another lesson.
 
         Args:
             used: the files of modules, or any others.
@@ -100,8 +103,8 @@ class Tree:
         others = {init.parent for init in lessons.glob("*/__init__.py")}
         others.difference_update(*(path.parents for path in used))
         return {
-            path.relative_to(lessons.parent).as_posix(): digest
-            for path, digest in self.data.items()
+            path.relative_to(lessons.parent).as_posix(): self.digest(path)
+            for path in self.data
             if others.isdisjoint(path.parents)
         }
 

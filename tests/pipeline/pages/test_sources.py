@@ -107,13 +107,16 @@ def write(root, name, text=""):
         opened.write(text)
 
 
-def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(root):
+def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(root, monkeypatch):
     """Of other lessons only with a module of theirs, and none of what measures nothing."""
+    read = []
+    monkeypatch.setattr(sources, "sha256", lambda path: read.append(path.parent.name) or path.name)
     data = ["core/a.bin", "sim/arm/a", "lessons/l04/a/b.xml", "lessons/l03/a.csv", "site/a.json"]
     for name in (*data, "pipeline/a.csv", "lessons/l03/__init__.py", "lessons/l03/run.py"):
         write(root, f"robo_genesis/{name}")
     imports, other = ["robo_genesis.lessons.l03.run"], {"lessons.l03.run", "lessons/l03/a.csv"}
     assert measuring_modules("l04", [], root).keys() == {*data[:3]}
+    assert "l03" not in read  # a page that read it would be refused
     assert measuring_modules("l04", imports, root).keys() == {*data[:3]} | other
 
 

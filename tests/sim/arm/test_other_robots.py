@@ -93,6 +93,10 @@ def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
     again = mujoco_joints.run_case(case, links, *how)
     assert [*laws.driven_run(run, case, links)] == []
     assert [*laws.driven_in_mujoco(again, case, links, *how)] == []
+    stiff = replace(
+        case, kp=5000 * case.kp, kv=5000 * case.kv, effort_limit=1e5 * case.effort_limit
+    )
+    assert [*laws.driven_run(driven(stiff, links), stiff, links)] == []
     text = FILES[case.model.file].replace('size="0.04"', 'size="0.05"').replace('"3"', '"6"')
     (folder / f"heavy-{case.model.file}").write_text(text)
     heavy = replace(case, model=replace(case.model, file=f"heavy-{case.model.file}"))
