@@ -16,7 +16,8 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"robo_genesis has no {name!r}. Names: {', '.join(__all__)}.")
     from robo_genesis import page
     from robo_genesis.sim import session
+    from robo_genesis.sim.arm.model import model_file
 
-    if name == "PLAIN_LOG":
-        return session.plain_log()
-    return getattr(session if name in ("PRECISION", "SEED", "model_file") else page, name)
+    if name in ("PLAIN_LOG", "model_file"):
+        return model_file if name == "model_file" else session.plain_log()
+    return getattr(session if name in ("PRECISION", "SEED") else page, name)

@@ -15,7 +15,7 @@ from robo_genesis.core.project import RENDER
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import TraceError
 from robo_genesis.sim import session
-from robo_genesis.sim.arm import franka, joint_control
+from robo_genesis.sim.arm import franka, joint_control, model
 from robo_genesis.sim.arm import joints as robot_model
 from robo_genesis.sim.camera import frames as camera
 
@@ -97,7 +97,7 @@ def backend(bench: Bench) -> str:
 
 def model_file(bench: Bench) -> str:
     """The robot's model is where the engine looks for it."""
-    session.model_file(franka.FRANKA_MJCF)
+    model.model_file(franka.FRANKA_MJCF)
     return franka.FRANKA_MJCF
 
 

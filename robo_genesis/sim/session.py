@@ -9,7 +9,6 @@ import sys
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -203,30 +202,6 @@ def import_engine() -> Any:
     except ImportError as error:
         advice = project.import_advice()
         raise EngineError(f"Genesis cannot be imported: {error}. {advice}") from error
-
-
-def model_file(name: str) -> str:
-    """Return the path of a robot's model, for the engine and for MuJoCo, on each machine.
-
-    Args:
-        name: `lessons/l07/arm.xml` for a file in the package's folder of a lesson; a file of the
-            engine by its path below the engine's assets.
-
-    Raises:
-        EngineError: there is no such file, or the name leads elsewhere.
-    """
-    place, owner = Path(__file__).parents[1], "The package robo_genesis"
-    advice = f"Put models and their meshes into {place / 'lessons'}/lNN and name them lessons/lNN/…"
-    if not name.startswith("lessons/"):
-        found = find_spec("genesis")
-        place = Path(found.origin if found and found.origin else "genesis").parent / "assets"
-        owner = f"{project.ENGINE}=={project.engine_pin()}"
-        again = project.install_command(f"--force-reinstall --no-deps {owner}")
-        advice += f", or, if it is one of the engine, run {again}"
-    path = place / name
-    if ".." in path.parts or not path.is_relative_to(place) or not path.is_file():
-        raise EngineError(f"{owner} has no model {name!r}. {advice}.")
-    return str(path)
 
 
 def require_libraries() -> ctypes.CDLL:

@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import Mock
 
@@ -13,7 +12,6 @@ import numpy as np
 import pytest
 
 from robo_genesis.core import project
-from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim import session
 from robo_genesis.sim.engine_log import EngineLog
 from robo_genesis.sim.session import (
@@ -193,18 +191,3 @@ def test_the_theme_without_colours_has_the_name_that_the_engine_gives_it(monkeyp
     styles = SimpleNamespace(**({"THEME": object} if newer else {}))
     monkeypatch.setitem(sys.modules, "genesis.styles", styles)
     assert session.plain_theme() == name
-
-
-@pytest.mark.parametrize(
-    ("name", "owner"),
-    [
-        ("lessons/l01/arm.xml", "The package robo_genesis"),
-        ("lessons/../lessons/l01/spec.py", "The package robo_genesis"),
-        ("arm.xml", "genesis-world"),
-        (__file__, "genesis-world"),
-    ],
-)
-def test_a_model_lies_in_a_lesson_or_among_the_assets_of_the_engine(name, owner):
-    assert Path(session.model_file("lessons/l01/spec.py")) == Path(spec.__file__)
-    with pytest.raises(EngineError, match=f"{owner}.* has no model '{name}'. Put models .*/lNN"):
-        session.model_file(name)

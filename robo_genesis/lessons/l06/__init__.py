@@ -10,6 +10,6 @@ __getattr__ = on_demand(
     refused="robo_genesis.core.exercises",
     set_link_mass="robo_genesis.sim.arm.batch",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
-    describe="robo_genesis.sim.arm.joint_control",
+    describe="robo_genesis.sim.arm.joints",
     read_shape="robo_genesis.sim.visual_shape",
 )

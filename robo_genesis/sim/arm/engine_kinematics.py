@@ -8,14 +8,9 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.franka import FRANKA
-from robo_genesis.sim.arm.joints import (
-    JointMap,
-    ModelError,
-    RobotModel,
-    require_whole,
-    to_numpy,
-)
+from robo_genesis.sim.arm.joints import JointMap, require_whole, to_numpy
 from robo_genesis.sim.arm.kinematics import Pose, accepted, distances, hand_pose, rotate
+from robo_genesis.sim.arm.model import ModelError, RobotModel
 
 END_EFFECTOR = FRANKA.hand
 

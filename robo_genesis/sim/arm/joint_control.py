@@ -11,13 +11,8 @@ from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.joints import (
-    JointMap,
-    ModelError,
-    RobotModel,
-    resolve_joints,
-    to_numpy,
-)
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.model import RobotModel
 from robo_genesis.sim.session import require_built
 
 
@@ -58,48 +53,6 @@ class ControlCase(Controlled):
     """
 
     q_target: FloatArray
-
-
-def describe(page: Any, robot: Any, of: RobotModel = franka.FRANKA) -> JointMap:
-    """Give a page the counts, links and joints of a robot, and return its joints.
-
-    Raises:
-        JointError: a joint is missing, or does not have one DOF.
-        ModelError: the robot has other DOFs than its model, or, with a fixed base, another damping
-            or armature than its file.
-    """
-    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    page.readings["model"] = dict(zip(franka.MODEL_COUNTS, counted, strict=True))
-    page.links = [link.name for link in robot.links]
-    page.joints = resolve_joints(robot, of.joints)
-    require_model(robot, page.joints, of)
-    return page.joints
-
-
-def require_model(robot: Any, joints: JointMap, of: RobotModel) -> None:
-    """Raise ModelError unless a robot in the engine is the one of its model."""
-    others = {j.name: j.type.name for j in robot.joints if j.n_dofs and j.name not in of.joints}
-    if [*others.values()] != ["FREE"] * of.free_base:
-        raise ModelError(
-            f"Beside the joints of its RobotModel, {of.file} moves by {others or 'none'}, expected "
-            f"{'one FREE joint' if of.free_base else 'none'}. Name all joints in `joints`. A URDF "
-            "has a free base, unless it is added with gs.morphs.URDF(fixed=True); declare a free "
-            "base with free_base=True."
-        )
-    if of.free_base:
-        return
-    from robo_genesis.sim.mujoco.kinematics import bare_robot
-
-    (model, _, _, dof_at), dofs = bare_robot(of=of), joints.dofs_idx_local.tolist()
-    for name in ("armature", "damping"):
-        found = to_numpy(getattr(robot, f"get_dofs_{name}")(dofs)).reshape(-1, len(dofs))[0]
-        valid = getattr(model, f"dof_{name}")[dof_at]
-        if not np.allclose(found, valid, rtol=1e-5):
-            raise ModelError(
-                f"The {name} of {', '.join(of.joints)} is {found} in the engine and {valid} in "
-                f"{of.file}. Where a file has no armature the engine adds 0.1: write it into the "
-                "file, or give the morph default_armature=None."
-            )
 
 
 def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:

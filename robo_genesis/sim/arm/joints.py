@@ -1,4 +1,4 @@
-"""A robot's model, and the map from its joints to entity-local DOFs, with types and limits."""
+"""The map from joint names to entity-local DOFs, with types, units and limits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.arm.franka import FRANKA, MODEL_COUNTS
+from robo_genesis.sim.arm.model import ModelError, RobotModel
 
 POSITION_UNIT = {"REVOLUTE": "rad", "PRISMATIC": "m"}
 EFFORT_UNIT = {"REVOLUTE": "N·m", "PRISMATIC": "N"}
@@ -14,37 +16,6 @@ EFFORT_UNIT = {"REVOLUTE": "N·m", "PRISMATIC": "N"}
 
 class JointError(LookupError):
     """A joint does not exist, or is not one scalar DOF."""
-
-
-class ModelError(ValueError):
-    """A robot is not as its `RobotModel` says, or not one that a rule knows; it says what to do."""
-
-
-@dataclass(frozen=True, slots=True)
-class RobotModel:
-    """What the course has to know of a robot whose driven joints have one DOF each.
-
-    | field | meaning |
-    |---|---|
-    | `file` | its MJCF or URDF, as in `session.model_file` |
-    | `joints` | all driven joints, in the order of every array |
-    | `hand` | the link that reaches targets and carries loads, if it has one |
-    | `fingers` | how many of the last joints are fingers, which reach no target |
-    | `tip` | from the hand's origin to the ends of the fingers, along its z axis [m] |
-    | `free_base` | whether its base moves freely, as that of a quadruped |
-    """
-
-    file: str
-    joints: tuple[str, ...]
-    hand: str = ""
-    fingers: int = 0
-    tip: float = 0.0
-    free_base: bool = False
-
-    @property
-    def arm(self) -> int:
-        """The number of joints that move the hand."""
-        return len(self.joints) - self.fingers
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,6 +120,48 @@ def one_dof_joint(robot: Any, name: str) -> Any:
             "of this course take joints with one of each. Control it through its own DOF slice."
         )
     return joint
+
+
+def describe(page: Any, robot: Any, of: RobotModel = FRANKA) -> JointMap:
+    """Give a page the counts, links and joints of a robot, and return its joints.
+
+    Raises:
+        JointError: a joint is missing, or does not have one DOF.
+        ModelError: the robot has other DOFs than its model, or, with a fixed base, another damping
+            or armature than its file.
+    """
+    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    page.readings["model"] = dict(zip(MODEL_COUNTS, counted, strict=True))
+    page.links = [link.name for link in robot.links]
+    page.joints = resolve_joints(robot, of.joints)
+    require_model(robot, page.joints, of)
+    return page.joints
+
+
+def require_model(robot: Any, joints: JointMap, of: RobotModel) -> None:
+    """Raise ModelError unless a robot in the engine is the one of its model."""
+    others = {j.name: j.type.name for j in robot.joints if j.n_dofs and j.name not in of.joints}
+    if [*others.values()] != ["FREE"] * of.free_base:
+        raise ModelError(
+            f"Beside the joints of its RobotModel, {of.file} moves by {others or 'none'}, expected "
+            f"{'one FREE joint' if of.free_base else 'none'}. Name all joints in `joints`. A URDF "
+            "has a free base, unless it is added with gs.morphs.URDF(fixed=True); declare a free "
+            "base with free_base=True."
+        )
+    if of.free_base:
+        return
+    from robo_genesis.sim.mujoco.kinematics import bare_robot
+
+    (model, _, _, dof_at), dofs = bare_robot(of=of), joints.dofs_idx_local.tolist()
+    for name in ("armature", "damping"):
+        found = to_numpy(getattr(robot, f"get_dofs_{name}")(dofs)).reshape(-1, len(dofs))[0]
+        valid = getattr(model, f"dof_{name}")[dof_at]
+        if not np.allclose(found, valid, rtol=1e-5):
+            raise ModelError(
+                f"The {name} of {', '.join(of.joints)} is {found} in the engine and {valid} in "
+                f"{of.file}. Where a file has no armature the engine adds 0.1: write it into the "
+                "file, or give the morph default_armature=None."
+            )
 
 
 def require_whole(robot: Any, joints: JointMap) -> None:

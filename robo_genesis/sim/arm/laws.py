@@ -26,7 +26,8 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
-from robo_genesis.sim.arm.joints import JointMap, RobotModel
+from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.arm.model import RobotModel
 from robo_genesis.sim.laws import ZERO, apart, broken, mean_speed, times, unit_quaternions
 
 MEASURES = False

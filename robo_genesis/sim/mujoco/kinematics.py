@@ -12,9 +12,8 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.franka import FRANKA
-from robo_genesis.sim.arm.joints import ModelError, RobotModel
 from robo_genesis.sim.arm.kinematics import Pose
-from robo_genesis.sim.session import model_file
+from robo_genesis.sim.arm.model import ModelError, RobotModel, model_file
 
 TYPES = {2: "PRISMATIC", 3: "REVOLUTE"}
 """Genesis' names of MuJoCo's types of joints, slide and hinge."""

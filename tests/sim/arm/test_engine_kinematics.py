@@ -8,7 +8,7 @@ import pytest
 
 from robo_genesis.sim.arm import engine_kinematics as of
 from robo_genesis.sim.arm.franka import FRANKA, Q_START
-from robo_genesis.sim.arm.joints import ModelError
+from robo_genesis.sim.arm.model import ModelError
 
 POSE = {"position": np.array([0.45, 0.0, 0.35]), "quat": np.array([0.0, 1.0, 0.0, 0.0])}
 

@@ -15,7 +15,7 @@ from robo_genesis.sim.arm.joint_control import (
     run_case,
     validate,
 )
-from robo_genesis.sim.arm.joints import RobotModel
+from robo_genesis.sim.arm.model import RobotModel
 
 ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")
 N = len(JOINT_NAMES)

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,10 +10,12 @@ import pytest
 from robot_runs import driven
 
 from robo_genesis.core.scene import DT, SUBSTEPS
+from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim.arm import dynamics, laws
 from robo_genesis.sim.arm import engine_kinematics as engine
-from robo_genesis.sim.arm.joint_control import ControlCase, describe, run_case
-from robo_genesis.sim.arm.joints import ModelError, RobotModel, resolve_joints
+from robo_genesis.sim.arm.joint_control import ControlCase, run_case
+from robo_genesis.sim.arm.joints import describe, resolve_joints
+from robo_genesis.sim.arm.model import ModelError, RobotModel, model_file
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
@@ -84,6 +87,21 @@ def folder(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(mujoco_kinematics, "model_file", lambda name: str(place / name))
         yield place
+
+
+@pytest.mark.parametrize(
+    ("name", "owner"),
+    [
+        ("lessons/l01/arm.xml", "The package robo_genesis"),
+        ("lessons/../lessons/l01/spec.py", "The package robo_genesis"),
+        ("arm.xml", "genesis-world"),
+        (__file__, "genesis-world"),
+    ],
+)
+def test_a_model_lies_in_a_lesson_or_among_the_assets_of_the_engine(name, owner):
+    assert Path(model_file("lessons/l01/spec.py")) == Path(spec.__file__)
+    with pytest.raises(ModelError, match=f"{owner}.* has no model '{name}'. Put models .*/lNN"):
+        model_file(name)
 
 
 @ARMS

@@ -1,0 +1,62 @@
+"""A robot: its model file, in a lesson or of the engine, and what the course has to know of it."""
+
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from robo_genesis.core import project
+
+
+class ModelError(ValueError):
+    """A robot is not as its `RobotModel` says, or not one that a rule knows; it says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotModel:
+    """What the course has to know of a robot whose driven joints have one DOF each.
+
+    | field | meaning |
+    |---|---|
+    | `file` | its MJCF or URDF, as in `model_file` |
+    | `joints` | all driven joints, in the order of every array |
+    | `hand` | the link that reaches targets and carries loads, if it has one |
+    | `fingers` | how many of the last joints are fingers, which reach no target |
+    | `tip` | from the hand's origin to the ends of the fingers, along its z axis [m] |
+    | `free_base` | whether its base moves freely, as that of a quadruped |
+    """
+
+    file: str
+    joints: tuple[str, ...]
+    hand: str = ""
+    fingers: int = 0
+    tip: float = 0.0
+    free_base: bool = False
+
+    @property
+    def arm(self) -> int:
+        """The number of joints that move the hand."""
+        return len(self.joints) - self.fingers
+
+
+def model_file(name: str) -> str:
+    """Return the path of a robot's model, for the engine and for MuJoCo, on each machine.
+
+    Args:
+        name: `lessons/l07/arm.xml` for a file in the package's folder of a lesson; a file of the
+            engine by its path below the engine's assets.
+
+    Raises:
+        ModelError: there is no such file, or the name leads elsewhere.
+    """
+    place, owner = Path(__file__).parents[2], "The package robo_genesis"
+    advice = f"Put models and their meshes into {place / 'lessons'}/lNN and name them lessons/lNN/…"
+    if not name.startswith("lessons/"):
+        found = find_spec("genesis")
+        place = Path(found.origin if found and found.origin else "genesis").parent / "assets"
+        owner = f"{project.ENGINE}=={project.engine_pin()}"
+        again = project.install_command(f"--force-reinstall --no-deps {owner}")
+        advice += f", or, if it is one of the engine, run {again}"
+    path = place / name
+    if ".." in path.parts or not path.is_relative_to(place) or not path.is_file():
+        raise ModelError(f"{owner} has no model {name!r}. {advice}.")
+    return str(path)
