@@ -72,6 +72,7 @@ export GENESIS
 export SITE_URL
 export SOLUTIONS
 export EXECUTED
+
 .PHONY: help
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from robo_genesis.core.project import ROOT
+from robo_genesis.pipeline.fresh_checkout import OUTER, SETTINGS
 
 
 @pytest.fixture
@@ -36,9 +37,10 @@ def python(folder: Path, *options: str) -> Path:
 
 def make(folder: Path, *words: str, **set_: str) -> subprocess.CompletedProcess[str]:
     command = ["make", "-C", str(folder), f"BASE_PYTHON={sys.executable}", *words]
-    given = {"MAKELEVEL": "0", "MAKEFLAGS": ""} | set_  # those of a make around these tests
+    # What a make around these tests exports is not the user's.
+    users = {name: value for name, value in os.environ.items() if name not in OUTER + SETTINGS}
     return subprocess.run(
-        command, env=os.environ | given, capture_output=True, text=True, check=False, timeout=60
+        command, env=users | set_, capture_output=True, text=True, check=False, timeout=60
     )
 
 

@@ -73,7 +73,7 @@ def assert_broken(steps_run, capsys, step, *words):
          ("genesis-world 0.0.1", "pip install -r")),
         ("libraries", "setattr", (ctypes, "CDLL", fail), ("libGL.so.1", "apt install libegl1")),
         ("model_file", "setattr", (franka, "FRANKA_MJCF", "xml/no_robot.xml"),
-         ("genesis/assets/xml/no_robot.xml", "pip install")),
+         ("no model 'xml/no_robot.xml'", "pip install")),
         ("backend", "setenv", ("ROBO_GENESIS_BACKEND", "banana"),
          ("ROBO_GENESIS_BACKEND='banana' is not valid. Choose one of: auto, cpu.",)),
         ("backend", "setenv", ("ROBO_GENESIS_RENDER", "yes"),

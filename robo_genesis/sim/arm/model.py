@@ -49,13 +49,15 @@ def model_file(name: str) -> str:
         ModelError: there is no such file, or the name leads elsewhere.
     """
     place, owner = Path(__file__).parents[2], "The package robo_genesis"
-    advice = f"Put models and their meshes into {place / 'lessons'}/lNN and name them lessons/lNN/…"
+    advice = (
+        f"A lesson's models and their meshes lie in {place / 'lessons'}/lNN, named lessons/lNN/…"
+    )
     if not name.startswith("lessons/"):
         found = find_spec("genesis")
         place = Path(found.origin if found and found.origin else "genesis").parent / "assets"
         owner = f"{project.ENGINE}=={project.engine_pin()}"
         again = project.install_command(f"--force-reinstall --no-deps {owner}")
-        advice += f", or, if it is one of the engine, run {again}"
+        advice = f"If it is one of the engine, run {again}. {advice}"
     path = place / name
     if ".." in path.parts or not path.is_relative_to(place) or not path.is_file():
         raise ModelError(f"{owner} has no model {name!r}. {advice}.")

@@ -100,7 +100,7 @@ def folder(tmp_path_factory):
 )
 def test_a_model_lies_in_a_lesson_or_among_the_assets_of_the_engine(name, owner):
     assert Path(model_file("lessons/l01/spec.py")) == Path(spec.__file__)
-    with pytest.raises(ModelError, match=f"{owner}.* has no model '{name}'. Put models .*/lNN"):
+    with pytest.raises(ModelError, match=f"{owner}.* has no model '{name}'. .*models .*/lNN"):
         model_file(name)
 
 
