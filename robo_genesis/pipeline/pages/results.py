@@ -17,7 +17,7 @@ from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.guards import contradicted
-from robo_genesis.pipeline.pages.page_rules import INLINE_CODE, first_line
+from robo_genesis.pipeline.pages.page_rules import first_line
 
 LOG_LINES = 15
 Status = Literal["executed", "reused", "taken over", "failed"]
@@ -42,7 +42,6 @@ ANEW = (
 )
 GLUED = "application/papermill.record/"
 """Begins the kind of an output that is kept for another place of its page."""
-HTML = re.compile(r"</?[a-z][a-z0-9]*(?:\s[^<>]*)?/?>", re.IGNORECASE)
 CHANGING = re.compile(
     r"\bat 0x[0-9a-f]+|\b0x[0-9a-f]{9,}|/(?:tmp|robo-)[a-z0-9_]{8}\b|[\0-\x08\x0b\x0c\x0e-\x1f\x7f]"
 )
@@ -154,17 +153,14 @@ def _wrong_output(tags: Sequence[str], outputs: Sequence[NotebookNode]) -> tuple
     odd = ", ".join(sorted({kind for kind, _ in data} - KINDS))
     pictures = [content for kind, content in data if kind in PICTURES]
     colours = ", ".join(sorted({each for of in pictures for each in outside_the_palette(of)}))
-    markdown = [content for kind, content in data if kind == "text/markdown"]
     texts = [out.get("text", out.get("evalue", "")) for out in outputs]
     texts += [content for kind, content in data if kind.startswith("text/")]
     lines, size = sum(len(text.splitlines()) for text in texts), sum(map(len, texts))
     too_long = lines > MOST_LINES or size > MOST_LETTERS
-    html = HTML.search(INLINE_CODE.sub("", "\n".join(markdown)))
     changing = CHANGING.search("\n".join(texts))
     rules = (
         ("FigureMissing", "figure" in tags and not shown, "is tagged figure, but shows none."),
         ("OutputKind", odd, f"puts out {odd}. {INSTEAD}"),
-        ("OutputKind", html, f"puts out {html and html[0]}, which is HTML. {INSTEAD}"),
         ("FigureUntagged", shown and "figure" not in tags, f"shows a picture. {TAG_IT}"),
         ("FigureOfInputs", pictures and "inputs" in tags, "has the tag inputs, for tables alone."),
         ("Colour", colours, f"draws in {colours}. {VALID_COLOURS}"),

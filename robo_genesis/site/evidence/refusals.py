@@ -12,7 +12,7 @@ from sphinx.util import logging
 
 from robo_genesis.core.text import quoted
 from robo_genesis.site.evidence.measured import evidence_badge, measured_value
-from robo_genesis.site.evidence.origin import above
+from robo_genesis.site.evidence.origin import above, cell_of
 
 OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "evidence-badge": (evidence_badge, "Use {lesson-status}."),
@@ -49,7 +49,7 @@ def problems(doctree: nodes.document, book: Path) -> Iterator[tuple[nodes.Elemen
         if isinstance(node, nodes.raw):
             html = BeautifulSoup(node.astext(), "html.parser")
             written = {name for tag in html.find_all(class_=True) for name in tag["class"]}
-            found += [*_imitated(None, written), *_raw(html)]
+            found += [*_imitated(None, written), *_raw(node, html)]
         for problem in dict.fromkeys(found):
             yield node, problem
 
@@ -81,10 +81,16 @@ def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
         )
 
 
-def _raw(html: BeautifulSoup) -> Iterator[str]:
-    for name in sorted({tag.name for tag in html.find_all(PICTURES)}):
-        why = "which would have no line in the ledger. Use the {figure} directive."
-        yield f"the page has <{name}> as raw HTML, {why}"
+def _raw(node: nodes.Element, html: BeautifulSoup) -> Iterator[str]:
+    made, of_page = cell_of(node) is not None, html.find_all(PICTURES)
+    where, instead = "the page has", "Use the {figure} directive."
+    if made:
+        where, instead = (
+            "a cell outputs",
+            "Display Markdown (robo_genesis.core.tables) or a figure.",
+        )
+    for name in sorted({tag.name for tag in (html.find_all() if made else of_page)}):
+        yield f"{where} <{name}> as raw HTML, which would have no line in the ledger. {instead}"
 
 
 def _is_evidence(uri: str, book: Path) -> bool:

@@ -44,17 +44,20 @@ Free words.
 
 Free words.
 ```
-
-<img src="innocent.svg" alt="x">
 """
-CELLS = (cell("glue('number', 7, display=False)"),)
+CELLS = (
+    cell("Markdown('<table><tr><td>7</td></tr></table>')"),
+    cell("Markdown('a <b style=\"position: fixed\">7</b>')"),
+    cell("glue('number', 7, display=False)"),
+)
 OTHERS = {
     "lab": [
+        "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
+        "a cell outputs <b> as raw HTML",
         "a cell's text 7 is glued into a sentence",
         "a page may not set the class evidence-badge",
         "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
         "the picture innocent.svg lies below evidence/",
-        "the page has <img> as raw HTML, which would have no line in the ledger. Use the {figure}",
     ],
     "glue": ["bare is glued from the page lab, and its origin would not be shown."],
     "free": ["a cell shows a table, but the page declares no bundle"],
