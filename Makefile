@@ -31,15 +31,15 @@ $(foreach name,clean distclean help home-picture lint lock pages .venv/.installe
 ALWAYS := BASE_PYTHON PYTHON TORCH_INDEX
 GOALS := $(or $(MAKECMDGOALS),help)
 READ := $(sort $(ALWAYS) $(foreach goal,$(GOALS),$($(goal)_READS)))
-OURS := $(sort $(foreach name,$(filter %_READS,$(.VARIABLES)),$($(name))))
-unread = $(strip $(foreach name,$(filter-out $(READ),$(2)),$(if $(filter $(1),$(firstword $(origin $(name)))),$(name))))
+SET := $(foreach name,$(sort $(foreach list,$(filter %_READS,$(.VARIABLES)),$($(list)))),$(if $($(name)),$(name)))
+unread = $(strip $(foreach name,$(filter-out $(READ),$(2)),$(and $(filter $(1),$(firstword $(origin $(name)))),$(name))))
 ifeq ($(filter undefined,$(foreach goal,$(GOALS),$(origin $(goal)_READS))),)
   ifneq ($(call unread,command,$(.VARIABLES)),)
     $(error make $(GOALS) does not read $(call unread,command,$(.VARIABLES)). It reads $(READ). \
       Write a setting of another program before make)
   endif
-  ifneq ($(and $(filter 0,$(MAKELEVEL)),$(call unread,environment,$(OURS))),)
-    $(warning make $(GOALS) does not read $(call unread,environment,$(OURS)), which the environment has)
+  ifneq ($(and $(filter 0,$(MAKELEVEL)),$(call unread,environment,$(SET))),)
+    $(warning make $(GOALS) does not read $(call unread,environment,$(SET)), which the environment has)
   endif
 endif
 # A make below this one gets these variables as environment.

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from robo_genesis.core.project import ROOT
-from robo_genesis.pipeline.fresh_checkout import OUTER, SETTINGS
 
 
 @pytest.fixture
@@ -37,10 +36,9 @@ def python(folder: Path, *options: str) -> Path:
 
 def make(folder: Path, *words: str, **set_: str) -> subprocess.CompletedProcess[str]:
     command = ["make", "-C", str(folder), f"BASE_PYTHON={sys.executable}", *words]
-    # What a make around these tests exports is not the user's.
-    users = {name: value for name, value in os.environ.items() if name not in OUTER + SETTINGS}
+    given = {"PATH": os.environ["PATH"]} | set_  # no variable of a make around these tests
     return subprocess.run(
-        command, env=users | set_, capture_output=True, text=True, check=False, timeout=60
+        command, env=given, capture_output=True, text=True, check=False, timeout=60
     )
 
 
@@ -49,7 +47,7 @@ def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_ne
     checkout, target
 ):
     words = [] if target == "evidence-rocm" else [f"PYTHON={python(checkout)}"]
-    done = make(checkout, target, *words, TO="a folder", ROWS="prose live=fast", pip_option="x")
+    done = make(checkout, target, *words, TO="a folder", ROWS="prose live=fast", PAGE="")
     assert done.returncode == 0, done.stderr
     assert {str(checkout), "a folder"} <= {*done.stdout.splitlines()}
     assert not (checkout / ".venv").exists()
