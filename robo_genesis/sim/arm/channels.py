@@ -112,5 +112,7 @@ def targets(trace: Trace, entry: int) -> tuple[float, ...]:
 
 
 def one_by_one(values: Sequence[float], unit: str, between: str = ", then ") -> str:
-    """Return values in their order as text: `0.5 rad`, or `0.5 rad, then 0.7 rad`."""
-    return between.join(with_unit(value, unit) for value in values)
+    """Return values in their order as text: `0.5 rad, then 0.7 rad`. Of many, it is the ends."""
+    some = values if len(values) < 4 else [values[0], values[-1]]
+    more = "" if some is values else f" ({len(values)} values)"
+    return between.join(with_unit(value, unit) for value in some) + more

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+from robo_genesis.core.check_spec import TOLERANCES as TOLERANCES
 from robo_genesis.core.scene import read_only
 from robo_genesis.sim.arm.engine_kinematics import IkSettings
 
@@ -23,13 +24,6 @@ MARKER_RADIUS = 0.03  # Radius of a sphere that marks a target [m]; nothing coll
 
 RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
 """By unit: values that differ by no more than this are called equal, the noise floor."""
-
-TOLERANCES = {
-    "m": (1e-5, 1e-3), "rad": (1e-5, 1e-3), "rad/s": (1e-3, 1e-3), "N·m": (1e-2, 1e-3),
-    "N": (1e-2, 1e-3), "kg": (1e-6, 0.0), "pixel": (1e-6, 0.0), "1": (1e-6, 0.0),
-    "m/s": (1e-3, 1e-3), "s": (0.0, 0.0), "link_quat_wxyz": (1e-4, 0.0),
-}  # fmt: skip
-"""By unit, or by array: (atol, rtol) of a value between engine versions, backends or processors."""
 
 REACHED = (0.02, 0.05)
 """The hand counts as arrived within these distances of its target [m] and [rad]."""

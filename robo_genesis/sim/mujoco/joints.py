@@ -42,15 +42,16 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
 
     spec = bare_spec(case.model)
     for k, name in enumerate(case.model.joints):
+        motor = bool(case.effort_limit[k] > 0)  # MuJoCo takes no actuator with an empty range
         spec.add_actuator(
             name=name,
             target=name,
             trntype=mujoco.mjtTrn.mjTRN_JOINT,
             gaintype=mujoco.mjtGain.mjGAIN_FIXED,
-            gainprm=padded(case.kp[k]),
+            gainprm=padded(motor * case.kp[k]),
             biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-            biasprm=padded(0, -case.kp[k], -case.kv[k]),
-            forcelimited=True,
+            biasprm=padded(0, -motor * case.kp[k], -motor * case.kv[k]),
+            forcelimited=motor,
             forcerange=[-case.effort_limit[k], case.effort_limit[k]],
         )
     spec.option.timestep = timestep

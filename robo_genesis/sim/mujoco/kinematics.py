@@ -77,10 +77,9 @@ def compiled(spec: Any, of: RobotModel) -> Any:
 
 
 def _unreadable(of: RobotModel, error: Exception) -> ModelError:
-    return ModelError(
-        f"MuJoCo cannot read {of.file}: {error}. Each link that a joint moves needs mass and "
-        "inertia, in a URDF as <inertial>."
-    )
+    cure = "Each link that a joint moves needs mass and inertia, in a URDF as <inertial>."
+    advice = f" {cure}" if "inertia" in str(error) else ""
+    return ModelError(f"MuJoCo cannot read {of.file}: {error}.{advice}")
 
 
 def with_data(model: Any, of: RobotModel = FRANKA) -> tuple[Any, Any, list[int], list[int]]:

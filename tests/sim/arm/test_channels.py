@@ -37,6 +37,9 @@ def test_levels_are_the_targets_one_after_the_other_and_the_limit_read_back(trac
     sentence = "`joint4` starts at −2.0000 rad and gets the target −1.7500 rad"
     assert motion(runs["G1"], joints, STEPPED_JOINT) == f"{sentence}."
     assert motion(runs["G2"], joints, STEPPED_JOINT) == f"{sentence}, then −1.5000 rad."
+    command[:, k] = -np.linspace(1.75, 1.5, len(command))
+    every = f"{sentence}, then −1.5000 rad ({len(command)} values)."
+    assert motion(replace(trace, target=command), joints, STEPPED_JOINT) == every
 
 
 def test_a_record_without_the_hand_of_the_replay_is_refused(traces):

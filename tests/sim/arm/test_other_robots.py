@@ -74,6 +74,8 @@ CRANE = case_of(RobotModel("arm.urdf", ("swing", "reach"), hand="rod"), 0.5, 0.1
 DOG = case_of(
     RobotModel("urdf/go2/urdf/go2.urdf", tuple(LEGS), free_base=True), *(0.0, 0.8, -1.5) * 4
 )
+MOTORS = {name: getattr(CRANE, name) * [0.0, 1.0] for name in ("kp", "kv", "effort_limit")}
+PASSIVE = replace(CRANE, **MOTORS)  # its first joint has no motor
 ARMS = pytest.mark.parametrize("case", [SLIDER, CRANE], ids=["MJCF", "URDF"])
 
 
@@ -104,7 +106,7 @@ def test_a_model_lies_in_a_lesson_or_among_the_assets_of_the_engine(name, owner)
         model_file(name)
 
 
-@ARMS
+@pytest.mark.parametrize("case", [SLIDER, CRANE, PASSIVE], ids=["MJCF", "URDF", "passive"])
 def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
     links = sorted(mujoco_kinematics.link_names(case.model))
     run, how = driven(case, links), (0.005, "implicitfast")
