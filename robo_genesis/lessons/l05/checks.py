@@ -134,13 +134,17 @@ def smaller_angles_explain_more(run: Experiment) -> Iterator[Finding]:
 
 def kp_has_a_price(run: Experiment) -> Iterator[Finding]:
     """With KP doubled the hand swings past its target at least three times as far as before. With a
-    ramp it is never farther past it than at the end, and ends within 1 mm of where it ends without.
+    ramp it is never farther past it than at the end, and ends within 1 mm of where it ends without;
+    no joint of the arm reaches its force limit.
     """
     base, doubled, ramp = (run.metrics[n] for n in ("baseline", "kp_doubled", "kp_doubled_ramp"))
     yield above("overshoot_with_kp_doubled_m", doubled.overshoot, 3 * base.overshoot)
     yield at_most("overshoot_with_a_ramp_m", ramp.overshoot, ramp.final_distance)
     apart = abs(ramp.final_distance - doubled.final_distance)
     yield at_most("final_distances_apart_m", apart, 1e-3)
+    trace = run.traces["kp_doubled_ramp"]
+    share = np.abs(trace.control_force / trace.effort_limit)[:, : kinematics.ARM].max()
+    yield below("largest_share_of_a_force_limit_with_a_ramp", float(share), 1.0)
 
 
 def price_at_finer_step(run: Experiment) -> Iterator[Finding]:

@@ -117,16 +117,19 @@ def project(function: Callable[..., Any]) -> Iterator[Finding]:
 
     The corner of the picture is (0, 0). `transform` is the engine's: x right, y up, z backwards.
     """
-    seen = np.array([[0, 0, 1], [0.3, 0, 1], [0, 0.2, 1], [-0.4, 0.1, 2], [0.1, 0.3, 0.5]])
+    # Some are beside the picture, one is far, one near.
+    seen = np.array([[0, 0, 1], [0.3, 0, 1], [0, 0.2, 1], [-4, 1, 2], [1, 3, 0.5], [1, 2, 30],
+                     [0, 0.01, 0.05]])  # fmt: skip
     for name, (K, transform) in CAMERAS.items():
         pose = cameras.other_axes(transform)
         points = seen @ pose[:3, :3].T + pose[:3, 3]
         expected = cameras.project(points, K, transform)
         yield from same_array(name, function(points, K, transform), expected, ROUNDED)
-        both = np.vstack([seen * (1, 1, -1), seen])  # behind the camera, and in front of it
-        missing = np.isnan(function(both @ pose[:3, :3].T + pose[:3, 3], K, transform))
-        absent = [True] * 5 + [False] * 5
-        yield equal(f"{name}.without_a_pixel", missing.all(axis=1).tolist(), absent)
+        mixed = np.vstack([seen * (1, 1, -1), seen])  # behind the camera, and in front of it
+        found = np.asarray(function(mixed @ pose[:3, :3].T + pose[:3, 3], K, transform))
+        missing = np.isnan(found).all(axis=1)
+        yield equal(f"{name}.without_a_pixel", missing.tolist(), [True] * 7 + [False] * 7)
+        yield from same_array(f"{name}.beside_points_without", found[7:], expected, ROUNDED)
 
 
 @as_test

@@ -27,7 +27,7 @@ READINGS = {
         "low_residual_m": "m", "low_residual_rad": "rad", "low_tip_m": "m",
     }),
     PRECISE: Readings(dict.fromkeys(spec.PRECISE, "m")),
-    ITERATIONS: counts(spec.PRECISE),
+    ITERATIONS: Readings(dict.fromkeys(spec.PRECISE, "iterations"), "exact"),
     REPEAT_GROUP: counts(["entries_that_differ"]),
 }  # fmt: skip
 """Residuals of the answers for the target and for one in the floor, with the height of the

@@ -192,6 +192,16 @@ CASES = {
         "all or none": lambda p, k, t: PROJECT(p, k, t) + 0 * PROJECT(p, k, t).sum(),
         "middle typed": lambda p, k, t: PROJECT(p, changed(k, by=(16, 10) - k[:2, 2]), t),
         "one point alone": lambda p, k, t: PROJECT(p[:1], k, t)[0],
+        "beside the picture": lambda p, k, t: np.where(
+            (at := PROJECT(p, k, t)).min(axis=1, keepdims=True) < 0, np.nan, at
+        ),
+        "far points left out": lambda p, k, t: np.where(
+            cameras.in_camera(p, t)[:, 2:] > 20, np.nan, PROJECT(p, k, t)
+        ),
+        "near points left out": lambda p, k, t: np.where(
+            cameras.in_camera(p, t)[:, 2:] < 0.1, np.nan, PROJECT(p, k, t)
+        ),
+        "others change": lambda p, k, t: PROJECT(p, k, t) + np.isnan(PROJECT(p, k, t)).any(),
         "points changed": in_place(PROJECT, 0),
         "pose changed": in_place(PROJECT, 2),
     },
