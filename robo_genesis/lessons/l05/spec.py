@@ -157,7 +157,8 @@ QUESTIONS = REACH_MAP | {
 }
 """Questions to the solver beyond those of the lab."""
 
-TOLERANCES = reaching.TOLERANCES | dict.fromkeys(QUESTIONS, (math.inf, 0.0))
+TOLERANCES = reaching.TOLERANCES | {"iterations": (0.0, 0.0)}
+TOLERANCES |= dict.fromkeys(QUESTIONS, (math.inf, 0.0))
 """As in `reaching`. The answers to these questions have no bound: rounding decides which of many
 postures a search finds."""
 
