@@ -38,8 +38,9 @@ FOR_BROWSERS = {
 ACCENTS = {*"˙¨^~¯→˘ˇ´`"}
 """Signs above a letter; marked as an accent it keeps its size and is not set as a limit."""
 
-NAMESPACE = "http://www.w3.org/1998/Math/MathML"
-ElementTree.register_namespace("", NAMESPACE)
+# HTML knows `<math>` without it. A prefix is registered for a whole process, and pycollada, which
+# the engine loads, takes the empty one.
+NAMESPACE = ' xmlns="http://www.w3.org/1998/Math/MathML"'
 
 PACKAGE = "@fontsource/stix-two-math"
 FILE = f"{PACKAGE}/files/stix-two-math-latin-400-normal.woff"
@@ -77,10 +78,10 @@ def to_mathml(latex: str, display: str) -> str:
     for name, known in ENVIRONMENTS.items():
         latex = re.sub(rf"\\(begin|end)\{{{name}\}}", rf"\\\1{{{known}}}", latex)
     try:
-        tree = ElementTree.fromstring(convert(latex, display=display))
+        tree = ElementTree.fromstring(convert(latex, display=display).replace(NAMESPACE, ""))
     except Exception as error:  # the converter's parser leaks KeyError, IndexError and its own
         raise ValueError(f"{latex!r} is not valid: {type(error).__name__} {error}") from error
-    for over in tree.iter(f"{{{NAMESPACE}}}mover"):
+    for over in tree.iter("mover"):
         if over[1].text in ACCENTS:
             over.set("accent", "true")
     markup = ElementTree.tostring(tree, encoding="unicode")
