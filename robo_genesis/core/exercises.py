@@ -156,6 +156,8 @@ def as_test(
 def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Iterator[Finding]:
     """Require an array of the shape of the expected one, which differs from it by rounding.
 
+    If some differ, the first such number, or the first row of them along the last axis, is named.
+
     Args:
         label: the beginning of the labels.
         found: what the student's function returned.
@@ -164,8 +166,21 @@ def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Ite
     """
     values = np.asarray(found, dtype=float)
     yield equal(f"{label}.shape", list(values.shape), list(expected.shape))
-    if values.shape == expected.shape:
-        yield at_most(f"{label}.largest_error", float(np.abs(values - expected).max()), tiny)
+    if values.shape != expected.shape:
+        return
+    errors = np.abs(values - expected)
+    if not (errors <= tiny).all():
+        row = tuple(np.argwhere(~(errors <= tiny))[0].tolist())[: max(1, values.ndim - 1)]
+        place = f"{label}{list(row)}, the first that differs,"
+        required = f"{row_text(expected[row])} ± {tiny:g}"
+        yield Finding(place, row_text(values[row]), False, required)
+    yield at_most(f"{label}.largest_error", float(errors.max()), tiny)
+
+
+def row_text(values: FloatArray) -> str:
+    """Return a number, or an array (n,), with six significant digits."""
+    text = ", ".join(f"{value:.6g}" for value in np.ravel(values))
+    return f"[{text}]" if np.ndim(values) else text
 
 
 def compared(

@@ -25,9 +25,16 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
 @pytest.mark.parametrize(
     ("function", "says"),
     [
-        (lambda values: values, "([0, 1, 2]) returned [0, 1, 2]\n  twice.largest_error is 2, exp"),
+        (
+            lambda values: values,
+            "([0, 1, 2]) returned [0, 1, 2]\n"
+            "  twice[1], the first that differs, is 1, expected 2 ± 1e-09",
+        ),
         (lambda values: values[:1], "twice.shape is 1, expected 3"),
-        (lambda values: values * np.nan, "returned [nan, nan, nan]\n  twice.largest_error is nan"),
+        (
+            lambda values: values * np.nan,
+            "returned [nan, nan, nan]\n  twice[0], the first that differs, is nan, expected 0 ±",
+        ),
         (lambda values: "no numbers", "([0, 1, 2]) returned no numbers: ValueError: could not"),
         (
             raises,
@@ -38,6 +45,19 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
 def test_a_wrong_one_fails_and_its_check_says_what_was_found(function, says):
     check = doubled(function, np.arange(3.0))
     assert not check.passed
+    assert says in check.detail
+
+
+@pytest.mark.parametrize(
+    ("shape", "says"),
+    [
+        ((4, 3), "twice[2], the first that differs, is [12, 14.5, 16], expected [12, 14, 16] ± "),
+        ((2, 3, 2), "twice[1, 0], the first that differs, is [12, 14.5], expected [12, 14] ± 1"),
+    ],
+)
+def test_the_first_wrong_row_is_named_with_what_it_should_be(shape, says):
+    given = np.arange(12.0).reshape(shape)
+    check = doubled(lambda values: 2 * values + 0.5 * np.isin(values, (7, 11)), given)
     assert says in check.detail
 
 
