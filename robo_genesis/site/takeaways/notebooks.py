@@ -39,23 +39,27 @@ KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
 CHECK = """\
 # Is this the engine that the lab was written for?
-import sys
-from importlib.metadata import PackageNotFoundError, version
+def check_versions(needed):
+    import sys
+    from importlib.metadata import PackageNotFoundError, version
 
-NEEDED = {needed!r}
-for package, needed in NEEDED.items():
-    try:
-        found = version(package)
-    except PackageNotFoundError:
-        found = "not installed"
-    if found != needed:
-        raise RuntimeError(
-            f"This notebook needs {{package}} {{needed}}; it is {{found}} here. Install it where\\n"
-            "{wheel} lies, then restart the kernel:\\n"
-            f"    {{sys.executable}} -m pip install -c constraints.txt ./{wheel}\\n"
-            "To try another version on purpose, change NEEDED in this cell."
-        )
-print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\\n")"""
+    for package, number in needed.items():
+        try:
+            found = version(package)
+        except PackageNotFoundError:
+            found = "not installed"
+        if found != number:
+            raise RuntimeError(
+                f"This notebook needs {{package}} {{number}}; it is {{found}} here. Install it where\\n"
+                "{wheel} lies, then restart the kernel:\\n"
+                f"    {{sys.executable}} -m pip install -c constraints.txt ./{wheel}\\n"
+                "To try another version on purpose, change it at the end of this cell."
+            )
+        print(package, number)
+
+
+check_versions({needed!r})
+del check_versions"""
 
 
 def version_check(needed: Mapping[str, str], wheel: str) -> str:

@@ -130,7 +130,9 @@ def test_its_check_accepts_the_pinned_engine_alone(monkeypatch, capsys, installe
 
     monkeypatch.setattr("importlib.metadata.version", look_up)
     if said is None:
-        exec(CHECK, {})
+        left: dict[str, object] = {"check_versions": None}
+        exec(CHECK, left)
+        assert {*left} == {"__builtins__"}
         assert capsys.readouterr().out == "genesis-world 1.2.3\nrobo-genesis 0.1.0\n"
     else:
         with pytest.raises(
