@@ -1,9 +1,11 @@
-/* Judges the number of a question, and announces the feedback of every question. */
+/* Judges the number of a question, announces the feedback of every question, and shows what a question
+   hides when it has an answer or its own answer is opened. */
 "use strict";
 
 document.addEventListener("change", ({ target, detail }) => {
   const question = target.closest("fieldset.choice");
   if (!question) return;
+  if (target.value) question.classList.add("answered");
   const texts = [...question.querySelectorAll(".feedback")];
   let shown = target.parentElement.querySelector(".feedback");
   if (target.type === "number") {
@@ -19,3 +21,9 @@ document.addEventListener("change", ({ target, detail }) => {
   const said = waits ? "Noted. Play the run, or move its time to the end." : shown?.textContent;
   if (detail !== "kept") question.querySelector("output").textContent = said ?? "";
 });
+
+document.addEventListener(
+  "toggle",
+  ({ target }) => target.closest("fieldset.choice")?.classList.add("answered"),
+  true, // the event does not bubble
+);

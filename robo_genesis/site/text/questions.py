@@ -20,7 +20,8 @@ stale. A list below the question gives the cause for each answer; it may be left
     ```
 
 The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent;
-it may be below one. With the option `:absent:` a choice asks for a second case that the bundle
+it may be below one. With the option `:hides:` the rest of its section shows after an answer: its
+results and the text about them follow the question. With `:absent:` a choice asks for a second case that the bundle
 lacks, so that unknown is right; its cause says which measurement would tell.
 `:unit: mm` asks for a length in millimetres, and other units for their thousandths.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
@@ -42,7 +43,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
-from robo_genesis.site.evidence.plain_nodes import WRITERS
+from robo_genesis.site.evidence.plain_nodes import WRITERS, html
 from robo_genesis.site.figures.case_labels import label
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.text.question_nodes import choice, number, question
@@ -58,6 +59,8 @@ WRONG = "x57.3"  # Represents the keys of typical wrong numbers, which `FACTOR` 
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 FACTOR = re.compile(r"x\d+(\.\d+)?")
 """The key of a typical wrong number: the value times this factor."""
+HIDES = '<p class="after-answer">The rest of this section shows when you have answered.</p>'
+"""Stands below a question; `course.css` hides what follows it."""
 
 
 def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:
@@ -92,7 +95,7 @@ class Question(PageDirective):
         text, node = self.ask(f"choice-{self.env.new_serialno('choice')}")
         words, messages = self.parse_inline(text, lineno=self.lineno)
         node += words
-        return [node, *messages]
+        return [node, *messages, *([html(HIDES)] if "hides" in self.options else [])]
 
     def ask(self, name: str) -> tuple[str, question]:
         """Return the question's text, and its node with everything that was measured."""
@@ -103,7 +106,7 @@ class Choice(Question):
     """Ask how the second of two cases compares with the first in one metric."""
 
     required_arguments = 4
-    option_spec = {"absent": flag}  # noqa: RUF012 - as docutils declares it
+    option_spec = {"absent": flag, "hides": flag}  # noqa: RUF012 - as docutils declares it
 
     def ask(self, name: str) -> tuple[str, question]:
         """See `Question.ask`."""
@@ -132,7 +135,9 @@ class Number(Question):
     """Ask for the value of one metric."""
 
     required_arguments = 2
-    option_spec = {"tolerance": percents, "unit": unchanged}  # noqa: RUF012 - as docutils does
+    option_spec = {  # noqa: RUF012 - as docutils declares it
+        "tolerance": percents, "unit": unchanged, "hides": flag,
+    }  # fmt: skip
 
     def ask(self, name: str) -> tuple[str, question]:
         """See `Question.ask`."""
@@ -215,8 +220,8 @@ def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
         return comparison_sentence(names, found)
     values, unit = (found.first, found.second), found.unit
     texts = [format_value(value, unit) for value in values]
-    if unit == "m" and all(0 < abs(value) < 0.1 for value in values):
-        texts = [f"{1000 * value:.3g} mm" for value in values]
+    if unit in ("m", "rad") and any(0 < abs(value) < 0.1 for value in values):
+        texts = [f"{round(1000 * value, 3) + 0.0:.3g} {SCALED[unit]}" for value in values]
     pairs = ", ".join(f"{text} for {name}" for name, text in zip(names, texts, strict=True))
     sentence = f"{found.label[0].upper()}{found.label[1:]}: {pairs}."
     if found.order == "equal" and found.margin and found.first != found.second:

@@ -35,7 +35,7 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
     assert abs(first - second) > l04.RESOLUTION["rad"]
     found, sentence, origin = questions.measured_order("l04/lab", "overshoot", ["G1", "G2"])
     assert (found.order, found.unit) == ("higher" if second > first else "lower", "rad")
-    assert f"{first:.4f} rad for G1, {second:.4f} rad for G2" in sentence
+    assert f"{1000 * first:.3g} mrad for G1, {1000 * second:.3g} mrad for G2" in sentence
     assert origin.startswith("Measured by l04/lab on cpu")
     assert questions.measured_order("l04/lab", "overshoot", ["G2", "G2"])[0].order == "equal"
 
@@ -55,6 +55,8 @@ def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
     ("unit", "values", "margin", "said"),
     [
         ("m", (0.01316, 0.00781), 0.0, "Depth: 13.2 mm for A, 7.81 mm for B."),
+        ("m", (0.1001, 0.0025), 0.0, "Depth: 100 mm for A, 2.5 mm for B."),
+        ("rad", (-1e-9, 0.0447), 0.0, "Depth: 0 mrad for A, 44.7 mrad for B."),
         ("m", (0.2011, 0.1971), 0.0, "Depth: 0.2011 m for A, 0.1971 m for B."),
         ("s", (0.14, 0.15), 0.015,
          "Depth: 0.14 s for A, 0.15 s for B. A difference below 15 ms does not count."),
@@ -62,7 +64,7 @@ def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
     ],
 )  # fmt: skip
 def test_the_answer_has_both_values_in_a_readable_unit(unit, values, margin, said):
-    resolution = {"m": 1e-5, "s": 0.005}
+    resolution = {"m": 1e-5, "s": 0.005, "rad": 1e-5}
     found = compare_values("depth", unit, *values, resolution, margin)
     assert questions.measured_sentence(("A", "B"), found).startswith(said)
 
@@ -172,3 +174,27 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
         assert said.last.inner_text() == text
         shown = [t.inner_text() for t in page.locator(".number .feedback").all() if t.is_visible()]
         assert shown == [text] * bool(text)
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(
+    "answer",
+    [
+        lambda page: [page.locator("#choice-5").press(key) for key in ("3", "Tab")],
+        lambda page: page.locator("summary").click(),
+        lambda page: page.evaluate("location.hash = 'result'"),
+    ],
+    ids=["a number", "our answer", "a link"],
+)
+def test_the_rest_of_a_section_waits_for_an_answer(page, answer):
+    asked = question_nodes.number("choice-5", value=4.0, tolerance=0.1, unit="", feedback=FEEDBACK, **MEASURED)
+    rest = '<div><p id="result">4</p></div></section><section><p id="later">Next</p></section>'
+    style, script = (BOOK / "_static" / name for name in ("course.css", "choice.js"))
+    head = f"<!doctype html><style>{style.read_text()}</style>"
+    page.set_content(f"{head}<section>{written(asked)}{questions.HIDES}{rest}")
+    page.add_script_tag(path=script)
+    result, note = page.locator("#result"), page.locator(".after-answer")
+    assert (result.is_visible(), note.is_visible()) == (False, True)
+    assert page.locator("#later").is_visible()
+    answer(page)
+    assert (result.is_visible(), note.is_visible()) == (True, False)
