@@ -66,20 +66,20 @@ def sag_table(run: Experiment) -> str:
     The page that shows it explains the heads.
     """
     heads = {"sag [mm]": 2, "computed [mm]": 2, "rotation [mrad]": 2, "computed [mrad]": 2}
-    heads |= {"not explained [%]": 1, "to target [mm]": 2}
+    heads["not explained [%]"] = 1
     rows = {}
     for name, case in spec.CASES.items():
-        trace, m = run.traces[name], run.metrics[name]
+        trace = run.traces[name]
         found, expected, rest = study.sag_lengths(trace, case.kp)
         turned = np.linalg.norm(study.sag(trace.target[-1].astype(float), case.kp)[3:])
-        values = 1000 * np.array([found, expected, m.tracking_angle, turned])
-        rows[spec.LABELS[name]] = *values, 100 * rest, 1000 * m.final_distance
+        values = 1000 * np.array([found, expected, run.metrics[name].tracking_angle, turned])
+        rows[spec.LABELS[name]] = *values, 100 * rest
     return tables.number_table("run", heads, rows)
 
 
 def price_table(run: Experiment) -> str:
     """Return how far each run passes the target, and in how many samples it is at a force limit."""
-    heads = {"past the target [mm]": 1, "at limit": 0, "to target at the end [mm]": 2}
+    heads = {"past the target [mm]": 1, "at limit": 0, "at the end [mm]": 2}
     rows = {}
     for name, m in run.metrics.items():
         trace = run.traces[name]
