@@ -72,7 +72,7 @@ class Minutes:
         if self.sheet:
             return f"{5 * round(self.total / 5)} min with the work sheet"
         if self.work:
-            return f"{self.total} min ({self.read} to read, {self.work} for code and questions)"
+            return f"{self.total} min ({self.read} reading, {self.work} code and questions)"
         return f"{self.total} min to read"
 
 

@@ -15,7 +15,7 @@ from robo_genesis.site.course import facts, sizes
     ("counted", "shown"),
     [
         ((1, 0), "1 min to read"),
-        ((45, 16), "61 min (45 to read, 16 for code and questions)"),
+        ((45, 16), "61 min (45 reading, 16 code and questions)"),
         ((6, 61, True), "65 min with the work sheet"),
     ],
 )
