@@ -50,8 +50,8 @@ def check_versions(needed):
             found = "not installed"
         if found != number:
             raise RuntimeError(
-                f"This notebook needs {{package}} {{number}}; it is {{found}} here. Install it where\\n"
-                "{wheel} lies, then restart the kernel:\\n"
+                f"This notebook needs {{package}} {{number}}; it is {{found}} here. Install it\\n"
+                "where {wheel} lies, then restart the kernel:\\n"
                 f"    {{sys.executable}} -m pip install -c constraints.txt ./{wheel}\\n"
                 "To try another version on purpose, change it at the end of this cell."
             )

@@ -20,10 +20,10 @@ stale. A list below the question gives the cause for each answer; it may be left
     ```
 
 The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent;
-it may be below one. With the option `:hides:` the rest of its section shows after an answer: its
-results and the text about them follow the question. With `:absent:` a choice asks for a second case that the bundle
-lacks, so that unknown is right; its cause says which measurement would tell.
-`:unit: mm` asks for a length in millimetres, and other units for their thousandths.
+it may be below one. With the option `:hides:` the rest of its section, which has the results and
+the text about them, shows after an answer. With `:absent:` a choice asks for a second case that the
+bundle lacks, so that unknown is right; its cause says which measurement would tell. `:unit: mm`
+asks for a length in millimetres, and other units for their thousandths.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
 
@@ -60,7 +60,7 @@ CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 FACTOR = re.compile(r"x\d+(\.\d+)?")
 """The key of a typical wrong number: the value times this factor."""
 HIDES = '<p class="after-answer">The rest of this section shows when you have answered.</p>'
-"""Stands below a question; `course.css` hides what follows it."""
+"""Below a question; `course.css` hides what follows it."""
 
 
 def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:
