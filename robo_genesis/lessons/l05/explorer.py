@@ -53,10 +53,9 @@ def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
         found = {row["answer"]: row for row in records(run, one["run"])}
         axes = one.pop("axes")
         for row in one["rows"]:
-            places = zip(row["cells"], one["columns"], strict=False)
             row["cells"] = [
                 _cell(found[str(k)], f"{axes[0]} {row['label']}, {axes[1]} {column}")
-                for k, column in places
+                for k, column in zip(row["cells"], one["columns"], strict=False)
             ]
         shown = {cell["answer"] for row in one["rows"] for cell in row["cells"]}
         tables[one["caption"]] = [row for row in found.values() if int(row["answer"]) in shown]
@@ -78,16 +77,12 @@ def _cell(record: dict[str, str], place: str) -> dict[str, Any]:
     state = "accepted" if record["accepted"] == "yes" else "refused"
     numbers = [float(record[name].replace("−", "-")) for name in QUANTITIES]
     return {
-        "answer": int(record["answer"]),
-        "name": f"{place}, {state}",
+        "answer": int(record["answer"]), "name": f"{place}, {state}",
         "tag": "×" if state == "refused" else "↓" * (record[TIP].startswith("−")),
-        "state": state,
-        "opens": state == "accepted",
+        "state": state, "opens": state == "accepted",
         "sentence": f"Answer {record['answer']}, {state}.",
-        "values": [*record.values()][1:],
-        "numbers": numbers,
-        "texts": [short(number) for number in numbers],
-    }
+        "values": [*record.values()][1:], "numbers": numbers, "texts": [*map(short, numbers)],
+    }  # fmt: skip
 
 
 def short(value: float) -> str:
@@ -104,10 +99,9 @@ def plane_map(name: str) -> dict[str, Any]:
     caption = f"{label}. x [m] to the right, {axes[0]} [m] upwards."
     numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
     rows = [{"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)]
-    labels = [f"{x:g}" for x in columns]
     return {
         "run": name, "label": label, "caption": caption, "axes": axes, "rows": rows[::-1],
-        "columns": labels,
+        "columns": [f"{x:g}" for x in columns],
     }  # fmt: skip
 
 

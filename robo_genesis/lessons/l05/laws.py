@@ -27,8 +27,7 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
             yield from kept(name, chain(assigned, own_targets(trace, case)))
         else:
             command = command_path(case, trace.target[-1])
-            driven = driven_run(trace, case.commanding(command), run.links)
-            yield from kept(name, driven)
+            yield from kept(name, driven_run(trace, case.commanding(command), run.links))
 
 
 def own_targets(trace: Trace, case: SolveCase) -> Iterator[Finding]:

@@ -69,9 +69,8 @@ def sag_table(run: Experiment) -> str:
     heads["not explained [%]"] = 1
     rows = {}
     for name, case in spec.CASES.items():
-        trace = run.traces[name]
-        found, expected, rest = study.sag_lengths(trace, case.kp)
-        turned = np.linalg.norm(study.sag(trace.target[-1].astype(float), case.kp)[3:])
+        found, expected, rest = study.sag_lengths(run.traces[name], case.kp)
+        turned = np.linalg.norm(study.sag(run.traces[name].target[-1].astype(float), case.kp)[3:])
         values = 1000 * np.array([found, expected, run.metrics[name].tracking_angle, turned])
         rows[spec.LABELS[name]] = *values, 100 * rest
     return tables.number_table("run", heads, rows)
@@ -177,22 +176,17 @@ def metric_table(run: Experiment) -> str:
     return tables.number_table("metric", {spec.LABELS[case]: 3 for case in spec.CASES}, rows)
 
 
-ANSWER = {
-    True: "The answer of the solver is accepted: its residual is {:.3f} mm and {:.4f} mrad.",
-    False: "The answer of the solver is refused: its residual is {:.3f} mm and {:.4f} mrad.",
-}
-
-
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs and its picture."""
     (base, *others), ik = run.metrics.items(), run.readings[study.GROUP]
     residuals = np.array([ik["residual_m"], ik["residual_rad"]])
-    answer = ANSWER[bool((residuals <= spec.IK.tolerances).all())]
+    answer = "accepted" if (residuals <= spec.IK.tolerances).all() else "refused"
     start, end, behind = (
         1000 * getattr(base[1], f"{name}_distance") for name in ("start", "final", "tracking")
     )
     return bullets([
-        answer.format(*1000 * residuals),
+        f"The answer of the solver is {answer}: its residual is {1000 * residuals[0]:.3f} mm and "
+        f"{1000 * residuals[1]:.4f} mrad.",
         f"The hand's distance from its target went from {start:.1f} mm to {end:.2f} mm. The arm "
         f"stopped {behind:.2f} mm from the pose of its command.",
         *(
