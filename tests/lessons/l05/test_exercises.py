@@ -34,17 +34,12 @@ def chain_of(
 
 def with_quat(change):
     """Return the right chain with a change of its quaternion."""
-
-    def chain(q, links):
-        position, quat = CHAIN(q, links)
-        return position, change(quat)
-
-    return chain
+    return lambda *given: (CHAIN(*given)[0], change(CHAIN(*given)[1]))
 
 
 def with_place(change):
     """Return the right chain with a change of its position."""
-    return lambda q, links: (change(CHAIN(q, links)[0]), CHAIN(q, links)[1])
+    return lambda *given: (change(CHAIN(*given)[0]), CHAIN(*given)[1])
 
 
 def damped(left):
@@ -81,6 +76,16 @@ def changed(K, by=0.0, focal=slice(0)):
     return K
 
 
+def within(values, low, high):
+    """Return values with NaN in the place of those that are too low or too high."""
+    return np.where((values >= low) & (values <= high), values, np.nan)
+
+
+def by(divisor):
+    """Return a projection that divides points of the camera by a function of them."""
+    return lambda p, k, t: ((s := cameras.in_camera(p, t)) @ k.T / divisor(s))[:, :2]
+
+
 CASES = {
     "forward": {
         "right": CHAIN,
@@ -97,9 +102,7 @@ CASES = {
         "turned backwards": chain_of(about=lambda angle: of.about_z(-angle)),
         "half angle not halved": chain_of(about=lambda angle: of.about_z(2 * angle)),
         "about x": chain_of(about=lambda angle: of.about_z(angle)[[0, 3, 1, 2]]),
-        "without the orientations of the links": lambda q, n: CHAIN(
-            q, [(name, offset, (1, 0, 0, 0)) for name, offset, _ in n]
-        ),
+        "links not turned": lambda q, n: CHAIN(q, [(*of[:2], (1, 0, 0, 0)) for of in n]),
         "xyzw": with_quat(lambda quat: np.roll(quat, -1)),
         "conjugate": with_quat(lambda quat: quat * [1, -1, -1, -1]),
         "not of unit length": with_quat(lambda quat: 2 * quat),
@@ -155,14 +158,7 @@ CASES = {
         "below the tolerances": fed(ACCEPT, lambda *g: (*g[:3], 0.99 * g[3], 0.99 * g[4], g[5])),
         "rotation about z left out": fed(ACCEPT, lambda q, e, *r: (q, e * (1, 1, 1, 1, 1, 0), *r)),
         "ends of q alone": fed(ACCEPT, lambda q, *rest: (q[[0, -1]], *rest)),
-        "not too large": lambda q, e, tip, a, b, c: (
-            bool(
-                np.isfinite(q).all()
-                and not np.linalg.norm(e[3:]) > b
-                and np.linalg.norm(e[:3]) <= a
-            )
-            and tip >= c
-        ),
+        "not too large": fed(ACCEPT, lambda q, e, *r: (q, np.r_[e[:3], np.nan_to_num(e[3:])], *r)),
         "no answer": lambda *given: None,
     },
     "project": {
@@ -170,10 +166,8 @@ CASES = {
         "u and v swapped": lambda *given: PROJECT(*given)[:, ::-1],
         "OpenGL axes": lambda p, k, t: PROJECT(p, k, t @ cameras.FLIP),
         "centre of pixels at whole numbers": lambda *given: PROJECT(*given) - 0.5,
-        "not divided by the depth": lambda p, k, t: (cameras.in_camera(p, t) @ k.T)[:, :2],
-        "divided by the distance": lambda p, k, t: (
-            (seen := cameras.in_camera(p, t)) @ k.T / np.linalg.norm(seen, axis=1)[:, None]
-        )[:, :2],
+        "not divided by the depth": by(lambda seen: 1),
+        "divided by the distance": by(lambda seen: np.linalg.norm(seen, axis=1)[:, None]),
         "from camera to world": lambda p, k, t: PROJECT(p, k, np.linalg.inv(t)),
         "pose transposed": lambda p, k, t: PROJECT(p, k, t.T),
         "place of the camera left out": lambda p, k, t: PROJECT(p + t[:3, 3], k, t),
@@ -183,24 +177,14 @@ CASES = {
         "v upwards": lambda p, k, t: PROJECT(p, k, t) * [1, -1] + [0, 2 * k[1, 2]],
         "middle of the picture left out": lambda p, k, t: PROJECT(p, k, t) - k[:2, 2],
         "whole pixels": lambda *given: PROJECT(*given).round(),
-        "points behind kept": lambda p, k, t: (
-            (seen := cameras.in_camera(p, t)) / seen[:, 2:] @ k.T
-        )[:, :2],
-        "points behind in front": lambda p, k, t: (
-            (seen := cameras.in_camera(p, t)) / abs(seen[:, 2:]) @ k.T
-        )[:, :2],
+        "points behind kept": by(lambda seen: seen[:, 2:]),
+        "points behind in front": by(lambda seen: abs(seen[:, 2:])),
         "all or none": lambda p, k, t: PROJECT(p, k, t) + 0 * PROJECT(p, k, t).sum(),
         "middle typed": lambda p, k, t: PROJECT(p, changed(k, by=(16, 10) - k[:2, 2]), t),
         "one point alone": lambda p, k, t: PROJECT(p[:1], k, t)[0],
-        "beside the picture": lambda p, k, t: np.where(
-            (at := PROJECT(p, k, t)).min(axis=1, keepdims=True) < 0, np.nan, at
-        ),
-        "far points left out": lambda p, k, t: np.where(
-            cameras.in_camera(p, t)[:, 2:] > 20, np.nan, PROJECT(p, k, t)
-        ),
-        "near points left out": lambda p, k, t: np.where(
-            cameras.in_camera(p, t)[:, 2:] < 0.1, np.nan, PROJECT(p, k, t)
-        ),
+        "beside the picture": lambda *given: within(PROJECT(*given), 0, np.inf),
+        "far points left out": by(lambda seen: within(seen[:, 2:], 0, 20)),
+        "near points left out": by(lambda seen: within(seen[:, 2:], 0.1, np.inf)),
         "others change": lambda p, k, t: PROJECT(p, k, t) + np.isnan(PROJECT(p, k, t)).any(),
         "points changed": in_place(PROJECT, 0),
         "pose changed": in_place(PROJECT, 2),
