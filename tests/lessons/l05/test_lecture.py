@@ -22,19 +22,13 @@ SPHERE = Marker(13, spec.TARGET, spec.MARKER_RADIUS)
 def run(request, reaches, frames):
     """The lab as a camera without errors sees it."""
     view = closed_view(SPHERE, spec.FOV, CAMERA_RES, looking(spec.VIEW["pos"], spec.VIEW["lookat"]))
-    readings = (
-        reaches.readings
-        | passed(LAB)
-        | {
-            "view_world": view_record.numbers(view),
-            "segments": {"plane": PLANE, "hand": 10, "marker": SPHERE.number},
-        }
-    )
+    segments = {"plane": PLANE, "hand": 10, "marker": SPHERE.number}
+    seen = {"view_world": view_record.numbers(view), "segments": segments}
     return replace(
         reaches,
         page=LAB,
         traces={name: reaches.traces[name] for name in spec.CASES},
-        readings=readings,
+        readings=reaches.readings | passed(LAB) | seen,
         frames=frames | view_record.frames("world", view) if request.param else {},
         rendered=request.param,
     )
