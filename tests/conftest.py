@@ -114,9 +114,7 @@ LINKS = ("link0", "link4", "hand")
 def make_trace() -> Callable[..., Trace]:
     """Build a run of one joint from its positions; arrays that are not given are zero."""
 
-    def build(
-        q: Any, target: Any, *, dt: float = DT, effort_limit: float = 87.0, **given: Any
-    ) -> Trace:
+    def build(q, target, *, dt=DT, effort_limit=87.0, **given) -> Trace:
         n = len(q) - 1
         steps = {"qd": 0.0, "control_force": 0.0, "internal_force": 0.0} | given
         return Trace(

@@ -37,15 +37,11 @@ def python(folder: Path, *options: str) -> Path:
 def make(folder: Path, *words: str, **set_: str) -> subprocess.CompletedProcess[str]:
     command = ["make", "-C", str(folder), f"BASE_PYTHON={sys.executable}", *words]
     given = {"PATH": os.environ["PATH"]} | set_  # no variable of a make around these tests
-    return subprocess.run(
-        command, env=given, capture_output=True, text=True, check=False, timeout=60
-    )
+    return subprocess.run(command, env=given, capture_output=True, text=True, timeout=60)
 
 
 @pytest.mark.parametrize("target", ["serve", "evidence-rocm"])
-def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_needs_no_venv(
-    checkout, target
-):
+def test_paths_and_settings_may_contain_spaces_and_a_container_needs_no_venv(checkout, target):
     words = [] if target == "evidence-rocm" else [f"PYTHON={python(checkout)}"]
     done = make(checkout, target, *words, TO="a folder", ROWS="prose live=fast", PAGE="")
     assert done.returncode == 0, done.stderr

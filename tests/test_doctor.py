@@ -117,9 +117,7 @@ class StandIn:
 def scene(lab, monkeypatch):
     """The lab's scene for steps that start no second engine and build no second scene."""
     scene = StandIn(lab)
-    gs = SimpleNamespace(
-        Scene=lambda **options: scene, options=lab.gs.options, morphs=lab.gs.morphs
-    )
+    gs = SimpleNamespace(Scene=lambda **_: scene, options=lab.gs.options, morphs=lab.gs.morphs)
     monkeypatch.setattr(session, "start", lambda contract: lab.engine)
     monkeypatch.setattr(session, "import_engine", lambda: gs)
     return scene

@@ -74,10 +74,8 @@ FULL = "ERROR: Could not install: [Errno 28] No space left on device"
 )  # fmt: skip
 def test_what_failed_is_one_line(here, monkeypatch, printed, said):
     for name in ("PIP_TARGET", "PIP_DRY_RUN", "PYTHONPATH"):  # they would install elsewhere
-        monkeypatch.setenv(name, "elsewhere")
-    code = (
-        "import os; e = os.environ; assert 'elsewhere' not in e.values() and e['PIP_USER'] == '0'"
-    )
+        monkeypatch.setenv(name, "other")
+    code = "import os; e = os.environ; assert 'other' not in e.values() and e['PIP_USER'] == '0'"
     code += f"; print({chr(10).join(printed)!r}); raise SystemExit(1)"
     with pytest.raises(InstallError) as caught:
         here.call("-c", code)

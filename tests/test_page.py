@@ -145,18 +145,14 @@ def test_anything_else_is_refused(page, displayed, function, arguments, message)
         ("robo_genesis.core.checks.model_counts", "returned generator"),
     ],
 )
-def test_only_functions_of_lessons_and_core_that_return_a_table_or_figure_are_shown(
-    page, name, message
-):
+def test_only_functions_that_return_a_table_or_figure_are_shown(page, name, message):
     measure(page)
     with pytest.raises(shown.ShownError, match=message):
         shown.mime_data(name, page.experiment, [{}])
 
 
 @pytest.mark.parametrize("colour", [{}, {"color": "red"}, {"color": "C7", "alpha": 0.5}])
-def test_a_figure_has_the_palette_s_colours_by_default_and_no_others(
-    page, displayed, monkeypatch, colour
-):
+def test_a_figure_has_the_palette_s_colours_and_no_others(page, displayed, monkeypatch, colour):
     measure(page)
 
     def height(run):
@@ -207,9 +203,7 @@ def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(page
     first, *_, line = failed.value._render_traceback_()
     assert first == "usable_frame does not pass its test yet."
     assert line.endswith('of its cell: return rgb["wide"]')
-    with pytest.raises(
-        LookupError, match=r"test_\w+ is not declared\. Functions: make_scene, record"
-    ):
+    with pytest.raises(LookupError, match=r"test_\w+ is not declared\. Functions: make_scene"):
         page.test(l02.exercises.stepped, test_without_a_camera_no_frame_is_taken)
     page.finish(None)
     last = capsys.readouterr().out.splitlines()[-2:]

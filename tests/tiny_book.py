@@ -15,9 +15,7 @@ from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.refusals import BundleRefused
 
-FRONT = (
-    "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nA page.\n"
-)
+FRONT = "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nPage.\n"
 CELL = "\n```{{code-cell}}\n{options}{code}\n```\n"
 
 # A lab's cell that leaves the least that counts as a bundle of this run.

@@ -40,9 +40,7 @@ def test_frames_come_back_as_they_were_with_the_run_id(pristine, frames):
             assert picture.info["run_id"] == RUN_ID
 
 
-def test_engine_backend_renderer_log_and_host_are_recorded(
-    recorder, experiment, backend, monkeypatch
-):
+def test_backend_renderer_log_and_host_are_recorded(recorder, experiment, backend, monkeypatch):
     switches = {"GS_ENABLE_ZEROCOPY": "0", "LIBGL_DRIVERS_PATH": f"/usr/lib:{Path.home()}/mesa"}
     recorder.engine = replace(recorder.engine, switches=switches)
     monkeypatch.setattr(session, "probe", lambda requested: replace(backend, actual="cuda"))
@@ -100,9 +98,7 @@ def test_a_new_bundle_replaces_an_old_one_and_what_an_earlier_failure_left(recor
         (lambda e: {"frames": {"initial": np.zeros((2, 2, 7), np.uint8)}}, FrameError, "shape"),
     ],
 )  # fmt: skip
-def test_a_write_that_fails_leaves_nothing_or_the_old_bundle(
-    recorder, experiment, spoil, error, said
-):
+def test_a_failed_write_leaves_nothing_or_the_old_bundle(recorder, experiment, spoil, error, said):
     outputs, spoiled = recorder.contract.outputs, replace(experiment, **spoil(experiment))
     for _ in range(2):
         before = {name: (outputs / name).read_bytes() for name in files(outputs)}
@@ -126,9 +122,8 @@ def test_a_message_of_the_engine_never_ends_a_recording(recorder, experiment):
 
 
 def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(quiet):
-    quiet.setenv(
-        "ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.bodies.contacts robo_genesis.core.plotting"
-    )
+    names = "robo_genesis.sim.bodies.contacts robo_genesis.core.plotting"
+    quiet.setenv("ROBO_GENESIS_PAGE_IMPORTS", names)
     found = running_modules("l04")
     expected = measuring_modules("l04", ["robo_genesis.sim.bodies.contacts"])
     assert found == expected != measuring_modules("l04", [])
@@ -152,9 +147,8 @@ def test_files_without_their_recorded_digest_do_not_match_their_wheel(
         SimpleNamespace(hash=hashes[n], suffix=Path(n).suffix, locate=lambda n=n: tmp_path / n)
         for n in listed
     ]
-    monkeypatch.setattr(
-        record.importlib.metadata, "distribution", lambda name: SimpleNamespace(files=files)
-    )
+    found = SimpleNamespace(files=files)
+    monkeypatch.setattr(record.importlib.metadata, "distribution", lambda name: found)
     if content is not None:
         (tmp_path / "module.py").write_bytes(content)
     assert files_match_wheel("engine") is match

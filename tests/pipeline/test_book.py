@@ -112,9 +112,7 @@ def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built
     ],
     ids=["bundle", "another contract", "output", "site", "missing page", "changed tree"],
 )
-def test_a_build_that_is_refused_leaves_the_old_site(
-    tmp_path, monkeypatch, page, settings, error, said
-):
+def test_a_refused_build_leaves_the_old_site(tmp_path, monkeypatch, page, settings, error, said):
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
     stages = "robo_genesis.pipeline.stages"
@@ -287,8 +285,6 @@ def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monk
 
 def test_a_second_build_at_the_same_time_is_refused_with_the_first_one_s_process(tmp_path):
     make_book(tmp_path)
-    said = (
-        rf"a test of the engine, runs here \(process {os.getpid()}\)\. Wait .* `kill {os.getpid()}`"
-    )
+    said = rf"runs here \(process {os.getpid()}\)\. Wait .* `kill {os.getpid()}`"
     with build_lock(tmp_path / "cache"), pytest.raises(ProjectError, match=said):
         build(tmp_path)

@@ -34,9 +34,7 @@ BACKEND, RENDER, OUTPUTS = (f"ROBO_GENESIS_{name}" for name in ("BACKEND", "REND
         ({BACKEND: "auto", RENDER: "0", OUTPUTS: "deep/outputs"}, "auto", False, "deep/outputs"),
     ],
 )
-def test_the_contract_is_read_from_the_environment(
-    tmp_path, monkeypatch, environ, backend, render, folder
-):
+def test_the_environment_has_the_contract(tmp_path, monkeypatch, environ, backend, render, folder):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(session.os, "environ", environ)
     assert read_contract() == read_contract(environ) == Contract(backend, render, tmp_path / folder)
@@ -82,9 +80,7 @@ class FakeEngine(SimpleNamespace):
 
     cpu, gpu, __version__, _initialized = "cpu", "gpu", "1.3.3", False
 
-    def init(
-        self, *, backend, seed=None, precision="32", use_deterministic_algorithms=False, **log
-    ):
+    def init(self, *, backend, seed, precision="32", use_deterministic_algorithms=False, **log):
         self._initialized, self.SEED = True, seed
         self.backend = SimpleNamespace(name=backend)
         self.np_float = {"32": np.float32, "64": np.float64}[precision]
@@ -109,9 +105,7 @@ def fake_engine(monkeypatch):
     return engine
 
 
-def test_a_start_keeps_the_log_and_the_switches_that_the_engine_did_not_set(
-    fake_engine, tmp_path, monkeypatch
-):
+def test_a_start_keeps_the_log_and_the_user_s_switches(fake_engine, tmp_path, monkeypatch):
     monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
     monkeypatch.setenv("QD_ENABLE_PYBUF", "1")  # as the import of the real engine does
     engine = start(Contract("cpu", True, tmp_path))

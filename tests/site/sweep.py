@@ -90,10 +90,8 @@ class Visit:
     def __init__(self, browser: Browser, base: str, name: str, kind: Kind) -> None:
         self.kind, self.every_state = kind, name in EVERY_STATE
         self.wrong: dict[str, list[str]] = {rule: [] for rule in kind.rules}
-        width, height = kind.size
-        page = browser.new_page(
-            viewport={"width": width, "height": height}, color_scheme=kind.scheme
-        )
+        size = dict(zip(("width", "height"), kind.size, strict=True))
+        page = browser.new_page(viewport=size, color_scheme=kind.scheme)
         self.wrong["messages"], self.wrong["foreign hosts"] = watch(page), foreign(page, base)
         page.add_init_script(path=SCRIPTS / "watch_shifts.js")
         page.goto(f"{base}/{name}")

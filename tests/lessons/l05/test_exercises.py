@@ -88,9 +88,7 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
     },
     "step": {
         "right": STEP,
-        "right, other side": lambda J, e, d: np.linalg.solve(
-            J.T @ J + d**2 * np.eye(J.shape[1]), J.T @ e
-        ),
+        "right, JᵀJ": lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(len(J.T)), J.T @ e),
         "damping not squared": lambda J, e, d: STEP(J, e, np.sqrt(d)),
         "typed damping": lambda J, e, d: STEP(J, e, 0.01),
         "bounded": lambda J, e, d: np.clip(STEP(J, e, d), -0.05, 0.05),

@@ -74,8 +74,6 @@ def test_tables_and_figures_give_the_numbers_of_the_runs(run):
 
 @pytest.mark.parametrize("run", [True], indirect=True)
 @pytest.mark.parametrize(("name", "value"), [("transform_03", 1.6), ("far", 21.0)])
-def test_a_sound_bundle_is_accepted_and_another_camera_is_refused(
-    engine, tmp_path, run, name, value
-):
+def test_a_sound_bundle_is_accepted_and_another_camera_refused(engine, tmp_path, run, name, value):
     spoil = metric("view_world", name, value)
     assert "checks" in accepted_then_refused(engine, tmp_path, "l05", "lab", run, spoil)

@@ -43,9 +43,8 @@ def swept(runs) -> dict:
 def worlds(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
     runs = {name: run_of(world) for name, world in spec.WORLDS.items()}
-    runs |= {
-        f"alone_{k}": replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING) for k in spec.ENVS
-    }
+    for k in spec.ENVS:
+        runs[f"alone_{k}"] = replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING)
     runs |= {name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain_robot"}
     runs["plain_robot"] = beginning(runs["env_0"], spec.SWITCH)
     for name, world in spec.COPIES.items():

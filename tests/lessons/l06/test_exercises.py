@@ -12,9 +12,7 @@ from robo_genesis.sim.arm import kinematics as of
 SOLVED = solutions("l06")
 
 
-def checked(
-    robot, dofs, q, envs, known=None, axes=2, twice=False, change=lambda q, envs, n: (q, envs)
-):
+def checked(robot, dofs, q, envs, known=None, axes=2, twice=False, change=lambda q, e, n: (q, e)):
     """Check what the task asks for; other values of the last arguments make mistakes."""
     known = known or range(robot.scene.n_envs)
     if not {*envs} <= {*known} or (len({*envs}) < len(envs) and not twice):

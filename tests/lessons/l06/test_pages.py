@@ -16,9 +16,8 @@ from robo_genesis.sim.arm.kinematics import HAND
 @pytest.fixture(scope="module", params=[True, False], ids=["camera", "RENDER=0"])
 def run(request, worlds, frames):
     """The lecture."""
-    return replace(
-        worlds, page=LECTURE, frames=frames if request.param else {}, rendered=request.param
-    )
+    pictures = frames if request.param else {}
+    return replace(worlds, page=LECTURE, frames=pictures, rendered=request.param)
 
 
 def test_the_checks_hold_and_a_schematic_replaces_frames(run):

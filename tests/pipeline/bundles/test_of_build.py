@@ -20,9 +20,7 @@ def result(tmp_path, monkeypatch):
     folder = tmp_path / "cache" / "pages" / "page" / "fingerprint"
     folder.mkdir(parents=True)
     (folder / RECORD).write_text(os.urandom(16).hex())
-    monkeypatch.setattr(
-        "robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda result: None
-    )
+    monkeypatch.setattr("robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda of: None)
     page = SimpleNamespace(notebook=new_notebook())
     return PageResult(page, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder)
 

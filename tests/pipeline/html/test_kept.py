@@ -222,9 +222,7 @@ def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
         (State("b", SOME.pages), False, set()),
     ],
 )
-def test_changed_pages_are_read_again_and_other_changes_empty_the_folder(
-    tmp_path, state, usable, left
-):
+def test_changed_pages_are_read_again_and_others_empty_the_folder(tmp_path, state, usable, left):
     doctrees = tmp_path / DOCTREES
     doctrees.mkdir(parents=True)
     for name in SOME.pages:

@@ -85,10 +85,8 @@ FORKS = "import os, time; os.fork() or time.sleep(60); time.sleep(60)"
 def test_a_child_of_sphinx_does_not_outlive_it(tmp_path):
     """A child keeps the pipe open, for which an interrupted build would wait."""
     sphinx = SphinxProcess.__new__(SphinxProcess)
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    sphinx.process = subprocess.Popen(
-        [sys.executable, "-c", FORKS], start_new_session=True, **pipes
-    )
+    how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    sphinx.process = subprocess.Popen([sys.executable, "-c", FORKS], start_new_session=True, **how)
     with sphinx:
         while not (below := psutil.Process(sphinx.process.pid).children()):
             time.sleep(0.05)

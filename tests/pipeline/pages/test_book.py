@@ -95,9 +95,8 @@ def test_a_page_is_refused_with_its_line_and_a_cure(tmp_path, text, line, said):
     (book / "bad.md").write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(PageError) as refused:
         find_pages(book)
-    found = [
-        of for of in str(refused.value).splitlines() if of.startswith(f"{book}/bad.md:{line}: ")
-    ]
+    where = f"{book}/bad.md:{line}: "
+    found = [of for of in str(refused.value).splitlines() if of.startswith(where)]
     assert any(said in of for of in found), refused.value
 
 
@@ -128,9 +127,7 @@ def test_one_report_names_all_bad_pages(tmp_path):
         find_pages(book)
     said = ("no line of _toc.yml names this file", "there is no ", f"as {book}/first.md does")
     assert all(each in str(refused.value) for each in said)
-    places = {
-        line.partition(": ")[0] for line in str(refused.value).splitlines() if "/book/" in line
-    }
+    places = {of.partition(": ")[0] for of in str(refused.value).splitlines() if "/book/" in of}
     names = (
         "draft.MD:1",
         "draft.ipynb:1",

@@ -225,9 +225,7 @@ def test_a_number_that_a_cell_prints_is_the_value_that_its_option_names(folder, 
     if said is None:
         assert require_shown(page, ran, folder, bundle.read_manifest(folder)) == 0
     else:
-        with pytest.raises(
-            BundleRefused, match=f"^shown: lessons/lab, code cell 1: .*{re.escape(said)}"
-        ):
+        with pytest.raises(BundleRefused, match=f"^shown: .*code cell 1: .*{re.escape(said)}"):
             require_shown(page, ran, folder, bundle.read_manifest(folder))
 
 

@@ -132,9 +132,7 @@ def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(
         *((name, None) for name in (".hidden.py", "notes/a.py", "trimesh.txt")),
     ],
 )
-def test_what_python_would_import_in_the_place_of_a_keyed_module_is_refused(
-    root, page, name, refused
-):
+def test_what_python_would_import_in_place_of_a_keyed_module_is_refused(root, page, name, refused):
     write(root, name)
     said = pytest.raises(ProjectError, match=f"would import {refused} in .* Move the others")
     with said if refused else nullcontext():
@@ -298,9 +296,10 @@ OTHERS = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("one", "other", "same"), [(*p, True) for p in SAME] + [(*p, False) for p in OTHERS]
-)
+PAIRS = [(*p, True) for p in SAME] + [(*p, False) for p in OTHERS]
+
+
+@pytest.mark.parametrize(("one", "other", "same"), PAIRS)
 def test_what_a_module_does_counts_and_not_how_it_is_written(one, other, same):
     assert (syntax_digest(one) == syntax_digest(other)) == same
 

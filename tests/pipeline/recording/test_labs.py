@@ -239,9 +239,7 @@ def test_all_labs_are_recorded_in_the_order_of_the_book(labs, tmp_path):
         (KeyboardInterrupt(), 130, "interrupted – 0 the older bundle is unchanged"),
     ],
 )
-def test_a_failure_is_reported_at_once_and_only_an_interruption_ends_the_command(
-    labs, error, status, row
-):
+def test_a_failure_is_reported_at_once_and_only_ctrl_c_ends_the_command(labs, error, status, row):
     found, ran, said = labs(l03=error)
     assert (found, ran) == (status, ["l02", "l03", *["l04"] * (status == 1)])
     assert last(said)[2] == f"l03 amdgpu – {row}"

@@ -125,9 +125,7 @@ def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints
         ({}, value("q_target", 3, 0.0), "none is clipped"),
     ],
 )
-def test_what_does_not_fit_is_refused_before_the_engine_is_touched(
-    robot, joints, scene, case, message
-):
+def test_what_does_not_fit_is_refused_before_the_engine_moves(robot, joints, scene, case, message):
     vars(robot).update(scene)
     with pytest.raises(CaseError, match=message):
         run_case(robot, robot, joints, replace(BASELINE, **case))

@@ -17,9 +17,7 @@ def accepted(outputs):
     """Return a run as the build accepted it, with another version, start or backend."""
     manifest = read_manifest(page_outputs("l04/lab") / "cpu")
 
-    def run(
-        version="1.4.5", started="2026-11-22T10:00:00", backend="cpu", recorded=False
-    ) -> PageRun:
+    def run(version="1.4.5", started="2026-11-22T10:00", backend="cpu", recorded=False) -> PageRun:
         engine = manifest.predicate.engine.model_copy(update={"version": version})
         changed = {"engine": engine, "started": started}
         predicate = manifest.predicate.model_copy(update=changed)

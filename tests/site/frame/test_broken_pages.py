@@ -62,8 +62,7 @@ OTHERS = {
     "glue": ["bare is glued from the page lab, and its origin would not be shown."],
     "free": ["a cell shows a table, but the page declares no bundle"],
     "glossary": [
-        f"glossary_forms.yml names '{name}', which is not in the glossary"
-        for name in ("gain", "force")
+        f"glossary_forms.yml names '{n}', which is not in the glossary" for n in ("gain", "force")
     ],
 }
 """What is said of the other pages."""

@@ -120,9 +120,7 @@ def page(block, open_block) -> Page:
 
 @pytest.mark.browser
 def test_keys_read_the_record_out_and_the_plots_draw_it(page):
-    assert (
-        readout(page, ".replay")["time"] == "0.00 s, before the first step"
-    )  # nothing plays by itself
+    assert readout(page, ".replay")["time"] == "0.00 s, before the first step"  # not played
     slider = choose(page, "low", 19)
     slider.press("ArrowRight")
     fallen = {"time": "0.20 s", "height": "0.8000 m", "vertical velocity": "−2.0000 m/s"}

@@ -30,10 +30,7 @@ ACCENT, BOLD = '<mover accent="true">', 'style="font-weight: bold"'
 @pytest.mark.parametrize(
     ("latex", "has", "lacks"),
     [
-        *(
-            (rf"\{name}{{q}}", ACCENT, "\\")
-            for name in ("dot", "ddot", "hat", "tilde", "vec", "bar")
-        ),
+        *((rf"\{n}{{q}}", ACCENT, "\\") for n in ("dot", "ddot", "hat", "tilde", "vec", "bar")),
         (r"\overset{!}{=}", "<mover>", "accent"),
         (r"\boldsymbol{q}", BOLD, "mathvariant"),
         (r"\begin{aligned} a &= b \end{aligned}", 'style="text-align: right"', "columnalign"),

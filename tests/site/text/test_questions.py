@@ -41,11 +41,9 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
 
 
 def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
-    found, sentence, _ = questions.measured_order(
-        "l04/lab", "overshoot", ["G1", "load"], absent=True
-    )
+    found, said, _ = questions.measured_order("l04/lab", "overshoot", ["G1", "load"], absent=True)
     assert (found.order, found.unit) == (None, "rad")
-    assert sentence == "The record of l04/lab has no such run."
+    assert said == "The record of l04/lab has no such run."
     for cases, said in ((["G1", "G2_longer"], "records G2_longer; ask"), (["G9", "no_run"], "G9")):
         with pytest.raises(LookupError, match=said):
             questions.measured_order("l04/lab", "overshoot", cases, absent=True)
@@ -149,9 +147,8 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
     second = question_nodes.number("choice-4", **MEASURED, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
-    page.set_content(
-        f"<!doctype html><style>{style.read_text()}</style>{written(first)}{written(second)}"
-    )
+    html = written(first) + written(second)
+    page.set_content(f"<!doctype html><style>{style.read_text()}</style>{html}")
     page.add_script_tag(path=script)
     page.locator("#choice-3-0").focus()
     page.keyboard.press("Space")
