@@ -171,9 +171,7 @@ STARTED = pytest.StashKey[ExitStack]()
 
 
 @pytest.fixture(scope="session")
-def real_engine(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[SimpleNamespace]:
+def real_engine(request, tmp_path_factory) -> Iterator[SimpleNamespace]:
     """Real engine, started once in this process; `pytest_runtest_teardown` ends it.
 
     It holds the lock of builds, because a build would remove the lock files of the engine as stale.

@@ -60,6 +60,11 @@ def cell(code: str, options: str = "") -> str:
     return CELL.format(code=code, options=options)
 
 
+def paragraphs(*texts: str) -> str:
+    """Return paragraphs and blocks of a page with an empty line between them."""
+    return "\n\n".join(texts) + "\n"
+
+
 def raising(code: str, expects: str | None) -> str:
     """Return a cell tagged raises-exception."""
     says = f':expects: "{expects}"\n' if expects else ""
@@ -117,7 +122,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def published_marker(book: Path) -> Path:
+def old_site(book: Path) -> Path:
     """Publish an old site and return a file of it that a failed build must leave alone."""
     marker = book / "_build" / "html" / "index.html"
     marker.parent.mkdir(parents=True)
@@ -163,7 +168,7 @@ def fails(script: str, folder: Path, *more: str, **settings: str) -> str:
     return report
 
 
-def wait_for(process: subprocess.Popen[str], *files: Path) -> None:
+def wait(process: subprocess.Popen[str], *files: Path) -> None:
     """Wait until a process, or what it started, has written to each of these files."""
     end = time.monotonic() + 60
     while not all(path.exists() and path.read_text() for path in files):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from tiny_book import commit, fails, git, wait_for
+from tiny_book import commit, fails, git, wait
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
@@ -224,7 +224,7 @@ sys.exit(run(lambda: run_repin(sys.argv[2], root, root / ".cache"), "changed"))
 def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(root, sent, status):
     before, sleeper = state(root), root / ".cache" / "repin" / "work" / "checkout" / "sleeper"
     process = subprocess.Popen([sys.executable, "-c", RUN, str(root), HANGS], cwd=ROOT)
-    wait_for(process, sleeper)
+    wait(process, sleeper)
     child = psutil.Process(int(sleeper.read_text()))
     process.send_signal(sent)
     assert process.wait() == status

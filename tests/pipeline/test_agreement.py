@@ -45,11 +45,7 @@ def machines(tmp_path):
 @pytest.mark.parametrize(
     ("files", "run", "said"),
     [
-        (
-            FILES | {"outputs/shape.npz": b"t"},
-            {},
-            r"lessons/lab: 1 of 2 archives differ\. .*shape\.npz m",
-        ),
+        (FILES | {"outputs/shape.npz": b"t"}, {}, r"1 of 2 archives differ\. .*shape\.npz m"),
         ({"outputs/shape.npz": b"s"}, {}, r"cpu/arrays/a\.npz must be equal on a processor w"),
         (FILES | {"outputs/b.npz": b"b"}, {}, r"1 of 3 archives .* outputs/b\.npz"),
         (FILES, {"run_id": "1" * 32}, "lessons/lab: both are run 11111111, expected two"),
@@ -126,10 +122,7 @@ def test_rounding_on_another_processor_is_accepted_and_the_largest_is_named(twic
     ("spoilers", "said"),
     [
         ([], r"lab: 4 of 4 archives differ\. .*G1\.npz must be equal on a CPU\. "),
-        (
-            [other_cpu, other_shape],
-            r"1 of 5 .* outputs/shape\.npz must be equal on B and a",
-        ),
+        ([other_cpu, other_shape], r"1 of 5 .* outputs/shape\.npz must be equal on B and a"),
         ([other_cpu, impossible], r"lab: motion: .*G2: internal_force"),
         ([other_cpu, flipped_check], rf"lab: B and a CPU .*{CHECKS[0]}: passed → FAILED"),
     ],

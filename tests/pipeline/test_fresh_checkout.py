@@ -93,7 +93,7 @@ def replaced_object(root, monkeypatch):
     git(root, "update-index", "--assume-unchanged", "page.md")
 
 
-def configured_by_the_user(root, monkeypatch):
+def user_settings(root, monkeypatch):
     home = root.parent / "home"
     (home / "hooks").mkdir(parents=True)
     hook = home / "hooks" / "post-checkout"
@@ -107,10 +107,10 @@ def configured_by_the_user(root, monkeypatch):
     monkeypatch.setenv("HOME", str(home))
 
 
-@pytest.mark.parametrize(
-    "spoil",
-    [hidden_changes, stale_bytecode, other_repository, replaced_object, configured_by_the_user],
-)
+SPOILS = [hidden_changes, stale_bytecode, other_repository, replaced_object, user_settings]
+
+
+@pytest.mark.parametrize("spoil", SPOILS)
 def test_a_release_sees_the_files_of_its_commit_and_no_others(root, monkeypatch, spoil):
     spoil(root, monkeypatch)
     found = built(root)

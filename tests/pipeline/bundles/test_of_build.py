@@ -40,12 +40,8 @@ def test_an_accepted_page_is_compared_again_when_its_record_changed(result, monk
 @pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])
 def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
     contract = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
-    facts = SimpleNamespace(
-        lesson="l04",
-        page=page,
-        backend=SimpleNamespace(requested="cpu"),
-        render=SimpleNamespace(mode=mode),
-    )
+    facts = SimpleNamespace(lesson="l04", page=page, render=SimpleNamespace(mode=mode))
+    facts.backend = SimpleNamespace(requested="cpu")
     require_contract(facts, contract)
     with pytest.raises(BundleRefused, match=r"backend\.requested is cpu, expected auto"):
         require_contract(facts, contract | {"ROBO_GENESIS_BACKEND": "auto"})

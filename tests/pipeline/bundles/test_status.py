@@ -124,9 +124,7 @@ def test_the_folder_of_another_lesson_and_a_link_are_refused(book, courses_pages
     assert "evidence/l04 is a link" in status.reason
 
 
-def test_a_sound_bundle_that_does_not_show_the_claims_is_inconclusive(
-    book, courses_pages, undecided, experiment
-):
+def test_a_bundle_without_the_claims_is_inconclusive(book, courses_pages, undecided, experiment):
     status = recorded_status(book, "l04", "cpu")
     assert (status.state, status.badge) == ("inconclusive", "cpu-inconclusive")
     assert status.manifest is not None
@@ -155,9 +153,7 @@ IMPORTED = both(log("Approximating tendon.", importer), predicate(warnings=[impo
     ],
 )
 @pytest.mark.parametrize("where", ["recorded", "built"])
-def test_an_accelerator_s_bundle_is_not_a_run_on_the_cpu(
-    folder, tmp_path, courses_pages, spoil, code, said, where
-):
+def test_an_accelerator_s_run_is_its_own(folder, tmp_path, courses_pages, spoil, code, said, where):
     lesson = tmp_path / "book" / "evidence" / "l04"
     here = Path(shutil.copytree(folder, lesson / "cpu"))
     spoil(here)
@@ -172,9 +168,10 @@ def test_an_accelerator_s_bundle_is_not_a_run_on_the_cpu(
     assert len(refused) == (1 if code else 0)
 
 
-@pytest.mark.parametrize(
-    "spoil", [drop_case, both(part("engine", version="1.2.0"), seal), lambda f: shutil.rmtree(f)]
-)
+OTHERS = [drop_case, both(part("engine", version="1.2.0"), seal), lambda f: shutil.rmtree(f)]
+
+
+@pytest.mark.parametrize("spoil", OTHERS)
 def test_a_run_on_the_cpu_that_cannot_be_compared_is_ignored(folder, tmp_path, spoil):
     here = on("amdgpu")(Path(shutil.copytree(folder, tmp_path / "other" / "cpu")))
     assert bundle_status(here, cpu_runs=[folder]).code == "copy"

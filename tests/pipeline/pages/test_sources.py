@@ -239,9 +239,7 @@ CHANGES += [  # a lesson can be removed with the folder of its tests alone
 
 
 @pytest.mark.parametrize(("file", "change", "run_again", "stale"), CHANGES)
-def test_a_change_runs_the_pages_again_that_use_it_and_makes_stale_what_it_measured(
-    copy, file, change, run_again, stale
-):
+def test_a_change_reaches_the_pages_that_use_it_alone(copy, file, change, run_again, stale):
     root, before = copy
     path = root / "robo_genesis" / f"{file}.py"
     text = path.read_text("utf8")

@@ -205,15 +205,12 @@ def test_a_quadruped_drives_its_legs_and_what_needs_a_fixed_base_says_so(robots)
     assert base == pytest.approx(trace.link_pos[-1, page.links.index("base")], abs=1e-6)
     assert np.abs(calf - trace.link_pos[-1, page.links.index("FL_calf")]).max() > 1e-3
     assert (robot.get_links_pos() == before).all()
-    hand = replace(of, hand="base")
+    hand, at = replace(of, hand="base"), (robots.scene, robot, joints, DOG.q_start)
     for refused, message in (
         (lambda: [*laws.driven_run(trace, DOG, page.links)], "a base that moves freely"),
         (lambda: mujoco_kinematics.jacobian(DOG.q_start, hand), "a base that moves freely"),
         (lambda: describe(page, robot, replace(of, free_base=False)), "moves by .*'FREE'"),
-        (
-            lambda: dynamics.gravity_effort(robots.scene, robot, joints, DOG.q_start),
-            "The robot has 18 DOFs, the map 12",
-        ),
+        (lambda: dynamics.gravity_effort(*at), "The robot has 18 DOFs, the map 12"),
     ):
         with pytest.raises(ModelError, match=message):
             refused()

@@ -38,9 +38,8 @@ def theme(request) -> str:
 
 @pytest.fixture(scope="module")
 def page(browser, address, theme) -> Iterator[Page]:
-    page = browser.new_page(
-        viewport={"width": 1280, "height": 900}, color_scheme=theme, reduced_motion="reduce"
-    )
+    window = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
+    page = browser.new_page(**window, color_scheme=theme)
     page.goto(f"{address}/{LECTURE}")
     page.wait_for_function(f"document.documentElement.dataset.theme === {theme!r}")
     yield page

@@ -15,11 +15,7 @@ ELSEWHERE = "https://example.org/pixel.png"
 SMALL = "display: block; height: 8px; width: 8px; padding: 0; overflow: hidden"
 
 SPOILS = [
-    (
-        "axe",
-        "image-alt",
-        f"<details><summary>fold</summary><img id='bare' src='{PIXEL}'></details>",
-    ),
+    ("axe", "image-alt", f"<details><summary>fold</summary><img src='{PIXEL}'></details>"),
     ("axe", "color-contrast", "<p style='color: #aaa; background: #fff'>pale</p>"),
     ("axe", "target-size", f"<a href='#1' style='{SMALL}'>1</a><a href='#2' style='{SMALL}'>2</a>"),
     ("blocking scripts", "plot.js", "<script src='_static/plot.js?early'></script></head>"),

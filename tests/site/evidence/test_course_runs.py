@@ -37,6 +37,5 @@ def test_the_line_names_versions_and_dates_of_the_accepted_runs_of_this_build(ac
     assert measured_line([missing]) == "No run of this build was accepted."
     assert executed_once([one, missing, one]) == "Each page was executed once, on a CPU."
     assert executed_once([elsewhere, missing]) == "No run of this build was accepted."
-    assert measured_line([later, one]) == (
-        "Measured on CPU with Genesis 1.3.3 and 1.4.5 from 2026-11-22 to 2026-11-24."
-    )
+    line = "Measured on CPU with Genesis 1.3.3 and 1.4.5 from 2026-11-22 to 2026-11-24."
+    assert measured_line([later, one]) == line

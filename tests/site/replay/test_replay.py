@@ -198,9 +198,7 @@ def test_reduced_motion_goes_by_steps(block, open_block):
 
 
 @pytest.mark.browser
-def test_without_3d_or_with_a_missing_file_the_plots_play_and_it_is_said(
-    block, open_block, browser_3d, tmp_path
-):
+def test_without_3d_or_file_the_plots_play_and_it_is_said(block, open_block, browser_3d, tmp_path):
     arguments = ["--no-sandbox", "--disable-3d-apis"]
     blind = browser_3d.browser_type.launch(executable_path=chromium(), args=arguments)
     page = open_block(block, blind)
