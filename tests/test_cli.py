@@ -125,13 +125,8 @@ def test_a_port_in_use_is_refused(tmp_path):
     shutil.copytree(ROOT / "robo_genesis", tmp_path / "robo_genesis")
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = str(server.getsockname()[1])
-        done = subprocess.run(
-            [sys.executable, str(ROOT / "build_scripts" / "serve.py")],
-            env=os.environ | {"PYTHONPATH": str(tmp_path), "PORT": port},
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=60,
-        )
+        command = [sys.executable, str(ROOT / "build_scripts" / "serve.py")]
+        given = os.environ | {"PYTHONPATH": str(tmp_path), "PORT": port}
+        done = subprocess.run(command, env=given, capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
     assert done.stderr == f"PORT={port}: Address already in use. Choose a free port.\n"

@@ -73,12 +73,9 @@ def run_plan(folder: Path, python: str) -> tuple[int, dict[str, str]]:
     # A make of this test's own would say where it is; the workflow's is the outermost.
     given = {name: value for name, value in os.environ.items() if name != "MAKELEVEL"}
     script = plan.replace(".venv/bin/python", python)
-    done = subprocess.run(
-        ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script],
-        cwd=ROOT,
-        env=given | {"GITHUB_OUTPUT": str(folder / "output"), "MAKEFLAGS": f"PYTHON={python}"},
-        check=False,
-    )
+    given |= {"GITHUB_OUTPUT": str(folder / "output"), "MAKEFLAGS": f"PYTHON={python}"}
+    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script]
+    done = subprocess.run(command, cwd=ROOT, env=given)
     lines = (folder / "output").read_text().splitlines()
     return done.returncode, dict(line.split("=", 1) for line in lines)
 

@@ -149,14 +149,10 @@ def start(
     """
     arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache"), *more]
     kept = {name: value for name, value in os.environ.items() if name not in SETTINGS}
-    return subprocess.Popen(
-        [sys.executable, str(ROOT / "build_scripts" / script), *arguments],
-        env=kept | {"PYTHONPATH": str(ROOT)} | settings,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        process_group=0 if own_group else None,
-    )
+    command = [sys.executable, str(ROOT / "build_scripts" / script), *arguments]
+    how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    how["env"] = kept | {"PYTHONPATH": str(ROOT)} | settings
+    return subprocess.Popen(command, process_group=0 if own_group else None, **how)
 
 
 def fails(script: str, folder: Path, *more: str, **settings: str) -> str:

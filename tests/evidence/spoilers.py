@@ -85,11 +85,7 @@ def found(name, **values):
 def bytes_of(name, change):
     """Change the bytes of a file."""
 
-    def spoil(folder):
-        path = folder / name
-        path.write_bytes(change(path.read_bytes()))
-
-    return spoil
+    return lambda folder: (folder / name).write_bytes(change((folder / name).read_bytes()))
 
 
 def text(name, old, new):
@@ -222,17 +218,23 @@ def last_bit(array):
 # --- arrays, frames, checks -----------------------------------------------------------------
 
 
-def rewrite(case="G1", **fields):
-    """Write one case's archive anew, some fields changed by their functions."""
+def in_archive(case, change):
+    """Change the arrays of one case in place, by their names."""
 
-    def change(folder):
+    def spoil(folder):
         path = folder / "arrays" / f"{case}.npz"
-        with np.load(path) as archive:
-            kept = {**archive}
-        kept |= {FIELDS[field]: changed(kept[FIELDS[field]]) for field, changed in fields.items()}
-        write_archive(path, kept)
+        with np.load(path) as stored:
+            values = {name: np.array(stored[name]) for name in stored}
+        change(values)
+        write_archive(path, values)
 
-    return change
+    return spoil
+
+
+def rewrite(case="G1", **fields):
+    """Change some fields of one case by their functions."""
+    named = {FIELDS[field]: change for field, change in fields.items()}
+    return in_archive(case, lambda of: of.update({n: new(of[n]) for n, new in named.items()}))
 
 
 def changed_at(index, value):

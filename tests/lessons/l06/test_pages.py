@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import shift, trace
-from lessons.lesson_bundles import accepted_then_refused, in_archive
+from lessons.lesson_bundles import accepted_then_refused
+from spoilers import in_archive
 
 from robo_genesis.core.palette import MARKS
 from robo_genesis.lessons.l06 import explorer, plots, spec, study, target_parts, text

@@ -138,37 +138,25 @@ TWICE = "format: jb-book\nroot: index\nchapters:\n- file: a\n- file: a\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "reason"),
-    [
-        *((text, "_toc.yml:1: it cannot be read") for text in ("format: [", "- a list\n", "")),
-        (LACKING.format("gone"), "_toc.yml:4: there is no "),
-        (LACKING.format("../book/index"), "_toc.yml:4: there is no "),
-        ("root: index\nnoise: 1\n", "_toc.yml:1: it cannot be read"),
-        (TWICE, "_toc.yml:1: it cannot be read"),
-        (GLOBS, "List every page"),
-        ("root: index\n=======\n", "_toc.yml:2: the file has the mark ======="),
-    ],
-)
-def test_a_bad_table_of_contents_is_refused(tmp_path, text, reason):
-    book = make_book(tmp_path)
-    (book / "_toc.yml").write_text(text)
-    with pytest.raises(PageError, match=reason):
-        find_pages(book)
-
-
-@pytest.mark.parametrize(
     ("name", "text", "said"),
     [
+        *(("_toc.yml", text, "1: it cannot be read") for text in ("format: [", "- a list\n", "")),
+        ("_toc.yml", LACKING.format("gone"), "4: there is no "),
+        ("_toc.yml", LACKING.format("../book/index"), "4: there is no "),
+        ("_toc.yml", "root: index\nnoise: 1\n", "1: it cannot be read"),
+        ("_toc.yml", TWICE, "1: it cannot be read"),
+        ("_toc.yml", GLOBS, ".*List every page"),
+        ("_toc.yml", "root: index\n=======\n", "2: the file has the mark ======="),
         ("_config.yml", "title: a\nauthor: b: c\n", "2: it cannot be read: mapping values are not"),
         ("a.svg", "<svg>\n<path></svg>", "2: it cannot be read: mismatched tag"),
         ("b.svg", '<svg fill="none" stroke="#123456"/>', "1: the drawing has #123456"),
         ("c.svg", '<svg fill="red"/>', "1: the drawing has red. A page draws in"),
     ],
 )
-def test_a_file_that_sphinx_reads_later_is_read_at_once(tmp_path, name, text, said):
+def test_a_bad_contents_configuration_or_drawing_is_refused_at_once(tmp_path, name, text, said):
     book = make_book(tmp_path)
     (book / name).write_text(text)
-    with pytest.raises(PageError, match=f"^{book / name}:{said}"):
+    with pytest.raises(PageError, match=f"{book / name}:{said}"):
         find_pages(book)
 
 

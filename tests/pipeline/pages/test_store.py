@@ -8,6 +8,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from nbformat.v4 import new_output
+from small_book import executed
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, accept, cell, contents, make_book, notebook, refuse
 from tiny_book import seal as seal_page
 
@@ -16,7 +17,6 @@ from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.bundles import of_build
 from robo_genesis.pipeline.pages import folder as page_folder
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import PageRefused
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.store import (
@@ -39,9 +39,7 @@ def elsewhere(tmp_path_factory) -> Path:
     root = tmp_path_factory.mktemp("elsewhere")
     lab = notebook(cell(MORE), cell("print('measured')"), front=LAB_FRONT)
     book = make_book(root, text=notebook(cell("print('seen')")), **{LAB: lab})
-    pages = find_pages(book)
-    for result in execute_pages(pages, places(pages, root / "store")):
-        assert result.status == "executed", result.failure
+    for result in executed(find_pages(book), root):
         put(result.folder, exported(result.page, root / "executed"))
     return root
 
