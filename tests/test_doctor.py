@@ -78,9 +78,7 @@ def assert_broken(steps_run, capsys, step, *words):
          ("ROBO_GENESIS_BACKEND='banana' is not valid. Choose one of: auto, cpu.",)),
     ],
 )  # fmt: skip
-def test_a_broken_installation_or_variable_is_found(
-    steps_run, capsys, monkeypatch, step, change, spoiled, words
-):
+def test_a_broken_machine_is_found(steps_run, capsys, monkeypatch, step, change, spoiled, words):
     if step == "model_file":  # comes after the start of the engine
         monkeypatch.setattr(session, "start", lambda contract: ENGINE)
     getattr(monkeypatch, change)(*spoiled)

@@ -204,10 +204,8 @@ def test_a_command_gets_no_variable_that_was_meant_for_the_outer_make(tmp_path, 
 
 
 def test_the_command_refuses_without_a_traceback(tmp_path):
-    said = (
-        f"\nGENESIS={OLD} is the pin already. Give another version.\n\nFAILED: nothing was changed."
-    )
-    assert fails("repin.py", tmp_path, GENESIS=OLD) == f"{said}\n"
+    end = f"GENESIS={OLD} is the pin already. Give another version.\n\nFAILED: nothing was changed."
+    assert fails("repin.py", tmp_path, GENESIS=OLD) == f"\n{end}\n"
 
 
 RUN = """

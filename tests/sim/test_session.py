@@ -14,15 +14,7 @@ import pytest
 from robo_genesis.core import project
 from robo_genesis.sim import session
 from robo_genesis.sim.engine_log import EngineLog
-from robo_genesis.sim.session import (
-    Backend,
-    Contract,
-    ContractError,
-    EngineError,
-    read_contract,
-    require_agreement,
-    start,
-)
+from robo_genesis.sim.session import Backend, Contract, EngineError, read_contract, start
 
 BACKEND, RENDER, OUTPUTS = (f"ROBO_GENESIS_{name}" for name in ("BACKEND", "RENDER", "OUTPUTS_DIR"))
 
@@ -56,7 +48,7 @@ def test_a_value_that_is_not_valid_is_refused(tmp_path, monkeypatch, environ, me
     if environ.get(OUTPUTS) == "full":
         full = Mock(side_effect=OSError(28, "No space left"))
         monkeypatch.setattr(session.tempfile, "TemporaryFile", full)
-    with pytest.raises(ContractError) as caught:
+    with pytest.raises(session.ContractError) as caught:
         read_contract(environ)
     assert message in str(caught.value)
 
@@ -175,9 +167,9 @@ CUDA = Backend("auto", "cuda", "cuda", "cuda", "2.13.0", None, "12.8", "device")
     ],
 )
 def test_a_disagreement_names_the_remedy_or_the_known_backends(change, message):
-    require_agreement(CUDA)
+    session.require_agreement(CUDA)
     with pytest.raises(EngineError, match=message):
-        require_agreement(replace(CUDA, **change))
+        session.require_agreement(replace(CUDA, **change))
 
 
 @pytest.mark.parametrize(("newer", "name"), [(True, "raw"), (False, "dumb")])

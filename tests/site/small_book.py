@@ -99,10 +99,7 @@ def render_small_book(folder: Path) -> Path:
         (folder / "book" / "lessons" / name).mkdir(parents=True)
     (folder / "book" / "lessons" / "l06-six" / "worksheet.md").touch()
     pages = {"page": "Page", "lessons/l02-two/lecture": "Two", "cards": f"Map\n\n{CARDS}"}
-    pages |= {
-        "featured": f"Map\n\n{FEATURED}",
-        "lessons/l06-six/lecture": f"Six\n\n{WORDS}",
-    }
+    pages |= {"featured": f"Map\n\n{FEATURED}", "lessons/l06-six/lecture": f"Six\n\n{WORDS}"}
     pages |= {f"lessons/l06-six/{name}": f"Six\n\n{WORDS}" for name in ("lab", "deeper", "more")}
     pages |= {"times": "Times\n\n```{cell-times}\n```\n"}
     texts = {name: f"# {text}\n\nText.\n" for name, text in pages.items()}

@@ -5,18 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.body_runs import body_at, slide_on_corners
-from lessons.changed_runs import (
-    case,
-    copied,
-    failed,
-    frames,
-    metric,
-    put,
-    reading,
-    shift,
-    trace,
-    with_trace,
-)
+from lessons.changed_runs import case, copied, failed, frames, metric, put, reading, shift, trace
 from lessons.experiments import checks_of, each, run_with
 
 from robo_genesis.lessons.l03 import spec, study, study_spec, text
@@ -36,7 +25,9 @@ def deeper(name):
 
 def on_corners(name, **changes):
     """Return a function that lets a cube slide on four corners, with other settings."""
-    return with_trace(name, lambda run: slide_on_corners(replace(run.cases[name], **changes)))
+    return lambda run: replace(
+        run, traces={**run.traces, name: slide_on_corners(replace(run.cases[name], **changes))}
+    )
 
 
 def equal_tables(run):

@@ -64,11 +64,6 @@ def behind_kept(points, K, transform):
     return (seen / seen[:, 2:] @ K.T)[:, :2]
 
 
-def along_the_ray(depth, K, transform):
-    rays = BACK(np.ones_like(depth), K, np.eye(4))
-    return BACK(depth / np.linalg.norm(rays, axis=-1), K, transform)
-
-
 def fx_alone(K):
     return np.vstack([K[0], [0, K[0, 0], K[1, 2]], K[2]])
 
@@ -110,9 +105,7 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
         "below the tolerances": fed(ACCEPT, lambda *g: (*g[:3], 0.99 * g[3], 0.99 * g[4], g[5])),
         "rotation about z left out": fed(ACCEPT, lambda q, e, *r: (q, e * (1, 1, 1, 1, 1, 0), *r)),
         "ends of q alone": fed(ACCEPT, lambda q, *rest: (q[[0, -1]], *rest)),
-        "a turn that is no number": fed(
-            ACCEPT, lambda q, e, *rest: (q, [*e[:3], *np.nan_to_num(e[3:])], *rest)
-        ),
+        "turn not a number": fed(ACCEPT, lambda q, e, *r: (q, [*e[:3], *np.nan_to_num(e[3:])], *r)),
     },
     "project": {
         "right": PROJECT,
@@ -131,7 +124,6 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
     },
     "back_project": {
         "right": BACK,
-        "depth along the ray": along_the_ray,
         "half a pixel missing": lambda d, k, t: BACK(d, k + np.outer([0.5, 0.5, 0], [0, 0, 1]), t),
         "camera coordinates": lambda d, k, t: BACK(d, k, cameras.FLIP),
         "fx for fy": lambda d, k, t: BACK(d, fx_alone(k), t),

@@ -89,9 +89,7 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     assert "8 of 10 pages failed." in report
     place = report.index("check, code cell 2, line ")
     part = report[place : report.index("\n\n", place)]
-    assert part.startswith(
-        "check, code cell 2, line 19: raise CheckFailed('[factor] kp,\\nkv too')\n"
-    )
+    assert part.startswith("check, code cell 2, line 19: raise CheckFailed('[factor] kp,\\nkv")
     assert "    CheckFailed: [factor] kp,\n    kv too\n" in part
     assert "    | engine line 5\n" in part
     assert part.endswith("    | engine line 19")

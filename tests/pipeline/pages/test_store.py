@@ -16,17 +16,10 @@ from robo_genesis.core.files import put, replaced, settle_below
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.bundles import of_build
 from robo_genesis.pipeline.pages import folder as page_folder
+from robo_genesis.pipeline.pages import store
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.folder import PageRefused
 from robo_genesis.pipeline.pages.results import PageResult
-from robo_genesis.pipeline.pages.store import (
-    exported,
-    folders,
-    forget,
-    handed_over,
-    places,
-    stored_result,
-)
 
 LAB = "lab"
 # Beside its bundle a page may leave files for its own figures.
@@ -40,7 +33,7 @@ def elsewhere(tmp_path_factory) -> Path:
     lab = notebook(cell(MORE), cell("print('measured')"), front=LAB_FRONT)
     book = make_book(root, text=notebook(cell("print('seen')")), **{LAB: lab})
     for result in executed(find_pages(book), root):
-        put(result.folder, exported(result.page, root / "executed"))
+        put(result.folder, store.exported(result.page, root / "executed"))
     return root
 
 
@@ -54,7 +47,7 @@ def here(elsewhere, tmp_path) -> Path:
 
 def take(here: Path) -> list[PageResult]:
     pages = find_pages(here / "book")
-    return handed_over(here / "executed", pages, places(pages, here / "store"))
+    return store.handed_over(here / "executed", pages, store.places(pages, here / "store"))
 
 
 def lab(here: Path, name: str) -> Path:
@@ -223,13 +216,13 @@ def test_a_stored_page_that_fails_is_run_again_by_this_build_or_the_next(here, m
     monkeypatch.setattr(of_build, "require_contract", lambda *given: None)
     spoil(here)
     _, page = find_pages(here / "book")
-    place = places([page], here / "store")[LAB]
+    place = store.places([page], here / "store")[LAB]
     place.parent.mkdir(parents=True)
     (here / "executed" / LAB).rename(place)
 
     def build() -> str:
         try:
-            result = stored_result(page, place)
+            result = store.stored_result(page, place)
         except PageRefused:
             result = None
         if result is None:
@@ -249,16 +242,16 @@ def test_a_stored_page_that_fails_is_run_again_by_this_build_or_the_next(here, m
 @pytest.mark.parametrize("newest", [1000, 10**10], ids=["past", "future"])
 def test_the_used_and_the_newest_folders_of_a_page_are_kept_and_other_pages_go(tmp_path, newest):
     (page,) = find_pages(make_book(tmp_path, text=notebook(cell("1"))))
-    store = tmp_path / "store"
+    kept = tmp_path / "store"
     for age, name in enumerate("abcde"):
-        (store / "text" / name).mkdir(parents=True)
-        os.utime(store / "text" / name, (newest - age, newest - age))
+        (kept / "text" / name).mkdir(parents=True)
+        os.utime(kept / "text" / name, (newest - age, newest - age))
     for left in ("gone/fingerprint", "text/.a.next", "a" * 20 + "/notebooks"):
-        (store / left).mkdir(parents=True)
-    forget(store, [page], {"text": store / "text" / "e"})
-    assert [path.name for path in store.iterdir()] == ["text"]
-    assert {path.name for path in folders(store, page)} == {"e", "a", "b"}
-    assert sorted(path.name for path in (store / "text").iterdir()) == ["a", "b", "e"]
+        (kept / left).mkdir(parents=True)
+    store.forget(kept, [page], {"text": kept / "text" / "e"})
+    assert [path.name for path in kept.iterdir()] == ["text"]
+    assert {path.name for path in store.folders(kept, page)} == {"e", "a", "b"}
+    assert sorted(path.name for path in (kept / "text").iterdir()) == ["a", "b", "e"]
 
 
 def test_a_folder_that_is_missing_is_named(here):
