@@ -199,13 +199,9 @@ def lab(real_engine: SimpleNamespace) -> SimpleNamespace:
     franka = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
     camera = scene.add_camera(**CAMERA)
     scene.build()
-    return SimpleNamespace(
-        **vars(real_engine),
-        scene=scene,
-        franka=franka,
-        camera=camera,
-        joints=robot_model.resolve_joints(franka, JOINT_NAMES),
-    )
+    joints = robot_model.resolve_joints(franka, JOINT_NAMES)
+    made = {"scene": scene, "franka": franka, "camera": camera, "joints": joints}
+    return SimpleNamespace(**vars(real_engine), **made)
 
 
 @pytest.fixture

@@ -95,9 +95,8 @@ def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
         if edit is edit_contents:
             built = ran(tmp_path, "eight")
         found = publish(tmp_path, built)
-        said.append(
-            re.search(r"(\d+) added, (\d+) changed", (tmp_path / "log").read_text()).groups()
-        )
+        log = (tmp_path / "log").read_text()
+        said.append(re.search(r"(\d+) added, (\d+) changed", log).groups())
         expected = publish(tmp_path, built, keep=False)
         assert found.keys() == expected.keys()
         assert [name for name in found if found[name] != expected[name]] == []
