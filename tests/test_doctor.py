@@ -245,7 +245,6 @@ DIES = "import os, signal\nos.kill(os.getpid(), signal.{})".format
          {"q/quadrants-0.9.dist-info/METADATA": "Name: quadrants\nVersion: 0.9"},
          "version", "quadrants== installed is 0.9"),
         ({}, {GENESIS: "import genesis\ngenesis.cpu"}, "backend", "genesis.py rename"),
-        ({}, {"numpy.py": ""}, "version", "numpy.py rename"),
         ({}, {"random.py": "raise SystemExit"}, "version", "random.py rename"),
         ({}, {GENESIS: DIES("SIGKILL")}, "backend", "SIGKILL memory"),
         ({}, {GENESIS: DIES("SIGBUS")}, "backend", "SIGBUS disk kernels"),

@@ -57,6 +57,7 @@ REFUSED = "Retrying (Retry(total={}, connect=None)) after connection broken by '
 NEW = "NewConnectionError(<pip.HTTPSConnection at 0x7>: {})"
 DNS, PROXY = NEW.format("[Errno -2] Name unknown"), f"ProxyError({NEW.format('[Errno 111] No')})"
 LOOKING = f"Looking in indexes: https://mirror.org/simple, {CPU}"
+KILLED = "import os; os.kill(os.getpid(), 9)"
 FULL = "ERROR: Could not install: [Errno 28] No space left on device"
 
 
@@ -115,11 +116,7 @@ def test_an_index_that_refuses_ends_pip_after_its_attempts(here, monkeypatch):
 
 @pytest.mark.parametrize(
     ("code", "status", "said"),
-    [
-        (f"raise SystemExit({FULL!r})", 1, "Step"),
-        ("import os; os.kill(os.getpid(), 9)", 1, "memory"),
-        ("pass", 0, ""),
-    ],
+    [(f"raise SystemExit({FULL!r})", 1, "Step"), (KILLED, 1, "memory"), ("pass", 0, "")],
 )
 def test_a_failed_step_has_its_number_and_the_advice(here, monkeypatch, capsys, code, status, said):
     for name in ("environment", "torch", "pip"):

@@ -28,6 +28,7 @@ MANIFEST, ARRAYS, METRICS = "manifest.json", "arrays.json", "metrics.json"
 G1, LOG, INITIAL = "arrays/G1.npz", "log.txt", "frames/initial.png"
 FIELDS = {field: name for field, (name, *_) in Trace.arrays().items()}
 CHECKS = [check.__name__ for check in LAB.checks]
+MAPPING = ("predicate", "checks", CHECKS.index("mapping"))
 
 
 # --- JSON -----------------------------------------------------------------------------------
@@ -519,8 +520,7 @@ GROUPS = {
             "saturation", **{"G2.saturation_duration_s": lambda value: value * (1 + 1e-6)}),
         "a found value of another type": found("mapping", links=11.0),
         "a found value too many": found("mapping", luck=1),
-        "a found value that is missing": pop(
-            MANIFEST, "predicate", "checks", CHECKS.index("mapping"), "found", "links"),
+        "a found value that is missing": pop(MANIFEST, *MAPPING, "found", "links"),
         "a check left out": pop(MANIFEST, "predicate", "checks", -1),
     },
     ("digest", "failed"): {

@@ -95,9 +95,8 @@ CASES = {  # of each exercise the right solution, then wrong ones
 @pytest.mark.parametrize(("name", "k"), [(n, k) for n, of in CASES.items() for k in range(len(of))])
 def test_only_the_right_solution_passes(experiment, name, k):
     joints, traces = experiment.joints, experiment.traces
-    robot = SimpleNamespace(
-        get_joint=lambda name: exercises._joint(int(joints.dofs_idx_local[joints.entry(name)]))
-    )
+    dofs = dict(zip(joints.names, joints.dofs_idx_local.tolist(), strict=True))
+    robot = SimpleNamespace(get_joint=lambda name: exercises._joint(dofs[name]))
     playback = Playback(traces["baseline"])
     more = {
         "resolver": (robot, joints),

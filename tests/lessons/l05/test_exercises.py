@@ -84,7 +84,6 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
     "step": {
         "right": STEP,
         "right, JᵀJ": lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(len(J.T)), J.T @ e),
-        "damping not squared": lambda J, e, d: STEP(J, e, np.sqrt(d)),
         "typed damping": lambda J, e, d: STEP(J, e, 0.01),
         "bounded": lambda J, e, d: np.clip(STEP(J, e, d), -0.05, 0.05),
         "as a column": lambda J, e, d: STEP(J, e, d)[:, None],
@@ -109,9 +108,7 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
     },
     "project": {
         "right": PROJECT,
-        "u and v swapped": lambda *given: PROJECT(*given)[:, ::-1],
         "centre of pixels at whole numbers": lambda *given: PROJECT(*given) - 0.5,
-        "not divided by the depth": lambda p, k, t: (cameras.in_camera(p, t) @ k.T)[:, :2],
         "pose transposed": lambda p, k, t: PROJECT(p, k, t.T),
         "fx for fy": lambda p, k, t: PROJECT(p, fx_alone(k), t),
         "middle typed": lambda p, k, t: PROJECT(p, np.c_[k[:, :2], (16, 10, 1)], t),

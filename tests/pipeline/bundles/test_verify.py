@@ -148,8 +148,7 @@ def edit(checkout, name, old, new):
         ([("requirements.lock", "\nquadrants==", "\nquadrants==9.")],
          ["engine.quadrants_version"]),
         ([(LAB, "page.facts()", "pass")], ["source.page"]),
-        ([MEASURED],
-         ["source.modules.lessons.l04.metrics"]),
+        ([MEASURED], ["source.modules.lessons.l04.metrics"]),
     ],
 )  # fmt: skip
 def test_an_edit_makes_stale_what_it_decides_and_nothing_else(folder, checkout, edits, stale):

@@ -22,10 +22,10 @@ def page(tmp_path, body: str, head: str = "") -> BeautifulSoup:
     return BeautifulSoup(finish_page(html, tmp_path), "html.parser")
 
 
-@pytest.mark.parametrize(
-    ("body", "explorer"),
-    [("<p>Text</p>", []), ('<div class="explorer"></div>', [("explorer.js", True, None)])],
-)
+EXPLORERS = [("<p>Text</p>", []), ('<div class="explorer"></div>', [("explorer.js", True, None)])]
+
+
+@pytest.mark.parametrize(("body", "explorer"), EXPLORERS)
 def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path, body, explorer):
     scripts = page(tmp_path, body, HEAD).select("script")
     how = [(s.get("src"), s.has_attr("defer"), s.get("type")) for s in scripts]

@@ -74,10 +74,10 @@ def test_a_kept_table_is_of_one_state_of_all_its_code(tmp_path, monkeypatch, tra
         assert Path(module.__file__).read_bytes() in keys[0], module.__name__
 
 
-@pytest.mark.parametrize(
-    ("repository", "urls"),
-    [("", None), ("https://github.com/a/b", ["Repository, https://github.com/a/b"])],
-)
+REPOSITORIES = [("", None), ("https://github.com/a/b", ["Repository, https://github.com/a/b"])]
+
+
+@pytest.mark.parametrize(("repository", "urls"), REPOSITORIES)
 def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repository, urls):
     root, lesson = tmp_path / "checkout", "robo_genesis/lessons/l01/"
     shutil.copytree(project.ROOT / files.PACKAGE, root / files.PACKAGE)
