@@ -10,6 +10,7 @@ from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import CaseError, differences, reset, run_case, validate
 from robo_genesis.sim.arm.model import RobotModel
 
+NOT_POSITIVE = ({"steps": 0}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
 ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")
 N = len(JOINT_NAMES)
 
@@ -86,7 +87,7 @@ def test_a_limit_of_float32_and_gains_of_zero_are_valid(joints):
         (value("q_start", 3, -3.1), "joint4] is -3.1 rad, outside its range [-3.0718, -0.0698]"),
         (value("q_target", 8, 0.05), "finger_joint2] is 0.05 m, outside its range [0, 0.04]"),
         (value("q_target", 0, 2.8973 + 5e-6), "none is clipped"),
-        *((change, "be positive") for change in ({"steps": 0}, {"dt": 0.0}, {"substeps": 0})),
+        *((change, "must be positive") for change in NOT_POSITIVE),
     ],
 )
 def test_an_invalid_case_is_refused_with_entry_and_range(joints, change, message):
