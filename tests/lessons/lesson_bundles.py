@@ -55,10 +55,8 @@ def judged_again(folder, monkeypatch, judgements):
         for module, name, value, _ in judgements:
             context.setattr(module, name, value)
         found = manifest.predicate.model_dump()
-        key = bundle.evidence_key(
-            found
-            | evidence_key.question(found["lesson"], found["page"], project.ROOT, project.BOOK)
-        )
+        of_page = (found["lesson"], found["page"], project.ROOT, project.BOOK)
+        key = bundle.evidence_key(found | evidence_key.question(*of_page))
         status = bundle_status(folder)
     assert key == manifest.predicate.evidence_key
     assert (status.state, status.code) == ("failed", "failed")

@@ -140,23 +140,27 @@ TWICE = "format: jb-book\nroot: index\nchapters:\n- file: a\n- file: a\n"
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
-        *(("_toc.yml", text, "1: it cannot be read") for text in ("format: [", "- a list\n", "")),
-        ("_toc.yml", LACKING.format("gone"), "4: there is no "),
-        ("_toc.yml", LACKING.format("../book/index"), "4: there is no "),
-        ("_toc.yml", "root: index\nnoise: 1\n", "1: it cannot be read"),
-        ("_toc.yml", TWICE, "1: it cannot be read"),
-        ("_toc.yml", GLOBS, ".*List every page"),
-        ("_toc.yml", "root: index\n=======\n", "2: the file has the mark ======="),
-        ("_config.yml", "title: a\nauthor: b: c\n", "2: it cannot be read: mapping values are not"),
-        ("a.svg", "<svg>\n<path></svg>", "2: it cannot be read: mismatched tag"),
-        ("b.svg", '<svg fill="none" stroke="#123456"/>', "1: the drawing has #123456"),
-        ("c.svg", '<svg fill="red"/>', "1: the drawing has red. A page draws in"),
+        *(("_toc.yml", text, ":1: it cannot be read") for text in ("format: [", "- a list\n", "")),
+        ("_toc.yml", LACKING.format("gone"), ":4: there is no "),
+        ("_toc.yml", LACKING.format("../book/index"), ":4: there is no "),
+        ("_toc.yml", "root: index\nnoise: 1\n", ":1: it cannot be read"),
+        ("_toc.yml", TWICE, ":1: it cannot be read"),
+        ("_toc.yml", GLOBS, "List every page"),
+        ("_toc.yml", "root: index\n=======\n", ":2: the file has the mark ======="),
+        (
+            "_config.yml",
+            "title: a\nauthor: b: c\n",
+            ":2: it cannot be read: mapping values are not",
+        ),
+        ("a.svg", "<svg>\n<path></svg>", ":2: it cannot be read: mismatched tag"),
+        ("b.svg", '<svg fill="none" stroke="#123456"/>', ":1: the drawing has #123456"),
+        ("c.svg", '<svg fill="red"/>', ":1: the drawing has red. A page draws in"),
     ],
 )
 def test_a_bad_contents_configuration_or_drawing_is_refused_at_once(tmp_path, name, text, said):
     book = make_book(tmp_path)
     (book / name).write_text(text)
-    with pytest.raises(PageError, match=f"{book / name}:{said}"):
+    with pytest.raises(PageError, match=f"{name}.*{said}"):
         find_pages(book)
 
 
