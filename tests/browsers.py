@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from threading import Event, Timer
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import psutil
 
@@ -39,9 +39,7 @@ def launch(kind: "BrowserType", *arguments: str) -> "Browser":
     return kind.launch(executable_path=chromium(), args=["--no-sandbox", *arguments])
 
 
-def answered(
-    browser: "Browser", ask: Callable[["Browser"], Any], patience: float = PATIENCE
-) -> tuple["Browser", Any]:
+def answered(browser: "Browser", ask: Callable, patience: float = PATIENCE) -> tuple:
     """Return a browser and what it answers: the given one, or a new one if that hangs.
 
     Rarely a page of Chromium waits for itself, and Playwright then waits for ever: its `evaluate`

@@ -96,9 +96,8 @@ def recorder_of(patch, engine, outputs: Path, lesson: str, page: str) -> Recorde
     patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
     name_code(patch, lesson, page)
     rendered = find_page(lesson, page).camera
-    return Recorder(
-        lesson, page, session.Contract("cpu", rendered, outputs), engine, running_modules(lesson)
-    )
+    contract = session.Contract("cpu", rendered, outputs)
+    return Recorder(lesson, page, contract, engine, running_modules(lesson))
 
 
 def name_code(patch, lesson: str, page: str) -> None:
@@ -130,9 +129,7 @@ def folder(pristine, tmp_path) -> Path:
 @pytest.fixture
 def courses_pages(monkeypatch):
     """Verify bundles of a synthetic book against the pages of the course."""
-    monkeypatch.setattr(
-        evidence_key, "page_code", lambda le, p, book: page_code(le, p, project.BOOK)
-    )
+    monkeypatch.setattr(evidence_key, "page_code", lambda *of: page_code(*of[:2], project.BOOK))
 
 
 @pytest.fixture

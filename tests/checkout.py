@@ -24,14 +24,9 @@ def copy_checkout(work: Path) -> Path:
 
 def run_in(work: Path, *command: str, fails: bool = False) -> str:
     """Run a command in a copy, with no setting of an outer make; `python` is this interpreter."""
-    done = subprocess.run(
-        [sys.executable if word == "python" else word for word in command],
-        cwd=work,
-        env=environment(work, *SETTINGS) | {"PYTHONDONTWRITEBYTECODE": "1"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    words = [sys.executable if word == "python" else word for word in command]
+    given = environment(work, *SETTINGS) | {"PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(words, cwd=work, env=given, capture_output=True, text=True)
     said = done.stdout + done.stderr
     assert (done.returncode != 0) == fails, said
     return said

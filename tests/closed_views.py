@@ -45,6 +45,4 @@ def closed_view(marker: Marker = MARKER, fov=FOV, size=SIZE, transform=TRANSFORM
     numbers = np.where(hit, marker.number, np.where(depth < FAR, PLANE, 0))
     grey = np.repeat(numbers[..., None], 3, axis=2).astype(np.uint8)
     limits = (0.1, FAR)
-    return View(
-        matrix, transform, size, limits, grey, depth.astype(np.float32), numbers.astype(np.int32)
-    )
+    return View(matrix, transform, size, limits, grey, np.float32(depth), np.int32(numbers))

@@ -114,9 +114,7 @@ LINKS = ("link0", "link4", "hand")
 def make_trace() -> Callable[..., Trace]:
     """Build a run of one joint from its positions; arrays that are not given are zero."""
 
-    def build(
-        q: Any, target: Any, *, dt: float = DT, effort_limit: float = 87.0, **given: Any
-    ) -> Trace:
+    def build(q, target, *, dt=DT, effort_limit=87.0, **given) -> Trace:
         n = len(q) - 1
         steps = {"qd": 0.0, "control_force": 0.0, "internal_force": 0.0} | given
         return Trace(
@@ -173,9 +171,7 @@ STARTED = pytest.StashKey[ExitStack]()
 
 
 @pytest.fixture(scope="session")
-def real_engine(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[SimpleNamespace]:
+def real_engine(request, tmp_path_factory) -> Iterator[SimpleNamespace]:
     """Real engine, started once in this process; `pytest_runtest_teardown` ends it.
 
     It holds the lock of builds, because a build would remove the lock files of the engine as stale.
@@ -203,13 +199,9 @@ def lab(real_engine: SimpleNamespace) -> SimpleNamespace:
     franka = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
     camera = scene.add_camera(**CAMERA)
     scene.build()
-    return SimpleNamespace(
-        **vars(real_engine),
-        scene=scene,
-        franka=franka,
-        camera=camera,
-        joints=robot_model.resolve_joints(franka, JOINT_NAMES),
-    )
+    joints = robot_model.resolve_joints(franka, JOINT_NAMES)
+    made = {"scene": scene, "franka": franka, "camera": camera, "joints": joints}
+    return SimpleNamespace(**vars(real_engine), **made)
 
 
 @pytest.fixture

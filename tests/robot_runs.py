@@ -66,9 +66,7 @@ def assembled(case: ControlCase, links: Sequence[str], at, efforts, targets) -> 
     return assemble(case, kept, targets, np.float32(case.effort_limit))
 
 
-def assigned(
-    case: ControlCase, links: Sequence[str], before: Trace, postures: np.ndarray | None = None
-) -> Trace:
+def assigned(case: ControlCase, links: Sequence[str], before: Trace, postures=None) -> Trace:
     """Return the states of a straight line, as `assign_path` does, or those of postures (n, d).
 
     `before` is the run whose last internal force remains.

@@ -37,15 +37,11 @@ def python(folder: Path, *options: str) -> Path:
 def make(folder: Path, *words: str, **set_: str) -> subprocess.CompletedProcess[str]:
     command = ["make", "-C", str(folder), f"BASE_PYTHON={sys.executable}", *words]
     given = {"PATH": os.environ["PATH"]} | set_  # no variable of a make around these tests
-    return subprocess.run(
-        command, env=given, capture_output=True, text=True, check=False, timeout=60
-    )
+    return subprocess.run(command, env=given, capture_output=True, text=True, timeout=60)
 
 
 @pytest.mark.parametrize("target", ["serve", "evidence-rocm"])
-def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_needs_no_venv(
-    checkout, target
-):
+def test_paths_and_settings_may_contain_spaces_and_a_container_needs_no_venv(checkout, target):
     words = [] if target == "evidence-rocm" else [f"PYTHON={python(checkout)}"]
     done = make(checkout, target, *words, TO="a folder", ROWS="prose live=fast", PAGE="")
     assert done.returncode == 0, done.stderr
@@ -63,16 +59,8 @@ def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_ne
         ("serve", ["PYTHON=nowhere/python"], "PYTHON=nowhere/python is not a Python command"),
         ("serve", ["PYTHON=/tmp"], "PYTHON=/tmp is not a Python command"),
         ("serve", ["PYTHON=ls"], "PYTHON=ls is not a Python command"),
-        (
-            "evidence-rocm",
-            ["BASE_PYTHON=nopy"],
-            "BASE_PYTHON=nopy is not a command of Python 3.11, 3",
-        ),
-        (
-            ".venv/.installed",
-            ["BASE_PYTHON=ls"],
-            "BASE_PYTHON=ls is not a command of Python 3.11, 3",
-        ),
+        ("evidence-rocm", ["BASE_PYTHON=nopy"], "BASE_PYTHON=nopy is not a command of Python 3"),
+        (".venv/.installed", ["BASE_PYTHON=ls"], "BASE_PYTHON=ls is not a command of Python 3"),
         ("serve", ["jobs=2"], "make serve does not read jobs. It reads BASE_PYTHON PORT PYTHON "),
         ("serve", ["site_url=https://example.org/a=b"], "make serve does not read site_url."),
         ("book", ["LESSON=l77"], "make book does not read LESSON. It reads BASE_PYTHON EXECUTED"),
@@ -137,13 +125,8 @@ def test_a_port_in_use_is_refused(tmp_path):
     shutil.copytree(ROOT / "robo_genesis", tmp_path / "robo_genesis")
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = str(server.getsockname()[1])
-        done = subprocess.run(
-            [sys.executable, str(ROOT / "build_scripts" / "serve.py")],
-            env=os.environ | {"PYTHONPATH": str(tmp_path), "PORT": port},
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=60,
-        )
+        command = [sys.executable, str(ROOT / "build_scripts" / "serve.py")]
+        given = os.environ | {"PYTHONPATH": str(tmp_path), "PORT": port}
+        done = subprocess.run(command, env=given, capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
     assert done.stderr == f"PORT={port}: Address already in use. Choose a free port.\n"

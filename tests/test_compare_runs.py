@@ -78,9 +78,8 @@ def test_a_file_that_is_no_bundle_is_refused_with_what_is_valid(mine, tmp_path, 
 
 def test_the_commands_for_teachers_grade_each_student_and_leave_the_bundles(mine, folder, tmp_path):
     """The block of ADOPTING.md, run twice: its output must not become a part of a bundle."""
-    [block] = re.findall(
-        r"(?m)^    mkdir -p compared\n(?:    .*\n)+", (ROOT / "ADOPTING.md").read_text()
-    )
+    text = (ROOT / "ADOPTING.md").read_text()
+    [block] = re.findall(r"(?m)^    mkdir -p compared\n(?:    .*\n)+", text)
     work = tmp_path / "course"
     bundles = {"submitted/ada": mine, "book/_build/evidence/l04/cpu": folder}
     for place, bundle in bundles.items():

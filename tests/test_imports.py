@@ -25,11 +25,6 @@ def test_every_module_imports_without_the_engine():
         ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
         for path in sorted((ROOT / "robo_genesis").rglob("*.py"))
     ]
-    done = subprocess.run(
-        [sys.executable, "-c", BLOCKED, json.dumps(names)],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=ROOT,
-    )
+    command = [sys.executable, "-c", BLOCKED, json.dumps(names)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
     assert json.loads(done.stdout.splitlines()[-1]) == {}

@@ -57,6 +57,7 @@ REFUSED = "Retrying (Retry(total={}, connect=None)) after connection broken by '
 NEW = "NewConnectionError(<pip.HTTPSConnection at 0x7>: {})"
 DNS, PROXY = NEW.format("[Errno -2] Name unknown"), f"ProxyError({NEW.format('[Errno 111] No')})"
 LOOKING = f"Looking in indexes: https://mirror.org/simple, {CPU}"
+KILLED = "import os; os.kill(os.getpid(), 9)"
 FULL = "ERROR: Could not install: [Errno 28] No space left on device"
 
 
@@ -74,10 +75,8 @@ FULL = "ERROR: Could not install: [Errno 28] No space left on device"
 )  # fmt: skip
 def test_what_failed_is_one_line(here, monkeypatch, printed, said):
     for name in ("PIP_TARGET", "PIP_DRY_RUN", "PYTHONPATH"):  # they would install elsewhere
-        monkeypatch.setenv(name, "elsewhere")
-    code = (
-        "import os; e = os.environ; assert 'elsewhere' not in e.values() and e['PIP_USER'] == '0'"
-    )
+        monkeypatch.setenv(name, "other")
+    code = "import os; e = os.environ; assert 'other' not in e.values() and e['PIP_USER'] == '0'"
     code += f"; print({chr(10).join(printed)!r}); raise SystemExit(1)"
     with pytest.raises(InstallError) as caught:
         here.call("-c", code)
@@ -117,11 +116,7 @@ def test_an_index_that_refuses_ends_pip_after_its_attempts(here, monkeypatch):
 
 @pytest.mark.parametrize(
     ("code", "status", "said"),
-    [
-        (f"raise SystemExit({FULL!r})", 1, "Step"),
-        ("import os; os.kill(os.getpid(), 9)", 1, "memory"),
-        ("pass", 0, ""),
-    ],
+    [(f"raise SystemExit({FULL!r})", 1, "Step"), (KILLED, 1, "memory"), ("pass", 0, "")],
 )
 def test_a_failed_step_has_its_number_and_the_advice(here, monkeypatch, capsys, code, status, said):
     for name in ("environment", "torch", "pip"):

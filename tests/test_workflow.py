@@ -73,12 +73,9 @@ def run_plan(folder: Path, python: str) -> tuple[int, dict[str, str]]:
     # A make of this test's own would say where it is; the workflow's is the outermost.
     given = {name: value for name, value in os.environ.items() if name != "MAKELEVEL"}
     script = plan.replace(".venv/bin/python", python)
-    done = subprocess.run(
-        ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script],
-        cwd=ROOT,
-        env=given | {"GITHUB_OUTPUT": str(folder / "output"), "MAKEFLAGS": f"PYTHON={python}"},
-        check=False,
-    )
+    given |= {"GITHUB_OUTPUT": str(folder / "output"), "MAKEFLAGS": f"PYTHON={python}"}
+    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script]
+    done = subprocess.run(command, cwd=ROOT, env=given)
     lines = (folder / "output").read_text().splitlines()
     return done.returncode, dict(line.split("=", 1) for line in lines)
 
@@ -90,10 +87,9 @@ def test_the_matrix_is_the_pages_of_the_book_and_a_plan_that_fails_stops_the_wor
     assert json.loads(output["pages"]) == [page.docname for page in find_pages(BOOK)]
     assert output["kernels"] == engine_cache_folder().name
     assert JOBS["lint"]["outputs"] == {n: f"${{{{ steps.plan.outputs.{n} }}}}" for n in output}
-    assert JOBS["execute"]["strategy"]["matrix"] == {
-        "page": "${{ fromJSON(needs.lint.outputs.pages) }}",
-        "machine": ["first", "second"],
-    }
+    matrix = JOBS["execute"]["strategy"]["matrix"]
+    assert matrix["page"] == "${{ fromJSON(needs.lint.outputs.pages) }}"
+    assert (matrix["machine"], len(matrix)) == (["first", "second"], 2)
     assert JOBS["execute"]["strategy"]["fail-fast"] == "false"
 
 
@@ -110,9 +106,7 @@ def test_the_book_is_built_from_pages_that_two_machines_executed():
 
 
 def test_what_is_deployed_has_passed_the_gate_of_releases():
-    builds = [
-        one for job in JOBS.values() for one in job["steps"] if "make book" in one.get("run", "")
-    ]
+    builds = [one for job in JOBS.values() for one in job["steps"] if "make book" in str(one)]
     assert builds == [book := making(JOBS["book"], "book")]
     assert "if" not in JOBS["book"]
     assert book["env"]["RELEASE"] == "1"
@@ -239,9 +233,8 @@ def test_jobs_run_in_the_container_of_the_labs():
 
 
 def test_the_dev_container_sets_up_the_course_and_runs_a_lab():
-    command = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text())[
-        "postCreateCommand"
-    ]
+    settings = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text())
+    command = settings["postCreateCommand"]
     assert MAKE.findall(command) == [".venv/.installed", "execute"]
     (lab,) = re.findall(r"PAGE=(\S+)", command)
     assert lab in {f"{page.lesson}/{page.page}" for page in find_pages(BOOK)}

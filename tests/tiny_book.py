@@ -15,9 +15,7 @@ from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.refusals import BundleRefused
 
-FRONT = (
-    "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nA page.\n"
-)
+FRONT = "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nPage.\n"
 CELL = "\n```{{code-cell}}\n{options}{code}\n```\n"
 
 # A lab's cell that leaves the least that counts as a bundle of this run.
@@ -60,6 +58,11 @@ SETTINGS = (
 def cell(code: str, options: str = "") -> str:
     """Return one code cell; options are lines like ':tags: [a]'."""
     return CELL.format(code=code, options=options)
+
+
+def paragraphs(*texts: str) -> str:
+    """Return paragraphs and blocks of a page with an empty line between them."""
+    return "\n\n".join(texts) + "\n"
 
 
 def raising(code: str, expects: str | None) -> str:
@@ -119,7 +122,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def published_marker(book: Path) -> Path:
+def old_site(book: Path) -> Path:
     """Publish an old site and return a file of it that a failed build must leave alone."""
     marker = book / "_build" / "html" / "index.html"
     marker.parent.mkdir(parents=True)
@@ -146,14 +149,10 @@ def start(
     """
     arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache"), *more]
     kept = {name: value for name, value in os.environ.items() if name not in SETTINGS}
-    return subprocess.Popen(
-        [sys.executable, str(ROOT / "build_scripts" / script), *arguments],
-        env=kept | {"PYTHONPATH": str(ROOT)} | settings,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        process_group=0 if own_group else None,
-    )
+    command = [sys.executable, str(ROOT / "build_scripts" / script), *arguments]
+    how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    how["env"] = kept | {"PYTHONPATH": str(ROOT)} | settings
+    return subprocess.Popen(command, process_group=0 if own_group else None, **how)
 
 
 def fails(script: str, folder: Path, *more: str, **settings: str) -> str:
@@ -165,7 +164,7 @@ def fails(script: str, folder: Path, *more: str, **settings: str) -> str:
     return report
 
 
-def wait_for(process: subprocess.Popen[str], *files: Path) -> None:
+def wait(process: subprocess.Popen[str], *files: Path) -> None:
     """Wait until a process, or what it started, has written to each of these files."""
     end = time.monotonic() + 60
     while not all(path.exists() and path.read_text() for path in files):

@@ -86,9 +86,8 @@ def test_a_check_that_breaks_off_fails_and_keeps_what_it_found():
 
 
 def test_a_check_that_finds_nothing_fails():
-    assert checks.conclude("empty", "Something is there.", []) == checks.Check(
-        "empty", False, "nothing was found"
-    )
+    nothing = checks.Check("empty", False, "nothing was found")
+    assert checks.conclude("empty", "Something is there.", []) == nothing
 
 
 def test_two_findings_need_two_labels():

@@ -36,10 +36,7 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
             "returned [nan, nan, nan]\n  twice[0], the first that differs, is nan, expected 0 ±",
         ),
         (lambda values: "no numbers", "([0, 1, 2]) returned no numbers: ValueError: could not"),
-        (
-            raises,
-            "raises([0, 1, 2]): IndexError: list index out of range\n  line 10 of its cell: r",
-        ),
+        (raises, "raises([0, 1, 2]): IndexError: list index out of range\n  line 10 of its cell"),
     ],
 )
 def test_a_wrong_one_fails_and_its_check_says_what_was_found(function, says):

@@ -21,7 +21,5 @@ def test_only_a_repository_that_cannot_be_read_is_refused(tmp_path):
         lambda: export_one("l04/lab", None, Build(**settings)),
         lambda: record(Recording(to=tmp_path, **settings)),
     ):
-        with pytest.raises(
-            ProjectError, match=r"rev-parse failed[\s\S]*build a copy without \.git"
-        ):
+        with pytest.raises(ProjectError, match=r"rev-parse failed[\s\S]*a copy without \.git"):
             command()

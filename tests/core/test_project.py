@@ -60,13 +60,6 @@ def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path):
     assert [name for _, name, _ in project.installed([str(tmp_path)])] == ["numpy-2.0.dist-info"]
 
 
-def test_another_installed_engine_is_refused_with_both_versions(tmp_path):
-    root = checkout(tmp_path, "genesis-world==0.0.1")
-    installed = project.installed_version("genesis-world")
-    with pytest.raises(project.ProjectError, match=rf"{installed}.* 0\.0\.1"):
-        project.require_pinned_engine(root)
-
-
 def test_a_missing_lock_is_refused_with_the_command_that_writes_it(tmp_path):
     with pytest.raises(project.ProjectError, match="make lock"):
         project.lock_digest(tmp_path)

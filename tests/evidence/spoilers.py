@@ -28,6 +28,7 @@ MANIFEST, ARRAYS, METRICS = "manifest.json", "arrays.json", "metrics.json"
 G1, LOG, INITIAL = "arrays/G1.npz", "log.txt", "frames/initial.png"
 FIELDS = {field: name for field, (name, *_) in Trace.arrays().items()}
 CHECKS = [check.__name__ for check in LAB.checks]
+MAPPING = ("predicate", "checks", CHECKS.index("mapping"))
 
 
 # --- JSON -----------------------------------------------------------------------------------
@@ -85,11 +86,7 @@ def found(name, **values):
 def bytes_of(name, change):
     """Change the bytes of a file."""
 
-    def spoil(folder):
-        path = folder / name
-        path.write_bytes(change(path.read_bytes()))
-
-    return spoil
+    return lambda folder: (folder / name).write_bytes(change((folder / name).read_bytes()))
 
 
 def text(name, old, new):
@@ -222,17 +219,23 @@ def last_bit(array):
 # --- arrays, frames, checks -----------------------------------------------------------------
 
 
-def rewrite(case="G1", **fields):
-    """Write one case's archive anew, some fields changed by their functions."""
+def in_archive(case, change):
+    """Change the arrays of one case in place, by their names."""
 
-    def change(folder):
+    def spoil(folder):
         path = folder / "arrays" / f"{case}.npz"
-        with np.load(path) as archive:
-            kept = {**archive}
-        kept |= {FIELDS[field]: changed(kept[FIELDS[field]]) for field, changed in fields.items()}
-        write_archive(path, kept)
+        with np.load(path) as stored:
+            values = {name: np.array(stored[name]) for name in stored}
+        change(values)
+        write_archive(path, values)
 
-    return change
+    return spoil
+
+
+def rewrite(case="G1", **fields):
+    """Change some fields of one case by their functions."""
+    named = {FIELDS[field]: change for field, change in fields.items()}
+    return in_archive(case, lambda of: of.update({n: new(of[n]) for n, new in named.items()}))
 
 
 def changed_at(index, value):
@@ -517,8 +520,7 @@ GROUPS = {
             "saturation", **{"G2.saturation_duration_s": lambda value: value * (1 + 1e-6)}),
         "a found value of another type": found("mapping", links=11.0),
         "a found value too many": found("mapping", luck=1),
-        "a found value that is missing": pop(
-            MANIFEST, "predicate", "checks", CHECKS.index("mapping"), "found", "links"),
+        "a found value that is missing": pop(MANIFEST, *MAPPING, "found", "links"),
         "a check left out": pop(MANIFEST, "predicate", "checks", -1),
     },
     ("digest", "failed"): {

@@ -166,9 +166,7 @@ def test_values_agree_within_their_tolerance(compared, case, metric, new, state,
     ],
 )
 def test_claimed_orderings(compared, metric, old, new, state, verdict):
-    first, second = (
-        both(value("G1", metric, g1), value("G2", metric, g2)) for g1, g2 in (old, new)
-    )
+    first, second = (both(value("G1", metric, a), value("G2", metric, b)) for a, b in (old, new))
     found = rows(compared(second, first=first), "Relations")
     [row] = [row for row in found if row.what.startswith(f"{metric}: G2 ")]
     assert (row.state, row.what.partition(", ")[2]) == (state, verdict)
@@ -314,10 +312,7 @@ def test_the_report_is_worst_first_fetches_nothing_and_keeps_words_as_words(comp
     )
     order = [SEVERITY.index(section.state) for section in unlike.sections]
     assert len(set(order)) > 2
-    ranks = [
-        [(SEVERITY.index(row.state), row.weight) for row in section.rows]
-        for section in unlike.sections
-    ]
+    ranks = [[(SEVERITY.index(row.state), row.weight) for row in of.rows] for of in unlike.sections]
     assert all(of == sorted(of, reverse=True) for of in [order, *ranks])
     text = report.summary(unlike)
     assert text.splitlines()[1].startswith("Differs. Rows: ")

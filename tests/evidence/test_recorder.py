@@ -15,13 +15,7 @@ from tiny_book import commit, git
 from robo_genesis.core.text import LINE_LIMIT
 from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest
-from robo_genesis.evidence.recorder import (
-    Recorder,
-    RecordError,
-    driver_version,
-    files_match_wheel,
-    git_record,
-)
+from robo_genesis.evidence.recorder import Recorder, RecordError
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.pages.sources import measuring_modules, running_modules
 from robo_genesis.sim import session
@@ -40,9 +34,7 @@ def test_frames_come_back_as_they_were_with_the_run_id(pristine, frames):
             assert picture.info["run_id"] == RUN_ID
 
 
-def test_engine_backend_renderer_log_and_host_are_recorded(
-    recorder, experiment, backend, monkeypatch
-):
+def test_backend_renderer_log_and_host_are_recorded(recorder, experiment, backend, monkeypatch):
     switches = {"GS_ENABLE_ZEROCOPY": "0", "LIBGL_DRIVERS_PATH": f"/usr/lib:{Path.home()}/mesa"}
     recorder.engine = replace(recorder.engine, switches=switches)
     monkeypatch.setattr(session, "probe", lambda requested: replace(backend, actual="cuda"))
@@ -100,9 +92,7 @@ def test_a_new_bundle_replaces_an_old_one_and_what_an_earlier_failure_left(recor
         (lambda e: {"frames": {"initial": np.zeros((2, 2, 7), np.uint8)}}, FrameError, "shape"),
     ],
 )  # fmt: skip
-def test_a_write_that_fails_leaves_nothing_or_the_old_bundle(
-    recorder, experiment, spoil, error, said
-):
+def test_a_failed_write_leaves_nothing_or_the_old_bundle(recorder, experiment, spoil, error, said):
     outputs, spoiled = recorder.contract.outputs, replace(experiment, **spoil(experiment))
     for _ in range(2):
         before = {name: (outputs / name).read_bytes() for name in files(outputs)}
@@ -126,9 +116,8 @@ def test_a_message_of_the_engine_never_ends_a_recording(recorder, experiment):
 
 
 def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(quiet):
-    quiet.setenv(
-        "ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.bodies.contacts robo_genesis.core.plotting"
-    )
+    names = "robo_genesis.sim.bodies.contacts robo_genesis.core.plotting"
+    quiet.setenv("ROBO_GENESIS_PAGE_IMPORTS", names)
     found = running_modules("l04")
     expected = measuring_modules("l04", ["robo_genesis.sim.bodies.contacts"])
     assert found == expected != measuring_modules("l04", [])
@@ -143,48 +132,45 @@ def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(quiet):
         (b"x = 1\n", ("RECORD",), False),  # no digest is recorded
     ],
 )
-def test_files_without_their_recorded_digest_do_not_match_their_wheel(
-    tmp_path, monkeypatch, content, listed, match
-):
+def test_files_without_their_digest_match_no_wheel(tmp_path, monkeypatch, content, listed, match):
     digest = base64.urlsafe_b64encode(hashlib.sha256(b"x = 1\n").digest()).rstrip(b"=").decode()
     hashes = {"module.py": SimpleNamespace(mode="sha256", value=digest), "RECORD": None}
     files = [
         SimpleNamespace(hash=hashes[n], suffix=Path(n).suffix, locate=lambda n=n: tmp_path / n)
         for n in listed
     ]
-    monkeypatch.setattr(
-        record.importlib.metadata, "distribution", lambda name: SimpleNamespace(files=files)
-    )
+    found = SimpleNamespace(files=files)
+    monkeypatch.setattr(record.importlib.metadata, "distribution", lambda name: found)
     if content is not None:
         (tmp_path / "module.py").write_bytes(content)
-    assert files_match_wheel("engine") is match
+    assert record.files_match_wheel("engine") is match
 
 
 def test_the_driver_is_that_of_the_backend(tmp_path):
     for module, text in (("amdgpu", "6.16\n"), ("nvidia", "580.1\n")):
         (tmp_path / "sys/module" / module).mkdir(parents=True)
         (tmp_path / "sys/module" / module / "version").write_text(text)
-    found = {of: driver_version(of, tmp_path) for of in ("amdgpu", "cuda", "cpu", "metal")}
+    found = {of: record.driver_version(of, tmp_path) for of in ("amdgpu", "cuda", "cpu", "metal")}
     assert found == {"amdgpu": "6.16", "cuda": "580.1", "cpu": None, "metal": None}
-    assert driver_version("cuda", tmp_path / "elsewhere").startswith("of the kernel ")
+    assert record.driver_version("cuda", tmp_path / "elsewhere").startswith("of the kernel ")
 
 
 def test_commit_and_changes_are_recorded(tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_CONFIG_GLOBAL", "/dev/null")
     monkeypatch.setattr(record, "PACKAGE", tmp_path / "robo_genesis")
-    assert git_record() is None
+    assert record.git_record() is None
     (tmp_path / "old").touch()
     commit(tmp_path)
     head = git(tmp_path, "rev-parse", "HEAD").strip()
-    assert git_record() == {"commit": head, "dirty": False}
+    assert record.git_record() == {"commit": head, "dirty": False}
     page = tmp_path / "book" / "evidence" / "page.md"
     page.parent.mkdir(parents=True)
     for place in ("l02/amdgpu/frames", "l03/.amdgpu.next"):  # of the labs that were recorded before
         (page.parent / place).mkdir(parents=True)
         (page.parent / place / "new").touch()
-    assert git_record() == {"commit": head, "dirty": False}
+    assert record.git_record() == {"commit": head, "dirty": False}
     page.touch()
-    assert git_record() == {"commit": head, "dirty": True}
+    assert record.git_record() == {"commit": head, "dirty": True}
     page.unlink()
     (tmp_path / "new").touch()
-    assert git_record() == {"commit": head, "dirty": True}
+    assert record.git_record() == {"commit": head, "dirty": True}

@@ -49,16 +49,19 @@ def shift(index, by):
     return lambda array: put(index, array[index] + by)(array)
 
 
+def with_trace(name, make):
+    """Give one run the trace that a function of the experiment returns."""
+    return lambda run: replace(run, traces={**run.traces, name: make(run)})
+
+
 def trace(name, **arrays):
     """Give one run other arrays."""
-    return lambda run: replace(
-        run, traces={**run.traces, name: with_fields(run.traces[name], arrays)}
-    )
+    return with_trace(name, lambda run: with_fields(run.traces[name], arrays))
 
 
 def copied(name, other):
     """Give one run the arrays of another one."""
-    return lambda run: replace(run, traces={**run.traces, name: run.traces[other]})
+    return with_trace(name, lambda run: run.traces[other])
 
 
 def reading(group, name, value):

@@ -52,9 +52,8 @@ class FakeScene:
 
     def __init__(self, *bodies, dt=0.01, substeps=2, is_built=True):
         self.bodies, self.dt, self.substeps, self.is_built = bodies, dt, substeps, is_built
-        self.rigid_solver = SimpleNamespace(
-            get_geoms_friction=lambda bodies: torch.tensor([bodies[0].friction])
-        )
+        of_bodies = lambda bodies: torch.tensor([bodies[0].friction])  # noqa: E731
+        self.rigid_solver = SimpleNamespace(get_geoms_friction=of_bodies)
 
     def reset(self):
         for body in self.bodies:

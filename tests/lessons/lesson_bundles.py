@@ -3,7 +3,6 @@
 import re
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from bundles import written
 from spoilers import METRICS, predicate, put, seal
@@ -11,7 +10,6 @@ from spoilers import METRICS, predicate, put, seal
 from robo_genesis.core import project
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.npz_archive import write_archive
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.pipeline.bundles import verify as evidence_key
 from robo_genesis.pipeline.bundles.status import bundle_status
@@ -20,19 +18,6 @@ from robo_genesis.pipeline.bundles.verify import verify_bundle
 
 def metric(group, name, value):
     return put(METRICS, group, name, value=value)
-
-
-def in_archive(case, change):
-    """Change the arrays of one case in place, by their names."""
-
-    def spoil(folder):
-        path = folder / "arrays" / f"{case}.npz"
-        with np.load(path) as stored:
-            values = {name: np.array(stored[name]) for name in stored}
-        change(values)
-        write_archive(path, values)
-
-    return spoil
 
 
 def refused(folder) -> str:
@@ -70,10 +55,8 @@ def judged_again(folder, monkeypatch, judgements):
         for module, name, value, _ in judgements:
             context.setattr(module, name, value)
         found = manifest.predicate.model_dump()
-        key = bundle.evidence_key(
-            found
-            | evidence_key.question(found["lesson"], found["page"], project.ROOT, project.BOOK)
-        )
+        of_page = (found["lesson"], found["page"], project.ROOT, project.BOOK)
+        key = bundle.evidence_key(found | evidence_key.question(*of_page))
         status = bundle_status(folder)
     assert key == manifest.predicate.evidence_key
     assert (status.state, status.code) == ("failed", "failed")

@@ -12,10 +12,8 @@ from robo_genesis.pipeline.pages.syntax import PACKAGE
 def test_whatever_a_page_may_import_is_known_to_its_key(page):
     """Except what only judges a finished run: its functions import what some lessons need."""
     imports = page.code.imports
-    reached = Tree().closure(
-        [f"{PACKAGE}.lessons.{page.lesson}", *imports],
-        enter=lambda name, path: not name.endswith("laws"),
-    )
+    start = [f"{PACKAGE}.lessons.{page.lesson}", *imports]
+    reached = Tree().closure(start, enter=lambda name, path: not name.endswith("laws"))
     own = (f"{PACKAGE}.sim.", f"{PACKAGE}.lessons.{page.lesson}.")
     computing = {
         name.removeprefix(f"{PACKAGE}.")

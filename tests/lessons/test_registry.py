@@ -40,9 +40,8 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
         assert not units
     assert {*lesson.about_metrics("unit").values()} <= lesson.spec.RESOLUTION.keys()
     sources = {name for of in lesson.about_metrics("sources").values() for name in of}
-    assert sources <= {
-        of.name for kind in (Trace, BodyTrace, ContactTrace) for of in kind.arrays().values()
-    }
+    kinds = (Trace, BodyTrace, ContactTrace)
+    assert sources <= {of.name for kind in kinds for of in kind.arrays().values()}
 
 
 @pytest.mark.parametrize("name", LESSONS)

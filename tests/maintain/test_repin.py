@@ -10,7 +10,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from tiny_book import commit, fails, git, wait_for
+from tiny_book import commit, fails, git, wait
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
@@ -127,9 +127,7 @@ def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root):
         ("test", "Error 1", "| zeta |  | 2 |"),
     ],
 )
-def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree_as_it_was(
-    root, stage, why, packages
-):
+def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree(root, stage, why, packages):
     before, named = state(root), root / ".cache" / "repin" / "work" / "checkout" / "named"
     with pytest.raises(ProjectError) as caught:  # the build ends when each page was named
         repin(root, FAILS[stage], say=lambda line: "deeper  refused: " in line and named.touch())
@@ -206,10 +204,8 @@ def test_a_command_gets_no_variable_that_was_meant_for_the_outer_make(tmp_path, 
 
 
 def test_the_command_refuses_without_a_traceback(tmp_path):
-    assert fails("repin.py", tmp_path, GENESIS=OLD) == (
-        f"\nGENESIS={OLD} is the pin already. Give another version.\n\n"
-        "FAILED: nothing was changed.\n"
-    )
+    end = f"GENESIS={OLD} is the pin already. Give another version.\n\nFAILED: nothing was changed."
+    assert fails("repin.py", tmp_path, GENESIS=OLD) == f"\n{end}\n"
 
 
 RUN = """
@@ -222,13 +218,11 @@ sys.exit(run(lambda: run_repin(sys.argv[2], root, root / ".cache"), "changed"))
 """
 
 
-@pytest.mark.parametrize(
-    ("sent", "status"), [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)]
-)
+@pytest.mark.parametrize(("sent", "status"), [(signal.SIGTERM, 130), (signal.SIGKILL, -9)])
 def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(root, sent, status):
     before, sleeper = state(root), root / ".cache" / "repin" / "work" / "checkout" / "sleeper"
     process = subprocess.Popen([sys.executable, "-c", RUN, str(root), HANGS], cwd=ROOT)
-    wait_for(process, sleeper)
+    wait(process, sleeper)
     child = psutil.Process(int(sleeper.read_text()))
     process.send_signal(sent)
     assert process.wait() == status

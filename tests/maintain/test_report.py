@@ -53,9 +53,7 @@ def test_a_bundle_that_one_build_lacks_or_that_is_damaged_is_not_comparable(buil
     assert found.missing["l04/lab/cpu"].startswith("digest: ")
 
 
-def test_a_build_that_was_refused_has_the_bundles_of_its_executed_pages(
-    builds, courses_pages, tmp_path
-):
+def test_a_refused_build_has_the_bundles_of_its_executed_pages(builds, courses_pages, tmp_path):
     root, left = tmp_path / "root", tmp_path / "left"
     book = make_book(root, lab=lab("cpu"), other=lab("cpu").replace("l04", "l02"))
     (root / "requirements.lock").write_text("a==1\n")
@@ -114,9 +112,8 @@ def copy(folder, tmp_path, courses_pages) -> Path:
 
 
 def test_recorded_bundles_are_verified_with_the_pin_of_their_own_checkout(copy):
-    assert {name: found.state for name, found in refresh.recorded(copy).items()} == {
-        "l04/cpu": "verified"
-    }
+    states = {name: found.state for name, found in refresh.recorded(copy).items()}
+    assert states == {"l04/cpu": "verified"}
     pin = copy / "pyproject.toml"
     pin.write_text(pin.read_text().replace(f"=={project.engine_pin()}", "==9.9.9"))
     found = refresh.recorded(copy)["l04/cpu"]
@@ -156,9 +153,7 @@ SAME = {
         ({"line": "12345678\nmore"}, [("", "more")]),
     ],
 )  # fmt: skip
-def test_a_sentence_that_changed_is_listed_and_what_any_two_runs_differ_in_is_not(
-    tmp_path, change, moved
-):
+def test_a_changed_sentence_is_listed_and_what_all_runs_differ_in_is_not(tmp_path, change, moved):
     for name, values in (("old", SAME), ("new", SAME | change)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "lab.html").write_text(PAGE.format_map(values))

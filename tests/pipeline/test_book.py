@@ -9,18 +9,7 @@ from types import SimpleNamespace
 import psutil
 import pytest
 from loading import ENGINE, JUPYTER, run_watched
-from tiny_book import (
-    accept,
-    cell,
-    fails,
-    lab,
-    make_book,
-    notebook,
-    published_marker,
-    refuse,
-    start,
-    wait_for,
-)
+from tiny_book import accept, cell, fails, lab, make_book, notebook, old_site, refuse, start, wait
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ProjectError
@@ -49,7 +38,7 @@ def built(tmp_path_factory) -> SimpleNamespace:
     """A book that was built twice; its home page was edited during the first build."""
     folder = tmp_path_factory.mktemp("built")
     book = make_book(folder, lab=LAB, lecture=notebook(cell("print('seen')")))
-    marker = published_marker(book)
+    marker = old_site(book)
     gone = folder / "cache/pages/gone/fingerprint"
     gone.mkdir(parents=True)
     said: list[str] = []
@@ -112,15 +101,13 @@ def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built
     ],
     ids=["bundle", "another contract", "output", "site", "missing page", "changed tree"],
 )
-def test_a_build_that_is_refused_leaves_the_old_site(
-    tmp_path, monkeypatch, page, settings, error, said
-):
+def test_a_refused_build_leaves_the_old_site(tmp_path, monkeypatch, page, settings, error, said):
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
     stages = "robo_genesis.pipeline.stages"
     monkeypatch.setattr(f"{stages}.unclean", lambda root: ["The tree has 1 changed file"])
     monkeypatch.setattr(f"{stages}.missing_for_release", lambda *given: [])
-    marker = published_marker(make_book(tmp_path, lab=page))
+    marker = old_site(make_book(tmp_path, lab=page))
     with pytest.raises(error, match=said):
         build(tmp_path, **settings)
     assert marker.read_text() == "the old site"
@@ -150,7 +137,7 @@ def test_a_site_with_problems_is_rendered_from_nothing_the_next_time(tmp_path):
 
 def test_a_broken_page_fails_with_status_1_a_report_and_the_old_site(tmp_path):
     broken = cell("import sys\nprint('engine: last words', file=sys.stderr)\n1 / 0")
-    marker = published_marker(make_book(tmp_path, broken=notebook(broken), good=LAB))
+    marker = old_site(make_book(tmp_path, broken=notebook(broken), good=LAB))
     report = fails("book.py", tmp_path, JOBS="2")
     assert "1 of 2 pages failed." in report
     assert "broken, code cell 1, line 12: 1 / 0" in report
@@ -166,7 +153,7 @@ def test_a_build_repairs_what_a_kill_left_before_it_reads_a_page(tmp_path):
     stale.parent.mkdir(parents=True)
     stale.touch()
     book = make_book(tmp_path)
-    published_marker(book)
+    old_site(book)
     (book / "_build").rename(book / "._build.old")
     stored = tmp_path / "cache/pages/page/fingerprint"
     (stored.parent / ".fingerprint.old").mkdir(parents=True)
@@ -206,9 +193,9 @@ def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, to,
     pids = {tmp_path / "one.pid": "", tmp_path / "two.pid": DEAF}
     pages = (notebook(cell(WAITS.format(file=str(f), before=b))) for f, b in pids.items())
     book = make_book(tmp_path, **dict(zip(("one", "two"), pages, strict=True)))
-    marker = published_marker(book)
+    marker = old_site(book)
     process = start("book.py", tmp_path, own_group=True, JOBS="2")
-    wait_for(process, *pids)
+    wait(process, *pids)
     below = {child.pid: child for child in psutil.Process(process.pid).children(recursive=True)}
     kernels = [below[int(path.read_text())] for path in pids]
     scratch = Path(kernels[0].cwd()).parent
@@ -228,10 +215,10 @@ def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left
     """The kernel kills with SIGKILL when memory is short. Sphinx waits in a pipe that is a page."""
     text = "# Text\n\n```{literalinclude} pipe\n```\n"
     book = make_book(tmp_path, text=text, page=notebook(cell("1")))
-    marker, pipe, cache = published_marker(book), book / "pipe", tmp_path / "cache"
+    marker, pipe, cache = old_site(book), book / "pipe", tmp_path / "cache"
     os.mkfifo(pipe)
     process = start("book.py", tmp_path)
-    wait_for(process, cache / "render/executed-pages.json")
+    wait(process, cache / "render/executed-pages.json")
     (left,) = cache.glob("staging*")
     below = psutil.Process(process.pid).children(recursive=True)
     process.kill()
@@ -287,8 +274,6 @@ def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monk
 
 def test_a_second_build_at_the_same_time_is_refused_with_the_first_one_s_process(tmp_path):
     make_book(tmp_path)
-    said = (
-        rf"a test of the engine, runs here \(process {os.getpid()}\)\. Wait .* `kill {os.getpid()}`"
-    )
+    said = rf"runs here \(process {os.getpid()}\)\. Wait .* `kill {os.getpid()}`"
     with build_lock(tmp_path / "cache"), pytest.raises(ProjectError, match=said):
         build(tmp_path)

@@ -93,7 +93,7 @@ def replaced_object(root, monkeypatch):
     git(root, "update-index", "--assume-unchanged", "page.md")
 
 
-def configured_by_the_user(root, monkeypatch):
+def user_settings(root, monkeypatch):
     home = root.parent / "home"
     (home / "hooks").mkdir(parents=True)
     hook = home / "hooks" / "post-checkout"
@@ -107,10 +107,10 @@ def configured_by_the_user(root, monkeypatch):
     monkeypatch.setenv("HOME", str(home))
 
 
-@pytest.mark.parametrize(
-    "spoil",
-    [hidden_changes, stale_bytecode, other_repository, replaced_object, configured_by_the_user],
-)
+SPOILS = [hidden_changes, stale_bytecode, other_repository, replaced_object, user_settings]
+
+
+@pytest.mark.parametrize("spoil", SPOILS)
 def test_a_release_sees_the_files_of_its_commit_and_no_others(root, monkeypatch, spoil):
     spoil(root, monkeypatch)
     found = built(root)
@@ -119,9 +119,7 @@ def test_a_release_sees_the_files_of_its_commit_and_no_others(root, monkeypatch,
     assert not (root / ".cache" / FOLDER).exists()
 
 
-def test_a_release_reuses_what_the_engine_compiled_and_gets_only_listed_variables(
-    root, monkeypatch
-):
+def test_a_release_reuses_compiled_kernels_and_gets_only_listed_variables(root, monkeypatch):
     (root / ".cache" / "engine" / "kernels").mkdir(parents=True)
     monkeypatch.setenv("SECRET", "a")
     monkeypatch.setenv("SITE_URL", "https://example.org/")
@@ -152,9 +150,7 @@ def test_a_changed_tree_is_refused(root, monkeypatch, spoil):
         release([], root / ".cache", root)
 
 
-def test_a_release_of_executed_pages_runs_nothing_and_shows_what_they_printed(
-    tmp_path, monkeypatch
-):
+def test_a_release_of_executed_pages_runs_nothing_and_shows_their_output(tmp_path, monkeypatch):
     """Each run of the page prints another number."""
     root = copy_checkout(tmp_path / "root")
     shutil.rmtree(root / "book")

@@ -62,9 +62,7 @@ def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, boo
         ("amdgpu", True, "l04 requires evidence of its minimum hardware, amdgpu, which is missing"),
     ],
 )
-def test_required_evidence_that_is_lacking_is_named(
-    checkout, built, book, monkeypatch, hardware, has_lab, said
-):
+def test_lacking_evidence_is_named(checkout, built, book, monkeypatch, hardware, has_lab, said):
     monkeypatch.setattr(l04, "MINIMUM_HARDWARE", hardware)
     if hardware == "cpu":
         spoil_stale(built["l04"])

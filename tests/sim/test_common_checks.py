@@ -18,9 +18,8 @@ def test_the_times_of_every_run_are_judged(experiment):
     """A page of L04 has runs beside the four that its lab compares."""
     longer = replace(experiment.cases["G1"], steps=2 * experiment.cases["G1"].steps)
     page = replace(experiment.page, runs={**experiment.page.runs, "longer": Run(longer, False)})
-    run = replace(
-        experiment, page=page, traces={**experiment.traces, "longer": experiment.traces["G1"]}
-    )
+    traces = {**experiment.traces, "longer": experiment.traces["G1"]}
+    run = replace(experiment, page=page, traces=traces)
     assert problems(common_checks.stamps(run)) == ["longer.steps"]
     assert failed(run) == {"stamps"}
     shifted = trace("G1", t=lambda t: (1 + 2 * TIME_TOLERANCE) * t)(experiment)

@@ -71,9 +71,7 @@ class Searched(ModuleType):
         raise AttributeError(name)
 
 
-def test_the_caller_of_a_declaration_is_found_without_a_search_of_all_modules(
-    spared, tmp_path, monkeypatch
-):
+def test_a_declaration_s_caller_is_found_without_a_search_of_modules(spared, tmp_path, monkeypatch):
     """A module asks as the engine's compiler does where a kernel is declared."""
     monkeypatch.setitem(sys.modules, "searched", Searched("searched"))
     monkeypatch.syspath_prepend(tmp_path)

@@ -14,15 +14,7 @@ import pytest
 from robo_genesis.core import project
 from robo_genesis.sim import session
 from robo_genesis.sim.engine_log import EngineLog
-from robo_genesis.sim.session import (
-    Backend,
-    Contract,
-    ContractError,
-    EngineError,
-    read_contract,
-    require_agreement,
-    start,
-)
+from robo_genesis.sim.session import Backend, Contract, EngineError, read_contract, start
 
 BACKEND, RENDER, OUTPUTS = (f"ROBO_GENESIS_{name}" for name in ("BACKEND", "RENDER", "OUTPUTS_DIR"))
 
@@ -34,9 +26,7 @@ BACKEND, RENDER, OUTPUTS = (f"ROBO_GENESIS_{name}" for name in ("BACKEND", "REND
         ({BACKEND: "auto", RENDER: "0", OUTPUTS: "deep/outputs"}, "auto", False, "deep/outputs"),
     ],
 )
-def test_the_contract_is_read_from_the_environment(
-    tmp_path, monkeypatch, environ, backend, render, folder
-):
+def test_the_environment_has_the_contract(tmp_path, monkeypatch, environ, backend, render, folder):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(session.os, "environ", environ)
     assert read_contract() == read_contract(environ) == Contract(backend, render, tmp_path / folder)
@@ -58,7 +48,7 @@ def test_a_value_that_is_not_valid_is_refused(tmp_path, monkeypatch, environ, me
     if environ.get(OUTPUTS) == "full":
         full = Mock(side_effect=OSError(28, "No space left"))
         monkeypatch.setattr(session.tempfile, "TemporaryFile", full)
-    with pytest.raises(ContractError) as caught:
+    with pytest.raises(session.ContractError) as caught:
         read_contract(environ)
     assert message in str(caught.value)
 
@@ -82,9 +72,7 @@ class FakeEngine(SimpleNamespace):
 
     cpu, gpu, __version__, _initialized = "cpu", "gpu", "1.3.3", False
 
-    def init(
-        self, *, backend, seed=None, precision="32", use_deterministic_algorithms=False, **log
-    ):
+    def init(self, *, backend, seed, precision="32", use_deterministic_algorithms=False, **log):
         self._initialized, self.SEED = True, seed
         self.backend = SimpleNamespace(name=backend)
         self.np_float = {"32": np.float32, "64": np.float64}[precision]
@@ -109,9 +97,7 @@ def fake_engine(monkeypatch):
     return engine
 
 
-def test_a_start_keeps_the_log_and_the_switches_that_the_engine_did_not_set(
-    fake_engine, tmp_path, monkeypatch
-):
+def test_a_start_keeps_the_log_and_the_user_s_switches(fake_engine, tmp_path, monkeypatch):
     monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
     monkeypatch.setenv("QD_ENABLE_PYBUF", "1")  # as the import of the real engine does
     engine = start(Contract("cpu", True, tmp_path))
@@ -181,9 +167,9 @@ CUDA = Backend("auto", "cuda", "cuda", "cuda", "2.13.0", None, "12.8", "device")
     ],
 )
 def test_a_disagreement_names_the_remedy_or_the_known_backends(change, message):
-    require_agreement(CUDA)
+    session.require_agreement(CUDA)
     with pytest.raises(EngineError, match=message):
-        require_agreement(replace(CUDA, **change))
+        session.require_agreement(replace(CUDA, **change))
 
 
 @pytest.mark.parametrize(("newer", "name"), [(True, "raw"), (False, "dumb")])

@@ -4,7 +4,7 @@ from copy import deepcopy
 from pathlib import Path
 
 import yaml
-from tiny_book import cell, make_book, notebook
+from tiny_book import cell, make_book, notebook, paragraphs
 
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.render import render
@@ -18,73 +18,37 @@ from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.course.course_map import FILE
 from robo_genesis.site.text import glossary
 
+FEATURED_CARD = {"page": "page", "outcomes": ["read a `qpos`", "stop"], "featured": True}
 MAP = [
     {"id": "L01", "title": "One"},
     {"id": "L02", "title": "Two", "needs": []},
-    {
-        "id": "L04",
-        "title": "Four",
-        "needs": ["L01", "L02"],
-        "page": "page",
-        "outcomes": ["read a `qpos`", "stop"],
-        "featured": True,
-    },
+    {"id": "L04", "title": "Four", "needs": ["L01", "L02"], **FEATURED_CARD},
     {"id": "L06", "title": "Six", "page": "lessons/l06-six/lecture", "outcomes": ["walk"]},
 ]
 CARDS = "```{course-map}\n```\n"
-FEATURED = """
-{lesson}`The second <l02/lecture>` and {lesson}`the
-third <l03/lab>`.
-
-:::{featured} L04
-Four was measured.
-:::
-
-:::{featured} L05
-Five was measured.
-:::
-
-```{course-status}
-```
-
-```{course-measured}
-```
-"""
+FEATURED = paragraphs(
+    "{lesson}`The second <l02/lecture>` and {lesson}`the\nthird <l03/lab>`.",
+    ":::{featured} L04\nFour was measured.\n:::",
+    ":::{featured} L05\nFive was measured.\n:::",
+    "```{course-status}\n```",
+    "```{course-measured}\n```",
+)
 WORDS = "word " * 600  # Four minutes to read
-GLOSSARY = """\
-# Glossary
-
-```{glossary}
-DOF
-degree of freedom
-  One axis of motion. It may turn or slide.
-
-overshoot
-  How far it passes, counted along its DOF.
-
-PD control
-  A law with two gains.
-
-step
-time step
-  What one call of the solver covers.
-```
-"""
-TERMS = """\
-# Overshoot and DOF
-
-The `DOF` of [an overshoot](glossary.md) is $DOF$.
-
-| DOF |
-| :--- |
-| overshoot |
-
-Overshoots count as overshoot; a
-degree
-of freedom is a DOF, two are DOFs. A non-DOF, an *overshoot* more.
-
-A step is a time step.
-"""
+GLOSSARY = paragraphs(
+    "# Glossary",
+    "```{glossary}\nDOF\ndegree of freedom\n  One axis of motion. It may turn or slide.",
+    "overshoot\n  How far it passes, counted along its DOF.",
+    "PD control\n  A law with two gains.",
+    "step\ntime step\n  What one call of the solver covers.\n```",
+)
+TERMS = paragraphs(
+    "# Overshoot and DOF",
+    "The `DOF` of [an overshoot](glossary.md) is $DOF$.",
+    "| DOF |\n| :--- |\n| overshoot |",
+    "Overshoots count as overshoot; a\ndegree\nof freedom is a DOF, two are DOFs.",
+    "A non-DOF, an *overshoot* more.",
+    "A step is a time step.",
+)
 FORMS = "forms: {DOF: [DOFs], overshoot: [overshoots]}\nunlinked: [step, time step]\n"
 
 DESCRIBED = "# Described\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100

@@ -58,16 +58,10 @@ class Kind:
 
 
 WIDTHS = (768, 1280, 1920, 3840)
+ON_DISK = (*IN_EVERY_COLOUR, *IN_EVERY_SHAPE)
 KINDS = {
     "light": Kind(RULES, "light", (1280, 800), 1280, {1280: AXE}, WIDTHS, large_text=True),
-    "phone": Kind(
-        (*IN_EVERY_COLOUR, *IN_EVERY_SHAPE),
-        "dark",
-        (390, 700),
-        narrow=320,
-        axe={320: SHAPES, 1280: COLOURS},
-        widths=(390, 320),
-    ),
+    "phone": Kind(ON_DISK, "dark", (390, 700), 320, {320: SHAPES, 1280: COLOURS}, (390, 320)),
 }
 """The phone reads from disk, in the dark. Shape does not depend on the scheme, so the desktop looks
 at it at widths that the phone does not have. Nothing in an article is hidden on the phone alone, so
@@ -90,10 +84,8 @@ class Visit:
     def __init__(self, browser: Browser, base: str, name: str, kind: Kind) -> None:
         self.kind, self.every_state = kind, name in EVERY_STATE
         self.wrong: dict[str, list[str]] = {rule: [] for rule in kind.rules}
-        width, height = kind.size
-        page = browser.new_page(
-            viewport={"width": width, "height": height}, color_scheme=kind.scheme
-        )
+        size = dict(zip(("width", "height"), kind.size, strict=True))
+        page = browser.new_page(viewport=size, color_scheme=kind.scheme)
         self.wrong["messages"], self.wrong["foreign hosts"] = watch(page), foreign(page, base)
         page.add_init_script(path=SCRIPTS / "watch_shifts.js")
         page.goto(f"{base}/{name}")

@@ -31,9 +31,8 @@ class Panel(panel.Evidence):
         named = {"docname": "lessons/page", "metadata": defaultdict(dict)}
         config = SimpleNamespace(root_doc="index")
         env = SimpleNamespace(srcdir=book, app=app, config=config, **named)
-        self.state = SimpleNamespace(
-            document=SimpleNamespace(settings=SimpleNamespace(env=env, record_dependencies=None))
-        )
+        settings = SimpleNamespace(env=env, record_dependencies=None)
+        self.state = SimpleNamespace(document=SimpleNamespace(settings=settings))
 
     def parse_text_to_nodes(self, text):
         return publish_doctree(text, parser=Parser()).children

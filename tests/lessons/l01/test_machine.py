@@ -11,10 +11,8 @@ from robo_genesis.lessons.l01 import machine, mistakes, text
 def report(broken=None):
     place = len(machine.STEPS) if broken is None else machine.STEPS.index(broken)
     states = ["ok"] * place + ["broken"] + ["not run"] * len(machine.STEPS)
-    steps = [
-        {"step": step, "state": state, "found": f"about {step}"}
-        for step, state in zip(machine.STEPS, states, strict=False)
-    ]
+    pairs = zip(machine.STEPS, states, strict=False)
+    steps = [{"step": step, "state": state, "found": f"about {step}"} for step, state in pairs]
     return {"steps": steps, "broken": broken}
 
 

@@ -44,7 +44,6 @@ CASES = {
         "right": OURS,
         "without the first state": lambda *of: [values[1:] for values in OURS(*of)],
         "without a reset": without_reset,
-        "read once": lambda *of: [[values[0]] * len(values) for values in OURS(*of)],
         "speed downwards": lambda *of: (OURS(*of)[0], [-speed for speed in OURS(*of)[1]]),
         "heights alone": lambda *of: OURS(*of)[:1],
     },
@@ -57,7 +56,6 @@ CASES = {
     },
     "stepped": {
         "right": STEPPED,
-        "explicit Euler": lambda g, h, n: g * h**2 * np.arange(n + 1) * np.arange(-1, n) / 2,
         "the school formula": lambda g, h, n: continuous_drop(h * np.arange(n + 1), g),
         "without the start": lambda g, h, n: STEPPED(g, h, n)[1:],
         "another gravity": lambda g, h, n: STEPPED(9.81, h, n),

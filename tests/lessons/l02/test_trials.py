@@ -53,9 +53,10 @@ FALL = CASE.height - 4.905 * (np.arange(61) * CASE.dt) ** 2
 LANDS = np.maximum(FALL, CASE.size / 2)
 
 
-@pytest.mark.parametrize(
-    ("mistake", "motion"), [(mistakes.fixed_body, FALL), (mistakes.no_collision, LANDS)]
-)
+ALIKE = [(mistakes.fixed_body, FALL), (mistakes.no_collision, LANDS)]
+
+
+@pytest.mark.parametrize(("mistake", "motion"), ALIKE)
 def test_a_symptom_is_not_found_where_both_bodies_move_alike(monkeypatch, mistake, motion):
     def fake(scene, case, steps, **bodies):
         return np.arange(steps + 1) * case.dt, dict.fromkeys(bodies, motion[: steps + 1])

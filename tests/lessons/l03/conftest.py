@@ -46,7 +46,5 @@ def contact_traces() -> dict[str, ContactTrace]:
 @pytest.fixture(scope="session")
 def experiments(contact_traces, frames) -> dict[str, Experiment]:
     """A sound experiment of each page; the lecture ends some landings earlier than the lab."""
-    return {
-        name: experiment_of(page, contact_traces, READINGS, [spec.LINK], frames)
-        for name, page in LESSON.pages.items()
-    }
+    given = (contact_traces, READINGS, [spec.LINK], frames)
+    return {name: experiment_of(page, *given) for name, page in LESSON.pages.items()}

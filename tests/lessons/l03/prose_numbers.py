@@ -20,9 +20,7 @@ CONFIGURED = {
     "highest height studied [m]": study_spec.HEIGHTS_STUDIED[-1],
     "finest step studied [ms]": 0.125,
     "fastest landing of the heights studied [m/s]": round(FASTEST, 1),
-    "speed above which T = 10 ms rebounds with fine steps [m/s]": round(
-        4 * 9.81 * 0.01 * np.e**2, 1
-    ),
+    "least speed of a rebound with T = 10 ms [m/s]": round(4 * 9.81 * 0.01 * np.e**2, 1),
     "window of a landing [s]": spec.BASELINE.duration,
     "friction of the first cubes, and the hold of a stop [s]": spec.PUSHED.friction,
     "friction of the other cubes": spec.BESIDE.friction,

@@ -3,8 +3,8 @@
 import shutil
 
 import pytest
-from lessons.lesson_bundles import in_archive, judged_again, refused
-from spoilers import ARRAYS, pop, predicate
+from lessons.lesson_bundles import judged_again, refused
+from spoilers import ARRAYS, in_archive, pop, predicate
 
 from robo_genesis.evidence.compare import compare
 from robo_genesis.lessons.l03 import spec, study_spec

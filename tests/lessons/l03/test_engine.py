@@ -26,9 +26,8 @@ def test_the_drawn_table_is_the_engine_s(world):
     drawn = visual_shape.slab(contacts.SURFACE_SIZE, contacts.TOP)
     centre = world.surface.get_pos().cpu().numpy()
     for end in (np.min, np.max):
-        assert end(drawn.vertices, axis=0) == pytest.approx(
-            end(part.vertices, axis=0) + centre, abs=1e-6
-        )
+        expected = end(part.vertices, axis=0) + centre
+        assert end(drawn.vertices, axis=0) == pytest.approx(expected, abs=1e-6)
     a, b, c = (drawn.vertices[drawn.faces[:, k]] for k in range(3))
     outward = (np.cross(b - a, c - a) * ((a + b + c) / 3 - centre)).sum(axis=1)
     assert (outward > 0).all()  # every face looks away from the middle

@@ -82,7 +82,6 @@ CASES = {
         "all bodies": read_as(lambda depths: max(depths.tolist(), default=0.0), with_entity=None),
         "largest of nothing": read_as(lambda depths: depths.max().item()),
         "the first contact": read_as(lambda depths: next(iter(depths.tolist()), 0.0)),
-        "the sum": read_as(lambda depths: depths.sum().item()),
         "one value": lambda cube, table: (4,),
     },
     "landing": {

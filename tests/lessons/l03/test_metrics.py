@@ -70,10 +70,10 @@ def test_energies_of_a_state_by_hand():
     assert metrics.total_energy(turning, case) == pytest.approx([total + more] * 2)
 
 
-@pytest.mark.parametrize(
-    ("axis", "reach"),
-    [((1, 0, 0), 0.04 * np.sqrt(2)), ((0, 1, 0), 0.04 * np.sqrt(2)), ((0, 0, 1), 0.04)],
-)
+REACHES = [((1, 0, 0), 0.04 * np.sqrt(2)), ((0, 1, 0), 0.04 * np.sqrt(2)), ((0, 0, 1), 0.04)]
+
+
+@pytest.mark.parametrize(("axis", "reach"), REACHES)
 def test_a_cube_on_its_edge_reaches_lower(axis, reach):
     half = np.pi / 8  # 45° about the axis
     trace = body_at([1.0, 1.0], quat=(np.cos(half), *(np.sin(half) * np.array(axis))))

@@ -24,10 +24,8 @@ def experiments(joints, frames) -> dict[str, Experiment]:
         traces[name] = mujoco_joints.run_case(cases[name], LINKS, of.timestep, of.integrator)
     traces[study_spec.ASSIGNED] = assigned(spec.BASELINE, LINKS, traces["baseline"])
     known = {"model": spec.EXPECTED_MODEL, study.GROUP: study.by_model(traces)}
-    return {
-        name: experiment_of(page, traces, known, LINKS, frames, joints)
-        for name, page in PAGES.items()
-    }
+    given = (traces, known, LINKS, frames, joints)
+    return {name: experiment_of(page, *given) for name, page in PAGES.items()}
 
 
 @pytest.fixture(scope="module")

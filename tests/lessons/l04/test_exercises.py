@@ -63,8 +63,6 @@ CASES = {  # of each exercise the right solution, then wrong ones
     "resolver": [
         SOLVED["resolve"],
         lambda robot, names: list(range(len(names))),  # typed indices
-        lambda robot, names: [robot.get_joint(n).dofs_idx[0] for n in names],  # solver-level
-        lambda robot, names: [d for n in names for d in robot.get_joint(n).dofs_idx_local],
         qpos_not_counted,
         lambda robot, names: sorted(SOLVED["resolve"](robot, names)),
     ],
@@ -75,7 +73,6 @@ CASES = {  # of each exercise the right solution, then wrong ones
     ],
     "pd_law": [
         SOLVED["pd_effort"],
-        lambda e, v, kp, kv, limit: kp * e - kv * v,  # not clipped
         lambda e, v, kp, kv, limit: min(limit, kp * e - kv * v),
         lambda e, v, *gains: SOLVED["pd_effort"](e, -v, *gains),  # wrong sign of damping
     ],
@@ -89,8 +86,6 @@ CASES = {  # of each exercise the right solution, then wrong ones
     "stepped": [
         SOLVED["stepped"],
         lambda *given: SOLVED["stepped"](*given[:4], np.inf, *given[5:]),  # no limit
-        lambda inertia, kp, kv, d, limit, g, step, h, n: SOLVED["stepped"](
-            inertia - h * kv, kp, kv, d, limit, g, step, h, n),  # explicit damping
         lambda *given: SOLVED["stepped"](*given[:5], -given[5], *given[6:]),  # gravity upwards
         lambda *given: SOLVED["stepped"](*given)[1:],  # start missing
     ],
@@ -100,9 +95,8 @@ CASES = {  # of each exercise the right solution, then wrong ones
 @pytest.mark.parametrize(("name", "k"), [(n, k) for n, of in CASES.items() for k in range(len(of))])
 def test_only_the_right_solution_passes(experiment, name, k):
     joints, traces = experiment.joints, experiment.traces
-    robot = SimpleNamespace(
-        get_joint=lambda name: exercises._joint(int(joints.dofs_idx_local[joints.entry(name)]))
-    )
+    dofs = dict(zip(joints.names, joints.dofs_idx_local.tolist(), strict=True))
+    robot = SimpleNamespace(get_joint=lambda name: exercises._joint(dofs[name]))
     playback = Playback(traces["baseline"])
     more = {
         "resolver": (robot, joints),

@@ -87,9 +87,7 @@ QUESTIONS = [
 
 
 @pytest.mark.parametrize(("earlier", "first", "second", "noun", "said", "verdict"), QUESTIONS)
-def test_a_prediction_is_judged_by_the_recorded_runs(
-    page, data, earlier, first, second, noun, said, verdict
-):
+def test_a_prediction_is_judged_by_runs(page, data, earlier, first, second, noun, said, verdict):
     for turn in range(earlier):
         choose(page, *((7000, 150), (7000, 100))[turn % 2])
         answer(page, "Skip")

@@ -37,18 +37,14 @@ def test_rise_and_settling_at_their_edges(make_trace, q, target, rise, settled):
     assert m.settling_time == (None if settled is None else pytest.approx(settled))
 
 
-@pytest.mark.parametrize(
-    ("force", "samples"), [(99.0, 1), (-99.0, 1), (np.nextafter(99.0, 0), 0), (-100.0, 1)]
-)
+@pytest.mark.parametrize(("force", "samples"), [(99.0, 1), (-99.0, 1), (98.9999, 0), (-100.0, 1)])
 def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, samples):
     trace = make_trace([0, 0, 0], STEP, control_force=[0.0, force], effort_limit=100.0)
     m = step_metrics(trace, 0)
     assert (m.saturation_samples, m.saturation_duration) == (samples, samples * trace.dt)
 
 
-@pytest.mark.parametrize(
-    ("target", "message"), [(0.0, "positive step"), ([0.25, 0.3], "target changes")]
-)
+@pytest.mark.parametrize(("target", "message"), [(0.0, "positive"), ([0.25, 0.3], "changes")])
 def test_what_cannot_be_measured_is_refused(make_trace, target, message):
     with pytest.raises(ValueError, match=message):
         step_metrics(make_trace([0, 0, 0], target), 0)

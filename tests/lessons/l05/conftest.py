@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lessons.experiments import experiment_of
 from robot_runs import LINKS, answer, assigned, driven
 
 from robo_genesis.core.experiment import Experiment
@@ -28,21 +29,12 @@ def reaches(joints) -> Experiment:
         postures = np.hstack([q, starts[:, 7:]])
         runs[name] = assigned(case.start, LINKS, runs["baseline"], postures)
     apart, angle = map(float, kinematics.distances(found.error))
-    return Experiment(
-        page=SOLUTIONS,
-        traces=runs,
-        links=LINKS,
-        readings={
-            "model": spec.EXPECTED_MODEL,
-            "ik": {
-                "residual_m": apart, "residual_rad": angle,
-                "low_residual_m": apart, "low_residual_rad": angle, "low_tip_m": -0.0623,
-            },
-            "ik_residuals": dict.fromkeys(spec.PRECISE, 4e-6),
-            "iterations": dict.fromkeys(spec.PRECISE, 5),
-            "ik_repeated": {"entries_that_differ": 0},
-        },
-        frames={},
-        rendered=False,
-        joints=joints,
-    )  # fmt: skip
+    known = {
+        "model": spec.EXPECTED_MODEL,
+        "ik": {"residual_rad": angle, "low_residual_rad": angle, "low_tip_m": -0.0623}
+        | dict.fromkeys(("residual_m", "low_residual_m"), apart),
+        "ik_residuals": dict.fromkeys(spec.PRECISE, 4e-6),
+        "iterations": dict.fromkeys(spec.PRECISE, 5),
+        "ik_repeated": {"entries_that_differ": 0},
+    }
+    return experiment_of(SOLUTIONS, runs, known, LINKS, {}, joints)

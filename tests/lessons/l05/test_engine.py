@@ -12,9 +12,8 @@ pytestmark = pytest.mark.engine
 
 
 def test_answers_depend_on_their_start_alone_and_are_measured_where_the_engine_says(lab):
-    case = replace(
-        spec.MANY_STARTS, positions=spec.MANY_STARTS.positions[:20], starts=spec.RANDOM_STARTS[:20]
-    )
+    of = spec.MANY_STARTS
+    case = replace(of, positions=of.positions[:20], starts=spec.RANDOM_STARTS[:20])
     trace, errors = solve_all(lab.scene, lab.franka, lab.joints, case)
     again, _ = solve_all(lab.scene, lab.franka, lab.joints, case)
     assert (trace.q == again.q).all()

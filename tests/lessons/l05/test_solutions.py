@@ -15,9 +15,8 @@ def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(reaches):
         top = targets[found["rows"][0]["cells"][0]["answer"] - 1]
         assert top[axis] == targets[:, axis].max()
         assert top[0] == targets[:, 0].min() == float(found["columns"][0])
-        accepted = study.answers(reaches.traces[found["run"]], spec.QUESTIONS[found["run"]])[
-            "accepted"
-        ]
+        answers = study.answers(reaches.traces[found["run"]], spec.QUESTIONS[found["run"]])
+        accepted = answers["accepted"]
         assert [row["accepted"] == "yes" for row in rows] == accepted.tolist()
         assert [cells[k]["state"] == "accepted" for k in sorted(cells)] == accepted.tolist()
 

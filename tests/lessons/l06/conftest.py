@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import beginning
+from lessons.experiments import experiment_of
 from robot_runs import LINKS, answer, driven
 
 from robo_genesis.core.experiment import Experiment
@@ -42,9 +43,8 @@ def swept(runs) -> dict:
 def worlds(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
     runs = {name: run_of(world) for name, world in spec.WORLDS.items()}
-    runs |= {
-        f"alone_{k}": replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING) for k in spec.ENVS
-    }
+    for k in spec.ENVS:
+        runs[f"alone_{k}"] = replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING)
     runs |= {name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain_robot"}
     runs["plain_robot"] = beginning(runs["env_0"], spec.SWITCH)
     for name, world in spec.COPIES.items():
@@ -52,21 +52,14 @@ def worlds(joints) -> Experiment:
     masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}
     equality = study.LECTURE_READINGS[study.EQUALITY].units
     residuals = [study.residual(position, joints) for position in spec.MIXED]
-    return Experiment(
-        page=replace(LECTURE, checks=(*checks.WITHOUT_CAMERA, *checks.LECTURE)),
-        traces={name: runs[name] for name in LECTURE.runs},
-        links=LINKS,
-        readings={
-            "model": spec.EXPECTED_MODEL,
-            "mixed": dict(zip(study.READINGS["mixed"].units, residuals, strict=True)),
-            "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
-            "hand_mass": masses,
-            study.EQUALITY: dict(
-                zip(equality, [9, 0, 0, 9, 4, 1e-3, 9, 0, 0, 9, 9, 1, 0.1], strict=True)
-            ),
-        }
-        | swept(runs),
-        frames={},
-        rendered=False,
-        joints=joints,
-    )
+    equal = [9, 0, 0, 9, 4, 1e-3, 9, 0, 0, 9, 9, 1, 0.1]
+    known = swept(runs) | {
+        "model": spec.EXPECTED_MODEL,
+        "mixed": dict(zip(study.READINGS["mixed"].units, residuals, strict=True)),
+        "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
+        "hand_mass": masses,
+        study.EQUALITY: dict(zip(equality, equal, strict=True)),
+    }
+    all_checks = (*checks.WITHOUT_CAMERA, *checks.LECTURE)
+    page = replace(LECTURE, checks=all_checks, camera=False)
+    return experiment_of(page, runs, known, LINKS, {}, joints)

@@ -92,12 +92,8 @@ def test_without_its_option_a_scene_has_one_set_of_gains_whatever_environment_is
 
 @pytest.mark.parametrize("substeps", [4, 8])
 def test_a_stiff_arm_passes_its_target_farther_at_a_finer_step_as_well(real_engine, substeps):
-    robots = [
-        replace(world, substeps=substeps) for world in spec.VARIANTS.values() if not world.load
-    ]
+    robots = [replace(of, substeps=substeps) for of in spec.VARIANTS.values() if not of.load]
     scene = robot_in_scene(real_engine.gs, len(robots), substeps, **EACH)
     runs = reach(**vars(scene), worlds=robots)
-    plain, stiff, unlimited = (
-        world_metrics(*of).overshoot for of in zip(runs, robots, strict=True)
-    )
+    plain, stiff, unlimited = (m.overshoot for m in map(world_metrics, runs, robots))
     assert 0.08 > stiff > 5 * max(plain, unlimited)

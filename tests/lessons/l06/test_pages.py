@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import shift, trace
-from lessons.lesson_bundles import accepted_then_refused, in_archive
+from lessons.lesson_bundles import accepted_then_refused
+from spoilers import in_archive
 
 from robo_genesis.core.palette import MARKS
 from robo_genesis.lessons.l06 import explorer, plots, spec, study, target_parts, text
@@ -16,9 +17,8 @@ from robo_genesis.sim.arm.kinematics import HAND
 @pytest.fixture(scope="module", params=[True, False], ids=["camera", "RENDER=0"])
 def run(request, worlds, frames):
     """The lecture."""
-    return replace(
-        worlds, page=LECTURE, frames=frames if request.param else {}, rendered=request.param
-    )
+    pictures = frames if request.param else {}
+    return replace(worlds, page=LECTURE, frames=pictures, rendered=request.param)
 
 
 def test_the_checks_hold_and_a_schematic_replaces_frames(run):
@@ -34,9 +34,8 @@ def test_tables_give_the_numbers_of_the_runs(run):
     assert text.mixed_table(run).count("**refused**") == 1
     equality = [line.split("|")[2:-1] for line in text.equality_table(run).splitlines()[2:]]
     assert [float(of[1]) for of in equality[: len(study.pairs())]] == [0] * len(study.pairs())
-    assert (
-        equality[len(study.pairs())][2].strip() == "0.238 µrad"
-    )  # the rounding that the fixture adds
+    rounding = equality[len(study.pairs())][2].strip()
+    assert rounding == "0.238 µrad"  # what the fixture adds
     assert [of[2].strip() for of in equality[-4:]] == ["0 µrad", "1,000 µrad", "0 µrad", "1.00 rad"]
     assert f"{1000 * m['loaded_robot'].final_distance:.2f} |" in text.variant_table(run)
     assert f"| {1000 * m['stiff_robot'].overshoot:.0f} / " in text.sweep_table(run)

@@ -90,8 +90,6 @@ def known():
     ("model_table", "| 1024 | 34 | 17 to 17 | 2 to 2 |"),
     ("constants_table", "*b*, the part of each environment [µs] | 16 to 16 |"),
     ("parts_table", "| robot, substeps: 4 | 0.4 | 30 |"),
-    ("parts_table", "| sphere, substeps: 2 | 0.4 | 2 |"),
-    ("cache_table", "| one scene of 1000 | 16.6 | 2.05 |"),
     ("cache_table", "| four scenes of 256, in turn | 17 | 2 |"),
 ])  # fmt: skip
 def test_tables_give_the_known_values(known, table, says):

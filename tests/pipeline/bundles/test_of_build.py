@@ -20,9 +20,7 @@ def result(tmp_path, monkeypatch):
     folder = tmp_path / "cache" / "pages" / "page" / "fingerprint"
     folder.mkdir(parents=True)
     (folder / RECORD).write_text(os.urandom(16).hex())
-    monkeypatch.setattr(
-        "robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda result: None
-    )
+    monkeypatch.setattr("robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda of: None)
     page = SimpleNamespace(notebook=new_notebook())
     return PageResult(page, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder)
 
@@ -42,12 +40,8 @@ def test_an_accepted_page_is_compared_again_when_its_record_changed(result, monk
 @pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])
 def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
     contract = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
-    facts = SimpleNamespace(
-        lesson="l04",
-        page=page,
-        backend=SimpleNamespace(requested="cpu"),
-        render=SimpleNamespace(mode=mode),
-    )
+    facts = SimpleNamespace(lesson="l04", page=page, render=SimpleNamespace(mode=mode))
+    facts.backend = SimpleNamespace(requested="cpu")
     require_contract(facts, contract)
     with pytest.raises(BundleRefused, match=r"backend\.requested is cpu, expected auto"):
         require_contract(facts, contract | {"ROBO_GENESIS_BACKEND": "auto"})

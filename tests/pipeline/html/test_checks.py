@@ -20,9 +20,7 @@ def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
     (folder / "sub/page.html").write_text(PAGE.format(head="", body="<p id='part'>Part</p>"))
     (folder / "sub/index.html").write_text(PAGE.format(head="", body="<a href='../#top'>up</a>"))
     (folder / "picture.png").touch()
-    (folder / "style.css").write_text(
-        "/* url(https://a.org/x) */ p { background: url(picture.png) }"
-    )
+    (folder / "style.css").write_text("/* url(https://a.org/x) */ p { src: url(picture.png) }")
     return folder
 
 
@@ -98,9 +96,7 @@ def test_each_problem_is_found_by_its_check_alone(tmp_path, body, check, said):
 def test_style_sheets_and_script_files_are_searched(tmp_path):
     site = make_site(tmp_path)
     (site / "style.css").write_text("@import url('https://fonts.googleapis.com/css');")
-    (site / "theme.js").write_text(
-        'load("https://cdn.jsdelivr.net/x.js"); // "https://licence.org/"'
-    )
+    (site / "theme.js").write_text('load("https://cdn.jsdelivr.net/x.js"); // "https://a.org/"')
     assert problems(site)["third parties"] == (
         "style.css: https://fonts.googleapis.com/css",
         "theme.js: https://cdn.jsdelivr.net/x.js",

@@ -50,9 +50,7 @@ def rewrite(rendered: Path) -> None:
     shutil.rmtree(rendered / "figures")
     for name in ("index.html", "notes"):
         (rendered / name).unlink()
-    write(
-        rendered, {"_static/site.css": "p {}", "lessons/one.html": "two", "lessons/more.html": ""}
-    )
+    write(rendered, {"_static/site.css": "p {}", "lessons/one.html": "two", "lessons/new.html": ""})
     write(rendered, {"notes/a": "a folder", "figures": "a file"})
 
 
@@ -73,9 +71,7 @@ def test_a_draft_is_what_sphinx_leaves_whether_it_was_prepared_or_not(tmp_path, 
     assert draft.digests == {n: hashlib.sha256(t.encode()).hexdigest() for n, t in files.items()}
 
 
-def test_what_sphinx_changes_while_the_draft_copies_is_copied_again(
-    tmp_path, rendered, monkeypatch
-):
+def test_what_sphinx_changes_during_a_copy_is_copied_again(tmp_path, rendered, monkeypatch):
     copy = Draft._copy
 
     def disturbed(draft: Draft, name: str) -> bool:

@@ -3,7 +3,7 @@ from pathlib import Path
 from unittest.mock import Mock
 
 import pytest
-from tiny_book import LAB_FRONT, cell, make_book, notebook, published_marker
+from tiny_book import LAB_FRONT, cell, make_book, notebook, old_site
 
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.publish import add_bundles, publish
@@ -29,7 +29,7 @@ def test_site_and_bundles_are_published_together_and_labs_apart_from_other_pages
     bundle = tmp_path / "outputs" / "cpu"
     bundle.mkdir(parents=True)
     (bundle / "manifest.json").touch()
-    published_marker(book)
+    old_site(book)
     results = [PageResult(page, "executed", 1.0, "a", bundle) for page in find_pages(book)]
     add_bundles(draft, results)
     site = publish(book, draft.folder)
@@ -58,7 +58,7 @@ def test_a_web_server_can_read_the_site_whatever_the_umask(tmp_path, draft):
 
 def test_a_failure_leaves_the_old_site_alone(tmp_path, draft):
     book = make_book(tmp_path)
-    marker = published_marker(book)
+    marker = old_site(book)
     with pytest.raises(KeyboardInterrupt):
         publish(book, draft.folder, Mock(side_effect=KeyboardInterrupt))
     assert marker.read_text() == "the old site"

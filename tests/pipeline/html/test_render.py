@@ -2,30 +2,21 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import psutil
 import pytest
 from built_site import parsed
+from small_book import draft_of, executed
 from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.execute import execute_pages
-from robo_genesis.pipeline.pages.store import places
 
 CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
 LAB = "robo_genesis: {lesson: l04, page: lab}\n"
 BADGES = "\n```{lesson-status} l04\n```\n"
 TEXT = f"---\n{CLAIMS}---\n# Text\n{BADGES}"
-
-
-def build(folder: Path, built: BuiltPages | None = None) -> Path:
-    sphinx = SphinxProcess(folder / "book", folder / "render.log")
-    return render(sphinx, folder / "staging", built or BuiltPages()).html
 
 
 @pytest.fixture(scope="module")
@@ -38,16 +29,14 @@ def html(tmp_path_factory):
     said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
     page, lab = cell("print('measured ' + '7')"), notebook(cell(said), front=CLAIMS + LAB)
     book = make_book(folder, text=TEXT, page=notebook(page), lab=lab + BADGES)
-    pages = find_pages(book)
-    results = execute_pages(pages, places(pages, folder / "store"))
-    assert [result.status for result in results] == ["executed", "executed"]
+    results = executed(find_pages(book), folder)
     text = (book / "page.md").read_text()
     (book / "page.md").write_text(text.replace("cell}", "cell}\n:tags: [hide-input]"))
     (folder / "staging").mkdir()
     (folder / "staging" / "stale").touch()
     with pytest.MonkeyPatch.context() as patch:
         patch.delenv("SITE_URL", raising=False)
-        html = build(folder, BuiltPages.of(results))
+        html = draft_of(book, folder, results).html
     assert not (folder / "staging" / "stale").exists()
     return html
 
@@ -73,9 +62,9 @@ def test_without_an_address_nothing_claims_one(html):
 def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
     """A page that the execution stage has not seen would leave a file behind if it were run."""
     trace, front = tmp_path / "was executed", "mystnb: {execution_mode: force}\n"
-    make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
+    book = make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
     with pytest.raises(ProjectError, match=r"page\.md is not executed, and Sphinx executes"):
-        build(tmp_path)
+        draft_of(book, tmp_path, [])
     assert not trace.exists()
 
 
@@ -85,10 +74,8 @@ FORKS = "import os, time; os.fork() or time.sleep(60); time.sleep(60)"
 def test_a_child_of_sphinx_does_not_outlive_it(tmp_path):
     """A child keeps the pipe open, for which an interrupted build would wait."""
     sphinx = SphinxProcess.__new__(SphinxProcess)
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    sphinx.process = subprocess.Popen(
-        [sys.executable, "-c", FORKS], start_new_session=True, **pipes
-    )
+    how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    sphinx.process = subprocess.Popen([sys.executable, "-c", FORKS], start_new_session=True, **how)
     with sphinx:
         while not (below := psutil.Process(sphinx.process.pid).children()):
             time.sleep(0.05)

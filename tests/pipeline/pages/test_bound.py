@@ -14,6 +14,7 @@ from bundles import written
 from lessons.body_runs import make_drop
 from lessons.changed_runs import passed
 from nbformat.v4 import new_code_cell, new_notebook, new_output
+from small_book import executed as run_pages
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
 from robo_genesis.core import shown
@@ -26,11 +27,10 @@ from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.pages import LAB
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.bound import difference_of, require_printed, require_shown
-from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, OUTPUTS, read_record
 from robo_genesis.pipeline.pages.printed import outputs_of
 from robo_genesis.pipeline.pages.results import find_bundle
-from robo_genesis.pipeline.pages.store import exported_folders, places
+from robo_genesis.pipeline.pages.store import exported_folders
 
 TABLE, HEIGHT, POSTURE = (
     f"robo_genesis.lessons.l02.{name}" for name in ("text.metric_table", "plots.height",
@@ -211,11 +211,7 @@ DROP = "baseline.drop m"
         ({2: DROP}, "0.2011 m", "prints the numbers 0.2011. Valid is `prints: {1: "),
         (DROP, "0.2011 m", "it has `prints: baseline.drop m`"),
         ({1: "baseline.drp m"}, "0.2011 m", "no metric 'baseline.drp'. Known: model."),
-        (
-            {1: "baseline.drop kg"},
-            "0.2011 m",
-            "cannot be shown in 'kg'. Valid for a number is m or",
-        ),
+        ({1: "baseline.drop kg"}, "0.2011 m", "cannot be shown in 'kg'. Valid for a number is m"),
     ],
 )
 def test_a_number_that_a_cell_prints_is_the_value_that_its_option_names(folder, values, text, said):
@@ -225,9 +221,7 @@ def test_a_number_that_a_cell_prints_is_the_value_that_its_option_names(folder, 
     if said is None:
         assert require_shown(page, ran, folder, bundle.read_manifest(folder)) == 0
     else:
-        with pytest.raises(
-            BundleRefused, match=f"^shown: lessons/lab, code cell 1: .*{re.escape(said)}"
-        ):
+        with pytest.raises(BundleRefused, match=f"^shown: .*code cell 1: .*{re.escape(said)}"):
             require_shown(page, ran, folder, bundle.read_manifest(folder))
 
 
@@ -281,7 +275,7 @@ def test_each_digit_that_a_page_puts_out_is_compared_with_its_bundle(tmp_path):
     options = ":prints: {1: a.b mm}\n:tags: [figure]\n:mystnb: {image: {alt: A box}}\n"
     cells = cell(PRINTS, options), raising("1 / 0 + 25", "ZeroDivisionError: div")
     book = make_book(tmp_path, lab=notebook(cell(WRITE_BUNDLE), *cells, front=LAB_FRONT))
-    (result,) = execute_pages(find_pages(book), places(find_pages(book), tmp_path / "store"))
+    (result,) = run_pages(find_pages(book), tmp_path)
     found = exported_folders(tmp_path / "store")
     assert unnoticed_edits(found) == []
     assert found == [result.folder]

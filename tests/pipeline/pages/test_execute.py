@@ -44,9 +44,7 @@ MEMORY = "import os\nos.kill(os.getpid(), 9)"
 KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\nimport time; time.sleep(60)"
 BROKEN = {
     "good": notebook(cell(GREEN)),
-    "check": notebook(
-        cell(CHECK), cell("# proof\nraise CheckFailed('[one_factor] kp changed,\\nkv too')")
-    ),
+    "check": notebook(cell(CHECK), cell("# proof\nraise CheckFailed('[factor] kp,\\nkv too')")),
     "dead": notebook(cell(LAST_WORDS)),
     "slow": notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"),
     "bundle": notebook(cell("5 + 1"), front=LAB_FRONT.replace("lab", "more")),
@@ -91,10 +89,8 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     assert "8 of 10 pages failed." in report
     place = report.index("check, code cell 2, line ")
     part = report[place : report.index("\n\n", place)]
-    assert part.startswith(
-        "check, code cell 2, line 19: raise CheckFailed('[one_factor] kp changed,\\nkv too')\n"
-    )
-    assert "    CheckFailed: [one_factor] kp changed,\n    kv too\n" in part
+    assert part.startswith("check, code cell 2, line 19: raise CheckFailed('[factor] kp,\\nkv")
+    assert "    CheckFailed: [factor] kp,\n    kv too\n" in part
     assert "    | engine line 5\n" in part
     assert part.endswith("    | engine line 19")
     assert "engine line 4\n" not in part
@@ -218,8 +214,7 @@ def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
     The fourth, for which there is no room at first, waits until both have measured.
     """
     meets, measures = (
-        {name: code.format(place=str(tmp_path), name=name) for name in "abc"}
-        for code in (MEETS, MEASURES)
+        {n: code.format(place=str(tmp_path), name=n) for n in "abc"} for code in (MEETS, MEASURES)
     )
     tag = ":tags: [alone]\n"
     pages = {name: notebook(cell(meets[name]), cell(measures[name], tag)) for name in "ab"}
@@ -259,9 +254,7 @@ ENDS_AFTER_C += " time.sleep(0.1)\ntime.sleep(1)"
 
 
 @pytest.mark.parametrize("saved", [False, True])
-def test_beside_the_first_lab_runs_what_has_kernels_of_its_own_while_none_is_compiled(
-    tmp_path, saved
-):
+def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(tmp_path, saved):
     """The page with kernels of its own ends before the lab; that starts no other page."""
     lab = cell(WRITE_BUNDLE + ENDS_AFTER_C.format(store=str(tmp_path / "store" / "c")))
     more, own = cell("1"), cell("1", ":tags: [own-kernels]\n")

@@ -88,9 +88,7 @@ def executed(folder):
 
 
 @pytest.mark.parametrize("release", [False, True])
-def test_pages_from_elsewhere_are_published_as_they_are_without_a_run(
-    executed, tmp_path, monkeypatch, release
-):
+def test_pages_from_elsewhere_are_published_without_a_run(executed, tmp_path, monkeypatch, release):
     stages = "robo_genesis.pipeline.stages"
     monkeypatch.setattr(f"{stages}.execute_pages", None)  # whoever calls it fails
     monkeypatch.setattr(f"{stages}.unclean", lambda root: [])

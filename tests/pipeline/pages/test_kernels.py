@@ -20,9 +20,7 @@ from robo_genesis.pipeline.pages.kernels import clean_environment
         ("OWN", "1"),
     ],
 )
-def test_a_kernel_gets_the_machine_s_variables_the_engine_s_switches_and_its_own(
-    tmp_path, monkeypatch, name, value
-):
+def test_variables_of_machine_engine_and_page_reach_a_kernel(tmp_path, monkeypatch, name, value):
     monkeypatch.setenv(name, "x")
     environment = clean_environment(tmp_path, "/checkout", {"OWN": "1"})
     assert environment.get(name) == value

@@ -5,13 +5,12 @@ from pathlib import Path
 import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
+from small_book import executed
 from tiny_book import cell, make_book, notebook, raising
 
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import stored_notebook
 from robo_genesis.pipeline.pages.results import GLUED, at_cell, unexpected_outcome
-from robo_genesis.pipeline.pages.store import places
 
 RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}
 
@@ -102,7 +101,7 @@ def failing(tmp_path_factory):
     expected += ["ZeroDivisionError", "Exception", "SystemExit"]
     cells = [raising(code, name) for (code, _), name in zip(FAILING, expected, strict=True)]
     [page] = find_pages(make_book(folder, page=notebook(cell(HELPER), *cells)))
-    [result] = execute_pages([page], places([page], folder / "store"))
+    [result] = executed([page], folder)
     return page, stored_notebook(result)
 
 

@@ -132,9 +132,7 @@ def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(
         *((name, None) for name in (".hidden.py", "notes/a.py", "trimesh.txt")),
     ],
 )
-def test_what_python_would_import_in_the_place_of_a_keyed_module_is_refused(
-    root, page, name, refused
-):
+def test_what_python_would_import_in_place_of_a_keyed_module_is_refused(root, page, name, refused):
     write(root, name)
     said = pytest.raises(ProjectError, match=f"would import {refused} in .* Move the others")
     with said if refused else nullcontext():
@@ -241,9 +239,7 @@ CHANGES += [  # a lesson can be removed with the folder of its tests alone
 
 
 @pytest.mark.parametrize(("file", "change", "run_again", "stale"), CHANGES)
-def test_a_change_runs_the_pages_again_that_use_it_and_makes_stale_what_it_measured(
-    copy, file, change, run_again, stale
-):
+def test_a_change_reaches_the_pages_that_use_it_alone(copy, file, change, run_again, stale):
     root, before = copy
     path = root / "robo_genesis" / f"{file}.py"
     text = path.read_text("utf8")
@@ -298,9 +294,10 @@ OTHERS = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("one", "other", "same"), [(*p, True) for p in SAME] + [(*p, False) for p in OTHERS]
-)
+PAIRS = [(*p, True) for p in SAME] + [(*p, False) for p in OTHERS]
+
+
+@pytest.mark.parametrize(("one", "other", "same"), PAIRS)
 def test_what_a_module_does_counts_and_not_how_it_is_written(one, other, same):
     assert (syntax_digest(one) == syntax_digest(other)) == same
 

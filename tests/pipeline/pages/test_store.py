@@ -7,45 +7,33 @@ from pathlib import Path
 
 import nbformat
 import pytest
-import tiny_book
 from nbformat.v4 import new_output
+from small_book import executed
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, accept, cell, contents, make_book, notebook, refuse
+from tiny_book import seal as seal_page
 
 from robo_genesis.core.files import put, replaced, settle_below
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.bundles import of_build
 from robo_genesis.pipeline.pages import folder as page_folder
+from robo_genesis.pipeline.pages import store
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import PageRefused
 from robo_genesis.pipeline.pages.results import PageResult
-from robo_genesis.pipeline.pages.store import (
-    exported,
-    folders,
-    forget,
-    handed_over,
-    places,
-    stored_result,
-)
 
 LAB = "lab"
 # Beside its bundle a page may leave files for its own figures.
-MORE = tiny_book.WRITE_BUNDLE + '\n(folder.parent / "shape.npz").write_bytes(b"shape")'
+MORE = WRITE_BUNDLE + '\n(folder.parent / "shape.npz").write_bytes(b"shape")'
 
 
 @pytest.fixture(scope="module")
 def elsewhere(tmp_path_factory) -> Path:
     """A book, executed once, with both of its pages exported."""
     root = tmp_path_factory.mktemp("elsewhere")
-    lab = tiny_book.notebook(
-        tiny_book.cell(MORE), tiny_book.cell("print('measured')"), front=tiny_book.LAB_FRONT
-    )
-    book = tiny_book.make_book(
-        root, text=tiny_book.notebook(tiny_book.cell("print('seen')")), **{LAB: lab}
-    )
-    pages = find_pages(book)
-    for result in execute_pages(pages, places(pages, root / "store")):
-        assert result.status == "executed", result.failure
-        put(result.folder, exported(result.page, root / "executed"))
+    lab = notebook(cell(MORE), cell("print('measured')"), front=LAB_FRONT)
+    book = make_book(root, text=notebook(cell("print('seen')")), **{LAB: lab})
+    for result in executed(find_pages(book), root):
+        put(result.folder, store.exported(result.page, root / "executed"))
     return root
 
 
@@ -59,7 +47,7 @@ def here(elsewhere, tmp_path) -> Path:
 
 def take(here: Path) -> list[PageResult]:
     pages = find_pages(here / "book")
-    return handed_over(here / "executed", pages, places(pages, here / "store"))
+    return store.handed_over(here / "executed", pages, store.places(pages, here / "store"))
 
 
 def lab(here: Path, name: str) -> Path:
@@ -84,7 +72,7 @@ def book(change):
         executed = nbformat.read(path, as_version=4)
         change(executed)
         nbformat.write(executed, path)
-        tiny_book.seal(path.parent)
+        seal_page(path.parent)
 
     return spoil
 
@@ -94,7 +82,7 @@ def file(name: str, text: str):
 
     def spoil(here: Path) -> None:
         lab(here, name).write_text(text)
-        tiny_book.seal(lab(here, ""))
+        seal_page(lab(here, ""))
 
     return spoil
 
@@ -110,7 +98,7 @@ def metadata(**changes):
 def test_a_page_is_one_folder_in_the_store_and_between_machines(elsewhere):
     place = elsewhere / "executed" / LAB
     (kept,) = (elsewhere / "store" / LAB).iterdir()
-    assert tiny_book.contents(kept) == tiny_book.contents(place)
+    assert contents(kept) == contents(place)
     record = json.loads((place / "page.json").read_text())
     assert (record["docname"], record["lesson"], record["page"]) == (LAB, "l04", "lab")
     assert record["fingerprint"] == kept.name
@@ -150,11 +138,7 @@ OTHERS = json.dumps({"predicate": {"run_id": RUN}})
 SPOILT = {
     "another fingerprint": (record(fingerprint="1" * 20), "fingerprint", "is 11111"),
     "an unknown page": (record(docname="gone"), "page", "its page is 'gone'. Pages of"),
-    "another lesson": (
-        record(lesson="l02"),
-        "page",
-        "of lab (l02/lab), expected was lab (l04/lab)",
-    ),
+    "another lesson": (record(lesson="l02"), "page", "of lab (l02/lab), expected was lab (l04/la"),
     "forged code": (first_cell(source="1"), "code", CODE),
     "another kernel": (metadata(kernelspec={"name": "other", "display_name": ""}), "code", CODE),
     "a run that is none": (record(run_id="../x"), "record", "page.json is not what"),
@@ -227,28 +211,24 @@ FAILS = {
 
 
 @pytest.mark.parametrize("spoil", FAILS.values(), ids=FAILS)
-def test_a_page_of_the_store_that_fails_is_executed_again_by_this_build_or_the_next(
-    here, monkeypatch, spoil
-):
+def test_a_stored_page_that_fails_is_run_again_by_this_build_or_the_next(here, monkeypatch, spoil):
     """Whatever is wrong with it, no build fails for ever."""
     monkeypatch.setattr(of_build, "require_contract", lambda *given: None)
     spoil(here)
     _, page = find_pages(here / "book")
-    place = places([page], here / "store")[LAB]
+    place = store.places([page], here / "store")[LAB]
     place.parent.mkdir(parents=True)
     (here / "executed" / LAB).rename(place)
 
     def build() -> str:
         try:
-            result = stored_result(page, place)
+            result = store.stored_result(page, place)
         except PageRefused:
             result = None
         if result is None:
             return "executed again"
-        judge = tiny_book.refuse if spoil is keep else tiny_book.accept
-        return (
-            "".join(of_build.verify_results(judge, [result], lambda *said: None)[1]) or "accepted"
-        )
+        judge = refuse if spoil is keep else accept
+        return "".join(of_build.verify_results(judge, [result], lambda *_: None)[1]) or "accepted"
 
     first = build()
     assert first == "executed again" or first.endswith("The next build executes the page again.")
@@ -261,19 +241,17 @@ def test_a_page_of_the_store_that_fails_is_executed_again_by_this_build_or_the_n
 
 @pytest.mark.parametrize("newest", [1000, 10**10], ids=["past", "future"])
 def test_the_used_and_the_newest_folders_of_a_page_are_kept_and_other_pages_go(tmp_path, newest):
-    (page,) = find_pages(
-        tiny_book.make_book(tmp_path, text=tiny_book.notebook(tiny_book.cell("1")))
-    )
-    store = tmp_path / "store"
+    (page,) = find_pages(make_book(tmp_path, text=notebook(cell("1"))))
+    kept = tmp_path / "store"
     for age, name in enumerate("abcde"):
-        (store / "text" / name).mkdir(parents=True)
-        os.utime(store / "text" / name, (newest - age, newest - age))
+        (kept / "text" / name).mkdir(parents=True)
+        os.utime(kept / "text" / name, (newest - age, newest - age))
     for left in ("gone/fingerprint", "text/.a.next", "a" * 20 + "/notebooks"):
-        (store / left).mkdir(parents=True)
-    forget(store, [page], {"text": store / "text" / "e"})
-    assert [path.name for path in store.iterdir()] == ["text"]
-    assert {path.name for path in folders(store, page)} == {"e", "a", "b"}
-    assert sorted(path.name for path in (store / "text").iterdir()) == ["a", "b", "e"]
+        (kept / left).mkdir(parents=True)
+    store.forget(kept, [page], {"text": kept / "text" / "e"})
+    assert [path.name for path in kept.iterdir()] == ["text"]
+    assert {path.name for path in store.folders(kept, page)} == {"e", "a", "b"}
+    assert sorted(path.name for path in (kept / "text").iterdir()) == ["a", "b", "e"]
 
 
 def test_a_folder_that_is_missing_is_named(here):

@@ -48,11 +48,8 @@ def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_pa
     for _ in range(2):
         status, said = run(tmp_path, lab("cuda"))
         assert status == 0
-        assert {path.name for path in place.iterdir()} == {
-            "log.txt",
-            "manifest.json",
-            "printed.json",
-        }
+        names = {path.name for path in place.iterdir()}
+        assert names == {"log.txt", "manifest.json", "printed.json"}
         assert old.read_text() == "new"
         run_ids.append(json.loads((place / "manifest.json").read_text())["predicate"]["run_id"])
     assert run_ids[0] != run_ids[1]
@@ -97,15 +94,7 @@ RELABELLED = lab("amdgpu", more='\nfolder.rename(folder.with_name("cuda"));')
         (BY_HAND, {}, "command: manifest.json: command is .*, expected make evidence"),
         (lab("cuda"), STOPPED, "interrupted .*the older bundle is unchanged"),
     ],
-    ids=[
-        "raises",
-        "another backend",
-        "relabelled",
-        "refused",
-        "no camera",
-        "another command",
-        "stopped",
-    ],
+    ids=["raises", "backend", "relabelled", "refused", "no camera", "command", "stopped"],
 )
 def test_a_run_that_is_not_accepted_leaves_the_old_bundle(tmp_path, page, settings, reason):
     old = old_bundle(tmp_path, "cuda")
@@ -239,9 +228,7 @@ def test_all_labs_are_recorded_in_the_order_of_the_book(labs, tmp_path):
         (KeyboardInterrupt(), 130, "interrupted – 0 the older bundle is unchanged"),
     ],
 )
-def test_a_failure_is_reported_at_once_and_only_an_interruption_ends_the_command(
-    labs, error, status, row
-):
+def test_a_failure_is_reported_at_once_and_only_ctrl_c_ends_the_command(labs, error, status, row):
     found, ran, said = labs(l03=error)
     assert (found, ran) == (status, ["l02", "l03", *["l04"] * (status == 1)])
     assert last(said)[2] == f"l03 amdgpu – {row}"

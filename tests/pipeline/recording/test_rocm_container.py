@@ -53,9 +53,8 @@ def test_a_host_without_packages_gets_the_message(tmp_path):
     start = f"import sys, runpy; sys.path.insert(0, {str(ROOT)!r}); sys.argv[1:] = []; "
     code = f"{start} runpy.run_path({str(script)!r}, {{}}, '__main__')"
     given = {"PATH": str(tmp_path), "LESSON": "l04"}
-    done = subprocess.run(
-        [sys.executable, "-I", "-S", "-c", code], env=given, capture_output=True, text=True
-    )
+    command = [sys.executable, "-I", "-S", "-c", code]
+    done = subprocess.run(command, env=given, capture_output=True, text=True)
     assert done.returncode == 1
     said = "PATH has neither docker nor podman. Install one of them, or record w"
     assert done.stderr.startswith(said), done.stderr

@@ -1,22 +1,16 @@
 """Control cases are validated and never changed; a run records each state at its own time."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from robo_genesis.lessons.l04.spec import BASELINE, G1, G2
 from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.joint_control import (
-    CaseError,
-    ControlCase,
-    differences,
-    reset,
-    run_case,
-    validate,
-)
+from robo_genesis.sim.arm.joint_control import CaseError, differences, reset, run_case, validate
 from robo_genesis.sim.arm.model import RobotModel
 
+NOT_POSITIVE = ({"steps": 0}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
 ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")
 N = len(JOINT_NAMES)
 
@@ -93,10 +87,7 @@ def test_a_limit_of_float32_and_gains_of_zero_are_valid(joints):
         (value("q_start", 3, -3.1), "joint4] is -3.1 rad, outside its range [-3.0718, -0.0698]"),
         (value("q_target", 8, 0.05), "finger_joint2] is 0.05 m, outside its range [0, 0.04]"),
         (value("q_target", 0, 2.8973 + 5e-6), "none is clipped"),
-        *(
-            (change, "must be positive")
-            for change in ({"steps": 0}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
-        ),
+        *((change, "must be positive") for change in NOT_POSITIVE),
     ],
 )
 def test_an_invalid_case_is_refused_with_entry_and_range(joints, change, message):
@@ -111,9 +102,9 @@ def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints
     named = ["kp[joint4]", "kv[joint4]", "kv[finger_joint1]", "steps"]
     assert differences(G1, other, joints) == named
     settings = {"steps": 1, "dt": 1, "substeps": 1, "seed": 1, "model": RobotModel("", ())}
-    other = ControlCase(**dict.fromkeys(ARRAYS, np.full(N, -1.0)), **settings)
+    other = replace(BASELINE, **dict.fromkeys(ARRAYS, np.full(N, -1.0)), **settings)
     named = {entry.split("[")[0] for entry in differences(BASELINE, other, joints)}
-    assert named == set(ControlCase.__dataclass_fields__)
+    assert named == {field.name for field in fields(BASELINE)}
 
 
 @pytest.mark.parametrize(
@@ -125,9 +116,7 @@ def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints
         ({}, value("q_target", 3, 0.0), "none is clipped"),
     ],
 )
-def test_what_does_not_fit_is_refused_before_the_engine_is_touched(
-    robot, joints, scene, case, message
-):
+def test_what_does_not_fit_is_refused_before_the_engine_moves(robot, joints, scene, case, message):
     vars(robot).update(scene)
     with pytest.raises(CaseError, match=message):
         run_case(robot, robot, joints, replace(BASELINE, **case))

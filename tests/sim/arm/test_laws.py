@@ -28,10 +28,10 @@ def test_a_run_that_amplifies_rounding_is_sound():
     assert codes(RUN) == codes(other) == []
 
 
-@pytest.mark.parametrize(
-    ("array", "code"),
-    [("q", "start"), ("qd", "law"), ("internal_force", "motion"), ("target", "start")],
-)
+CODES = [("q", "start"), ("qd", "law"), ("internal_force", "motion"), ("target", "start")]
+
+
+@pytest.mark.parametrize(("array", "code"), CODES)
 def test_an_altered_array_is_a_breach(array, code):
     altered = replace(RUN, **{array: getattr(RUN, array) * 1.02})
     assert codes(altered)[0] == code

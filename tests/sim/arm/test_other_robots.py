@@ -57,9 +57,7 @@ URDF = """<robot name="arm">
 </robot>"""
 FILES = {"arm.xml": MJCF, "arm.urdf": URDF, "parts/tool.xml": TOOL, "parts/tool.obj": MESH}
 
-LEGS = [
-    f"{at}_{part}_joint" for at in ("FL", "FR", "RL", "RR") for part in ("hip", "thigh", "calf")
-]
+LEGS = [f"{at}_{of}_joint" for at in ("FL", "FR", "RL", "RR") for of in ("hip", "thigh", "calf")]
 
 
 def case_of(model, *q_start):
@@ -71,9 +69,8 @@ def case_of(model, *q_start):
 
 SLIDER = case_of(RobotModel("arm.xml", ("turn", "lift", "push"), hand="tool"), 0.2, -0.4, 0.05)
 CRANE = case_of(RobotModel("arm.urdf", ("swing", "reach"), hand="rod"), 0.5, 0.1)
-DOG = case_of(
-    RobotModel("urdf/go2/urdf/go2.urdf", tuple(LEGS), free_base=True), *(0.0, 0.8, -1.5) * 4
-)
+GO2 = RobotModel("urdf/go2/urdf/go2.urdf", tuple(LEGS), free_base=True)
+DOG = case_of(GO2, *(0.0, 0.8, -1.5) * 4)
 MOTORS = {name: getattr(CRANE, name) * [0.0, 1.0] for name in ("kp", "kv", "effort_limit")}
 PASSIVE = replace(CRANE, **MOTORS)  # its first joint has no motor
 ARMS = pytest.mark.parametrize("case", [SLIDER, CRANE], ids=["MJCF", "URDF"])
@@ -113,9 +110,7 @@ def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
     again = mujoco_joints.run_case(case, links, *how)
     assert [*laws.driven_run(run, case, links)] == []
     assert [*laws.driven_in_mujoco(again, case, links, *how)] == []
-    stiff = replace(
-        case, kp=5000 * case.kp, kv=5000 * case.kv, effort_limit=1e5 * case.effort_limit
-    )
+    stiff = replace(case, kp=5e3 * case.kp, kv=5e3 * case.kv, effort_limit=1e5 * case.effort_limit)
     assert [*laws.driven_run(driven(stiff, links), stiff, links)] == []
     text = FILES[case.model.file].replace('size="0.04"', 'size="0.05"').replace('"3"', '"6"')
     (folder / f"heavy-{case.model.file}").write_text(text)
@@ -182,9 +177,8 @@ def test_any_arm_is_the_same_in_both_engines(robots, case):
     (position,), (quat,) = engine.link_poses_at(robot, joints, [of.hand], case.q_start)
     expected = mujoco_kinematics.link_poses(case.q_start[None], [of.hand], of)
     assert position == pytest.approx(expected.position[0, 0], abs=1e-6)
-    answer = engine.solve_ik(
-        robot, joints, position, quat, case.q_start, engine.IkSettings(samples=1), of=of
-    )
+    one = engine.IkSettings(samples=1)
+    answer = engine.solve_ik(robot, joints, position, quat, case.q_start, one, of=of)
     command = engine.accepted_command(answer, engine.IkSettings(), case.q_start, of)
     assert command == pytest.approx(case.q_start, abs=1e-3)
     assert engine.tip_height(answer.q, of) == pytest.approx(position[2], abs=1e-4)
@@ -211,15 +205,12 @@ def test_a_quadruped_drives_its_legs_and_what_needs_a_fixed_base_says_so(robots)
     assert base == pytest.approx(trace.link_pos[-1, page.links.index("base")], abs=1e-6)
     assert np.abs(calf - trace.link_pos[-1, page.links.index("FL_calf")]).max() > 1e-3
     assert (robot.get_links_pos() == before).all()
-    hand = replace(of, hand="base")
+    hand, at = replace(of, hand="base"), (robots.scene, robot, joints, DOG.q_start)
     for refused, message in (
         (lambda: [*laws.driven_run(trace, DOG, page.links)], "a base that moves freely"),
         (lambda: mujoco_kinematics.jacobian(DOG.q_start, hand), "a base that moves freely"),
         (lambda: describe(page, robot, replace(of, free_base=False)), "moves by .*'FREE'"),
-        (
-            lambda: dynamics.gravity_effort(robots.scene, robot, joints, DOG.q_start),
-            "The robot has 18 DOFs, the map 12",
-        ),
+        (lambda: dynamics.gravity_effort(*at), "The robot has 18 DOFs, the map 12"),
     ):
         with pytest.raises(ModelError, match=message):
             refused()

@@ -44,9 +44,7 @@ def run(velocity=(0.0, 0.0, 0.0), spin=(0.0, 0.0, 0.0)) -> ContactTrace:
         ((0, 0, 0), (0, 0.1, 0), 1),
     ],
 )
-def test_an_impulse_of_the_surface_is_upward_in_the_friction_cone_and_at_the_cube(
-    velocity, spin, breaches
-):
+def test_an_impulse_of_the_surface_is_upward_in_the_cone_and_at_the_cube(velocity, spin, breaches):
     trace = run(velocity, spin)
     assert len(list(bodies.impulses(trace, CASE, ALL))) == breaches
     assert list(bodies.impulses(trace, CASE, np.array([True, False]))) == []

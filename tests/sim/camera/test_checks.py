@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from closed_views import FAR, FOV, MARKER, PLANE, SIZE, TRANSFORM, K, closed_view
 
-from robo_genesis.sim.camera import checks as camera_checks
+from robo_genesis.sim.camera import checks
 from robo_genesis.sim.camera import geometry as cameras
 from robo_genesis.sim.camera.views import View
 
@@ -28,24 +28,22 @@ GIVEN = {"fov": FOV, "near": 0.1, "far": FAR, "pos": TRANSFORM[:3, 3],
          "lookat": (TRANSFORM @ (0, 0, -1, 1))[:3]}  # fmt: skip
 SMALL = replace(MARKER, radius=0.04)
 SPOILED = {
-    "another number": (camera_checks.projection, closed_view(), replace(MARKER, number=7)),
-    "another radius": (camera_checks.sphere_surface, closed_view(), replace(MARKER, radius=0.11)),
-    "too few pixels": (camera_checks.projection, closed_view(SMALL), SMALL),
-    "moved pose": (camera_checks.projection, moved(closed_view()), MARKER),
-    "depth along the ray": (camera_checks.sphere_surface, along(closed_view()), MARKER),
-    "another height": (camera_checks.plane_surface, closed_view(), PLANE, 0.01),
+    "another number": (checks.projection, closed_view(), replace(MARKER, number=7)),
+    "another radius": (checks.sphere_surface, closed_view(), replace(MARKER, radius=0.11)),
+    "too few pixels": (checks.projection, closed_view(SMALL), SMALL),
+    "moved pose": (checks.projection, moved(closed_view()), MARKER),
+    "depth along the ray": (checks.sphere_surface, along(closed_view()), MARKER),
+    "another height": (checks.plane_surface, closed_view(), PLANE, 0.01),
 }
 OTHER = {"fov": 43.0, "near": 0.2, "far": 21.0, "lookat": (0, 0, 0)}
-SPOILED |= {
-    n: (camera_checks.camera_matrix, closed_view(), GIVEN | {n: of}) for n, of in OTHER.items()
-}
+SPOILED |= {n: (checks.camera_matrix, closed_view(), GIVEN | {n: of}) for n, of in OTHER.items()}
 
 
 @pytest.mark.parametrize("how", SPOILED)
 def test_a_check_fails_if_its_input_is_wrong(how):
     check, *given = SPOILED[how]
     assert problems(check("v", *given))
-    assert not problems(camera_checks.camera_matrix("v", closed_view(), GIVEN))
+    assert not problems(checks.camera_matrix("v", closed_view(), GIVEN))
 
 
 def test_a_camera_on_a_link_is_at_the_pose_of_the_link_times_the_offset():
@@ -54,6 +52,6 @@ def test_a_camera_on_a_link_is_at_the_pose_of_the_link_times_the_offset():
     expected = np.array([[0, -1, 0, 0.5], [1, 0, 0, 0.1], [0, 0, 1, 0.35], [0, 0, 0, 1]])
     view = View(K, expected, SIZE, (0.1, 20.0))
     position = np.array([0.5, 0.0, 0.3])
-    assert not problems(camera_checks.mounted_camera("v", view, position, quat, offset))
-    stale = camera_checks.mounted_camera("v", view, position + 0.01, quat, offset)
+    assert not problems(checks.mounted_camera("v", view, position, quat, offset))
+    stale = checks.mounted_camera("v", view, position + 0.01, quat, offset)
     assert problems(stale) == ["position_error_m"]

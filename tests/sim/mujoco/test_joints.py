@@ -29,9 +29,10 @@ def test_forces_have_the_times_of_the_states_and_are_bounded_law_and_net_force(t
     assert abs(trace.internal_force[-1, K]) < 5 < abs(trace.control_force[-1, K])
 
 
-@pytest.mark.parametrize(
-    ("timestep", "integrator"), [(0.005, "RK4"), (0.003, "Euler"), (0.02, "implicitfast")]
-)
+OTHERS = [(0.005, "RK4"), (0.003, "Euler"), (0.02, "implicitfast")]
+
+
+@pytest.mark.parametrize(("timestep", "integrator"), OTHERS)
 def test_what_would_be_another_experiment_is_refused(timestep, integrator):
     with pytest.raises(CaseError, match=r"expected one of implicitfast, Euler, and a time step"):
         mujoco_joints.run_case(l04.G2, LINKS, timestep, integrator)

@@ -36,10 +36,8 @@ def pages(parsed_pages) -> dict[str, BeautifulSoup]:
 
 
 def test_each_figure_table_and_printed_text_has_one_row_and_each_row_its_place(pages):
-    rows = [
-        place(row.select_one("td a")["href"])
-        for row in pages[LEDGER].select("#figures-and-tables tbody tr")
-    ]
+    table = pages[LEDGER].select("#figures-and-tables tbody tr")
+    rows = [place(row.select_one("td a")["href"]) for row in table]
     shown = set()
     for name, page in pages.items():
         for tag in page.select(f":is({SHOWN}):not(.course-map img)"):  # a card repeats a picture

@@ -38,9 +38,8 @@ def theme(request) -> str:
 
 @pytest.fixture(scope="module")
 def page(browser, address, theme) -> Iterator[Page]:
-    page = browser.new_page(
-        viewport={"width": 1280, "height": 900}, color_scheme=theme, reduced_motion="reduce"
-    )
+    window = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
+    page = browser.new_page(**window, color_scheme=theme)
     page.goto(f"{address}/{LECTURE}")
     page.wait_for_function(f"document.documentElement.dataset.theme === {theme!r}")
     yield page
@@ -55,9 +54,8 @@ def style(page: Page, selector: str, name: str) -> str:
 def test_the_page_s_ground_is_one_that_the_palette_was_held_against(page, theme):
     assert hexadecimal(style(page, "body", "backgroundColor")) in GROUNDS[theme]
     recorded = "<div class='evidence-panel'></div>"  # of a lab with a recorded run
-    page.locator("article").evaluate(
-        "(one, recorded) => one.insertAdjacentHTML('beforeend', recorded)", recorded
-    )
+    add = "(one, recorded) => one.insertAdjacentHTML('beforeend', recorded)"
+    page.locator("article").evaluate(add, recorded)
     panel = hexadecimal(style(page, "div.evidence-panel", "backgroundColor"))
     assert panel in GROUNDS[theme]
 

@@ -59,9 +59,8 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
             found = call(lecture, "poses")
             added = [f"target_{link}" for link in BELOW]
             assert sorted(found) == sorted([*links, *added, "still", "target", "shadows"])
-            places, turns = (
-                np.array([found[link][part] for link in links]) for part in ("position", "rotation")
-            )
+            poses = [[found[link][part] for link in links] for part in ("position", "rotation")]
+            places, turns = map(np.array, poses)
             recorded = rotations(trace.link_quat[sample])
             turns *= np.sign((turns * recorded).sum(axis=1))[:, None]  # q and −q turn alike
             assert places == pytest.approx(trace.link_pos[sample], abs=1e-6), (case, sample)

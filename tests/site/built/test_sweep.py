@@ -44,9 +44,10 @@ def visits(browser, site, unpacked):
         yield visited
 
 
-@pytest.mark.parametrize(
-    ("way", "rule"), [(name, rule) for name, kind in KINDS.items() for rule in kind.rules]
-)
+WAYS = [(name, rule) for name, kind in KINDS.items() for rule in kind.rules]
+
+
+@pytest.mark.parametrize(("way", "rule"), WAYS)
 def test_every_page_obeys(visits: Callable[[str], dict[str, Visit]], way, rule):
     wrong = {name: visit.wrong.get(rule, []) for name, visit in visits(way).items()}
     assert {name: complaints for name, complaints in wrong.items() if complaints} == {}

@@ -14,12 +14,16 @@ PIXEL = "data:image/gif;base64,R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs="
 ELSEWHERE = "https://example.org/pixel.png"
 SMALL = "display: block; height: 8px; width: 8px; padding: 0; overflow: hidden"
 
+SCROLLS = "overflow-x: auto; width: 50px"
+WIDE = "<span style='display: block; width: 900px'>wide</span>"
+
+
+def on_load(code: str) -> str:
+    return f"<script>addEventListener('load', () => {code})</script>"
+
+
 SPOILS = [
-    (
-        "axe",
-        "image-alt",
-        f"<details><summary>fold</summary><img id='bare' src='{PIXEL}'></details>",
-    ),
+    ("axe", "image-alt", f"<details><summary>fold</summary><img src='{PIXEL}'></details>"),
     ("axe", "color-contrast", "<p style='color: #aaa; background: #fff'>pale</p>"),
     ("axe", "target-size", f"<a href='#1' style='{SMALL}'>1</a><a href='#2' style='{SMALL}'>2</a>"),
     ("blocking scripts", "plot.js", "<script src='_static/plot.js?early'></script></head>"),
@@ -32,26 +36,18 @@ SPOILS = [
     (
         "layout shift",
         "<",  # the first of what moves; the browser decides which that is
-        "<script>addEventListener('load', () => requestAnimationFrame(() => {"
-        " document.querySelector('article').style.marginTop = '300px'; }))</script>",
+        on_load(
+            "requestAnimationFrame(() => {"
+            " document.querySelector('article').style.marginTop = '300px'; })"
+        ),
     ),
     ("lines", "long", "<p id='long' style='width: 900px; max-width: none'>long</p>"),
     ("messages", "404: ", "<script src='missing.js' defer></script>"),
     ("messages", "an uncaught error", "<script>throw new Error('an uncaught error')</script>"),
     ("motion", "moves", "<p id='moves' style='transition: color 1s !important'>moves</p>"),
-    (
-        "scroll boxes",
-        "unreached",
-        "<div id='unreached' style='overflow-x: auto; width: 50px'><span style='display: block;"
-        " width: 900px'>wide</span></div>",
-    ),
+    ("scroll boxes", "unreached", f"<div id='unreached' style='{SCROLLS}'>{WIDE}</div>"),
     ("tab order", "tabindex", "<a href='#' tabindex='3'>first</a>"),
-    (
-        "theme",
-        "grey",
-        "<script>addEventListener('load', () => {"
-        " document.documentElement.dataset.theme = 'grey'; })</script>",
-    ),
+    ("theme", "grey", on_load("{ document.documentElement.dataset.theme = 'grey'; }")),
     ("weight", "index.html", f"<!-- {random.Random(0).randbytes(BUDGET).hex()} -->"),
     ("width", "sticks-out", "<p id='sticks-out' style='width: 5000px; max-width: none'>wide</p>"),
     # The last, because it ends the article.

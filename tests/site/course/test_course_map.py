@@ -98,6 +98,4 @@ def test_lessons_that_are_absent_leave_words_and_no_content(small_site):
     assert [line.select_one(".evidence-badge").get_text() for line in lines] == 2 * [
         "cpu-missing", "amdgpu-missing"
     ]  # fmt: skip
-    assert article.select_one(".course-measured").get_text() == (
-        "No run of this build was accepted."
-    )
+    assert article.select_one(".course-measured").get_text() == "No run of this build was accepted."

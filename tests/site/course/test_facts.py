@@ -33,10 +33,10 @@ def test_a_page_has_both_and_the_home_page_no_time(small_site):
     assert len(tag["content"]) <= facts.DESCRIPTION
 
 
-@pytest.mark.parametrize(
-    ("repository", "offered"),
-    [("", 0), ("https://gitlab.com/a/course", 0), ("https://github.com/a/course", 1)],
-)
+REPOSITORIES = [("", 0), ("https://gitlab.com/a/course", 0), ("https://github.com/a/course", 1)]
+
+
+@pytest.mark.parametrize(("repository", "offered"), REPOSITORIES)
 def test_feedback_goes_to_the_form_of_a_repository_on_github(repository, offered):
     config = SimpleNamespace(root_doc="index", course_repository=repository)
     env = SimpleNamespace(metadata={"l04/lab": {facts.MINUTES: "1 min"}})

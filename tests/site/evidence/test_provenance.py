@@ -6,7 +6,7 @@ from docutils import nodes
 from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
 from small_book import draft_of, executed
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, paragraphs, raising
 
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.book import find_pages
@@ -28,30 +28,15 @@ glue("bare", drawn("bare"), display=False)
 glue("inline", drawn("inline"), display=False)
 glue("any table", table("any"), display=False)
 glue("md table", table("md"), display=False)"""
-GLUED = """
-
-```{glue:figure} captioned
-:alt: A glued picture.
-
-Its caption.
-```
-
-```{glue} bare
-```
-
-Here it stands in a sentence, {glue}`inline`.
-
-```{glue} any table
-```
-
-```{glue:md} md table
-:format: gfm
-```
-
-| typed |
-| --- |
-| 7 |
-"""
+MD_TABLE = "\n```{glue:md} md table\n:format: gfm\n```\n"
+GLUED = paragraphs(
+    "\n```{glue:figure} captioned\n:alt: A glued picture.\n\nIts caption.\n```",
+    "```{glue} bare\n```",
+    "Here it stands in a sentence, {glue}`inline`.",
+    "```{glue} any table\n```",
+    MD_TABLE,
+    "| typed |\n| --- |\n| 7 |",
+)
 REMOVED, INPUTS = ":tags: [remove-cell]\n", ":tags: [inputs]\n"
 FIGURE = ":tags: [figure]\n:mystnb: {image: {alt: A drawing}}\n"
 OF_RUN = "No accepted evidence: cpu-refused. ledger"
@@ -72,7 +57,7 @@ AS_MEASURED = (
     cell("table('chosen')", INPUTS), cell("show('measured')"), cell("table('printed')"),
     cell("show('one')\ntable('of both')"), cell("drawn('printed, too')", FIGURE),
     raising("print('2.5 mm')\n1 / 0", "ZeroDivisionError: division"),
-    cell("show_drawn('measured, too')", FIGURE), "\n```{glue:md} md table\n:format: gfm\n```\n",
+    cell("show_drawn('measured, too')", FIGURE), MD_TABLE,
 )  # fmt: skip
 AS_PRINTED = (
     cell(GLUE, REMOVED), cell("table('chosen')", INPUTS), cell("table('read')"),

@@ -117,9 +117,8 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures,
     assert texts(page, "output") == ["Answer 1, refused."]
     page.get_by_label("Cells show").select_option("margin [rad]")
     assert page.get_by_role("grid").get_attribute("aria-label") is None
-    assert texts(page, "caption") == [
-        "Plane upright. x to the right. Numbers: margin [rad]. ×: refused."
-    ]
+    (caption,) = texts(page, "caption")
+    assert caption == "Plane upright. x to the right. Numbers: margin [rad]. ×: refused."
     page.get_by_label("Map").select_option("Plane level")
     assert texts(page, "output") == ["Answer 7, accepted."]  # the same place
     assert page.locator("[role=gridcell]").count() == 3

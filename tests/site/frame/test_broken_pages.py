@@ -5,7 +5,7 @@ import re
 import pytest
 import yaml
 from small_book import draft_of, executed
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, paragraphs
 
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.pages.book import find_pages
@@ -28,23 +28,12 @@ from IPython.display import Markdown
 from myst_nb import glue
 table = Markdown("| read |\\n| --- |\\n| 7 |")"""
 INPUTS = ":tags: [inputs]\n"
-LAB = """
-A sentence with {glue:text}`number`.
-
-[amdgpu-verified]{.evidence-badge .state-verified}
-
-```{figure} ../book/evidence/l04/amdgpu/frames/final.svg
-:alt: x
-
-Free words.
-```
-
-```{figure} innocent.svg
-:alt: x
-
-Free words.
-```
-"""
+LAB = paragraphs(
+    "\nA sentence with {glue:text}`number`.",
+    "[amdgpu-verified]{.evidence-badge .state-verified}",
+    "```{figure} ../book/evidence/l04/amdgpu/frames/final.svg\n:alt: x\n\nFree words.\n```",
+    "```{figure} innocent.svg\n:alt: x\n\nFree words.\n```",
+)
 CELLS = (
     cell("Markdown('<table><tr><td>7</td></tr></table>')"),
     cell("Markdown('a <b style=\"position: fixed\">7</b>')"),
@@ -61,10 +50,7 @@ OTHERS = {
     ],
     "glue": ["bare is glued from the page lab, and its origin would not be shown."],
     "free": ["a cell shows a table, but the page declares no bundle"],
-    "glossary": [
-        f"glossary_forms.yml names '{name}', which is not in the glossary"
-        for name in ("gain", "force")
-    ],
+    "glossary": [f"glossary_forms.yml names '{n}', which is not in th" for n in ("gain", "force")],
 }
 """What is said of the other pages."""
 
@@ -77,7 +63,7 @@ def report(tmp_path_factory):
         (folder / "book" / place).mkdir(parents=True)
     imports = cell(IMPORTS)
     pages = {
-        "text": "# Text\n\n" + "\n\n".join(TEXT) + "\n",
+        "text": "# Text\n\n" + paragraphs(*TEXT),
         "lessons/l02-two/lecture": "# Two\n\nText.\n",
         "lab": notebook(cell(WRITE_BUNDLE), imports, *CELLS, front=LAB_FRONT) + LAB,
         "glue": "# Glue\n\n{glue}`lab.md::bare`\n",
@@ -87,9 +73,8 @@ def report(tmp_path_factory):
     }
     book = make_book(folder, **pages)
     (book / glossary.FORMS).write_text("forms: {gain: [gains]}\nunlinked: [force]")
-    (book / course_map.FILE).write_text(
-        yaml.safe_dump([{"id": "L01", "title": "One", "page": "gone", "outcomes": ["go"]}])
-    )
+    published = {"id": "L01", "title": "One", "page": "gone", "outcomes": ["go"]}
+    (book / course_map.FILE).write_text(yaml.safe_dump([published]))
     frame = book / "evidence/l04/amdgpu/frames/final.svg"
     frame.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     (book / "innocent.svg").symlink_to(frame)

@@ -22,10 +22,10 @@ def page(tmp_path, body: str, head: str = "") -> BeautifulSoup:
     return BeautifulSoup(finish_page(html, tmp_path), "html.parser")
 
 
-@pytest.mark.parametrize(
-    ("body", "explorer"),
-    [("<p>Text</p>", []), ('<div class="explorer"></div>', [("explorer.js", True, None)])],
-)
+EXPLORERS = [("<p>Text</p>", []), ('<div class="explorer"></div>', [("explorer.js", True, None)])]
+
+
+@pytest.mark.parametrize(("body", "explorer"), EXPLORERS)
 def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path, body, explorer):
     scripts = page(tmp_path, body, HEAD).select("script")
     how = [(s.get("src"), s.has_attr("defer"), s.get("type")) for s in scripts]
@@ -60,9 +60,8 @@ def test_images_get_their_size_and_wait_until_they_are_in_sight(tmp_path):
     frame = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 6"><image/></svg>'
     (tmp_path / "x.svg").write_text(frame)
     body = '<article><img src="a%20b.png"/><img src="x.svg"/><img src="x.svg" width="9"/>'
-    sizes = [
-        (i["width"], i.get("height"), i["loading"]) for i in page(tmp_path, body).select("img")
-    ]
+    images = page(tmp_path, body).select("img")
+    sizes = [(i["width"], i.get("height"), i["loading"]) for i in images]
     assert sizes == [("30", "20", "lazy"), ("9", "6", "lazy"), ("9", None, "lazy")]
 
 

@@ -15,9 +15,7 @@ details[open] > summary { color: red }
 FIRST, THEME, OWN = "_static/basic.css", style_sheets.SHEETS[1], "_static/course.css"
 
 
-def test_the_joined_sheet_keeps_order_addresses_and_rules_for_names_that_a_page_or_script_has(
-    tmp_path,
-):
+def test_the_joined_sheet_keeps_order_addresses_and_used_rules(tmp_path):
     (tmp_path / "_static/styles").mkdir(parents=True)
     (tmp_path / THEME).write_text(SHEET + ".used { src: url(../vendor/a.woff2) }")
     (tmp_path / FIRST).write_text(".used { background: url('file.png') url(data:x) }")

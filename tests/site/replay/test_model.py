@@ -99,9 +99,7 @@ def test_the_validator_finds_nothing(glb, tmp_path):
     assert report(glb.replace(b'"VEC3"', b'"VEC2"'), tmp_path)["issues"]["numErrors"] > 0
 
 
-def test_every_key_is_a_sample_of_the_record_and_a_sign_flip_turns_nothing_the_long_way(
-    model, turning
-):
+def test_each_key_is_a_sample_and_a_sign_flip_turns_nothing_the_long_way(model, turning):
     flipped = turning["G1"].link_quat[:, 1]
     assert (flipped[1:] * flipped[:-1]).sum(axis=1).min() < 0
     for (case, trace), (k, link) in product(turning.items(), enumerate(LINKS)):

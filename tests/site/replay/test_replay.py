@@ -120,9 +120,7 @@ def page(block, open_block) -> Page:
 
 @pytest.mark.browser
 def test_keys_read_the_record_out_and_the_plots_draw_it(page):
-    assert (
-        readout(page, ".replay")["time"] == "0.00 s, before the first step"
-    )  # nothing plays by itself
+    assert readout(page, ".replay")["time"] == "0.00 s, before the first step"  # not played
     slider = choose(page, "low", 19)
     slider.press("ArrowRight")
     fallen = {"time": "0.20 s", "height": "0.8000 m", "vertical velocity": "−2.0000 m/s"}
@@ -200,9 +198,7 @@ def test_reduced_motion_goes_by_steps(block, open_block):
 
 
 @pytest.mark.browser
-def test_without_3d_or_with_a_missing_file_the_plots_play_and_it_is_said(
-    block, open_block, browser_3d, tmp_path
-):
+def test_without_3d_or_file_the_plots_play_and_it_is_said(block, open_block, browser_3d, tmp_path):
     arguments = ["--no-sandbox", "--disable-3d-apis"]
     blind = browser_3d.browser_type.launch(executable_path=chromium(), args=arguments)
     page = open_block(block, blind)

@@ -36,9 +36,7 @@ def turned(angle: float, sag: float = 0.0) -> list[np.ndarray]:
     return [*above, *(all_of_it @ joint @ pose for pose in below)]
 
 
-def turning(
-    target: float = TARGET, final: float = -1.8, unit: str = "rad", off: float = 0.0
-) -> Runs:
+def turning(target=TARGET, final=-1.8, unit="rad", off=0.0) -> Runs:
     """Runs of a joint that turns while the base sags; `off` is an error of its record [rad]."""
     q = np.linspace(START, final, 11)
     poses = np.array([turned(angle - START, 0.1 * (angle - START)) for angle in q])

@@ -14,10 +14,7 @@ def writer(tmp_path):
         ("Plain *text* with $x_1$.", "Plain *text* with $x_1$."),
         ("(anchor)=\n## Title", "## Title"),
         ("% a comment\n\nText.", "Text."),
-        (
-            "[lecture](lecture.md), [Genesis](https://x.org/a)",
-            "lecture, [Genesis](https://x.org/a)",
-        ),
+        ("[page](lecture.md), [Genesis](https://x.org/a)", "page, [Genesis](https://x.org/a)"),
         ("It went to {measured}`l04/lab G2.overshoot`.", "It went to <l04/lab G2.overshoot>."),
         ("{term}`DOF`, {ref}`this part <there>`, {numref}`fig-a`", "DOF, this part, the figure"),
         ("{engine-source}`engine/scene.py`", "`genesis/engine/scene.py`"),

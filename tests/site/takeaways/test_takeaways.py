@@ -37,9 +37,7 @@ print(json.dumps([*doctor.examine()][-1]))
 """
 
 
-def test_each_number_of_a_run_is_in_its_table_with_its_unit_and_none_is_made_up(
-    tmp_path, traces, joints
-):
+def test_each_number_is_in_its_table_with_its_unit_and_none_is_made_up(tmp_path, traces, joints):
     run = traces["G2"]
     described = write_traces(tmp_path, {"G2": run}, joints, LINKS)
     table = list(csv.DictReader(io.StringIO(files.csv_text(run, described, "G2"))))
@@ -63,9 +61,7 @@ def test_each_number_of_a_run_is_in_its_table_with_its_unit_and_none_is_made_up(
     assert [name for name, value in table[1].items() if value == ""] == []
 
 
-def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
-    tmp_path, monkeypatch, traces, joints
-):
+def test_a_kept_table_is_of_one_state_of_all_its_code(tmp_path, monkeypatch, traces, joints):
     run, own, keys = tmp_path / "run", tmp_path / "own", []
     for folder in (run, own):
         folder.mkdir()
@@ -78,10 +74,10 @@ def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
         assert Path(module.__file__).read_bytes() in keys[0], module.__name__
 
 
-@pytest.mark.parametrize(
-    ("repository", "urls"),
-    [("", None), ("https://github.com/a/b", ["Repository, https://github.com/a/b"])],
-)
+REPOSITORIES = [("", None), ("https://github.com/a/b", ["Repository, https://github.com/a/b"])]
+
+
+@pytest.mark.parametrize(("repository", "urls"), REPOSITORIES)
 def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repository, urls):
     root, lesson = tmp_path / "checkout", "robo_genesis/lessons/l01/"
     shutil.copytree(project.ROOT / files.PACKAGE, root / files.PACKAGE)

@@ -41,11 +41,9 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
 
 
 def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
-    found, sentence, _ = questions.measured_order(
-        "l04/lab", "overshoot", ["G1", "load"], absent=True
-    )
+    found, said, _ = questions.measured_order("l04/lab", "overshoot", ["G1", "load"], absent=True)
     assert (found.order, found.unit) == (None, "rad")
-    assert sentence == "The record of l04/lab has no such run."
+    assert said == "The record of l04/lab has no such run."
     for cases, said in ((["G1", "G2_longer"], "records G2_longer; ask"), (["G9", "no_run"], "G9")):
         with pytest.raises(LookupError, match=said):
             questions.measured_order("l04/lab", "overshoot", cases, absent=True)
@@ -125,10 +123,7 @@ def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
 def test_the_right_number_is_the_bundle_s(outputs, experiment):
     causes = {"low": "The motor saturates.", "x57.3": "In degrees."}
     value = experiment.metrics["G2"].overshoot
-    for unit, scale, text in (
-        ("", 1, f"{value:.4f} rad"),
-        ("mrad", 1000, f"{1000 * value:.3g} mra"),
-    ):
+    for unit, scale, text in (("", 1, f"{value:.4f} rad"), ("mrad", 1000, f"{1000 * value:.3g} m")):
         found = questions.asked_number("l04/lab", "G2.overshoot", 20, causes, unit)
         assert found["value"] == pytest.approx(scale * value)
         assert found["tolerance"] == pytest.approx(scale * value / 5)
@@ -151,9 +146,8 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
     second = question_nodes.number("choice-4", **MEASURED, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
-    page.set_content(
-        f"<!doctype html><style>{style.read_text()}</style>{written(first)}{written(second)}"
-    )
+    html = written(first) + written(second)
+    page.set_content(f"<!doctype html><style>{style.read_text()}</style>{html}")
     page.add_script_tag(path=script)
     page.locator("#choice-3-0").focus()
     page.keyboard.press("Space")
