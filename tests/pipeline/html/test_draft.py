@@ -108,13 +108,3 @@ def test_what_cannot_be_read_in_the_end_fails(tmp_path, rendered):
     shutil.rmtree(rendered)
     with pytest.raises(FileNotFoundError, match="rendered"):
         draft.complete()
-
-
-@pytest.mark.parametrize("model", ["a robot", "another robot"])
-def test_the_archive_is_the_same_however_early_it_was_begun(tmp_path, rendered, model):
-    drafts = [Draft(rendered, tmp_path / name) for name in ("early", "late")]
-    drafts[0].prepare()
-    rewrite(rendered)
-    write(rendered, {"replay/model.glb": model, "takeaways/lab/lab.ipynb": "a lab"})
-    early, late = (draft.complete().pack().read_bytes() for draft in drafts)
-    assert early == late
