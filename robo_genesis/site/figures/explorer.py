@@ -87,8 +87,7 @@ class Recorded:
         found = find(f"robo_genesis.lessons.{self.lesson}.explorer.explored")
         inputs = [repr((self.lesson, name)).encode(), *replays.bundle_inputs(self.folder)]
         made = derived("explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name)))
-        data: dict[str, Any] = pickle.loads(made)
-        return data
+        return pickle.loads(made)
 
 
 def explorer_block(
