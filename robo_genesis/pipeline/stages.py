@@ -105,7 +105,6 @@ def run_build(build: Build) -> list[str]:
             results = _execute(build, pages, into, environment, progress, verify)
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
-            draft.prepare()  # first: most files are still those of the last render
             if not build.executed:
                 manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)

@@ -1,7 +1,6 @@
-"""The site of a build before it is published: a copy of what Sphinx rendered.
+"""The site of a build before it is published, or of `make live`: a copy of what Sphinx rendered.
 
-Most files of a kept folder stay as they are. They are copied while Sphinx works, and what it
-changed is copied again after it.
+Most files of a kept folder stay as they are, and only what changed is copied again.
 """
 
 import hashlib
@@ -33,34 +32,33 @@ class Draft:
         self.digests: dict[str, str] = {}
         self.html.mkdir(parents=True)
 
-    def prepare(self) -> None:
-        """Copy what is there while Sphinx works; `complete` corrects it."""
-        for name in self._names():
-            with suppress(OSError):  # Sphinx is replacing the file
-                self._copy(name)
-
     def complete(self) -> "Draft":
         """Make the copy equal to what Sphinx rendered, after it ended; return this draft.
 
         Raises:
             OSError: a file or folder cannot be read.
         """
-        names = self._names(missing_ok=False)
+        names = self._names()
         for name in self.digests.keys() - names:  # first: a folder may have taken a file's name
             (self.html / name).unlink()
             with suppress(OSError):  # the folder has other files
                 os.removedirs((self.html / name).parent)
             del self.digests[name]
         for name in names:
-            self._copy(name)
+            content = (self.rendered / name).read_bytes()
+            digest = hashlib.sha256(content).hexdigest()
+            if digest != self.digests.get(name):
+                write_whole(
+                    self.html / name, content
+                )  # a browser of `make live` gets no part of it
+                self.digests[name] = digest
         return self
 
-    def _names(self, missing_ok: bool = True) -> set[str]:
-        """Return the names of the rendered files; a folder may disappear if `missing_ok`."""
+    def _names(self) -> set[str]:
+        """Return the names of the rendered files."""
 
         def report(error: OSError) -> None:
-            if not missing_ok:
-                raise error
+            raise error
 
         return {
             Path(here, file).relative_to(self.rendered).as_posix()
@@ -68,11 +66,3 @@ class Draft:
             for file in files
             if file != BUILD_INFO
         }
-
-    def _copy(self, name: str) -> None:
-        """Copy a file if its content is not in the copy."""
-        content = (self.rendered / name).read_bytes()
-        digest = hashlib.sha256(content).hexdigest()
-        if digest != self.digests.get(name):
-            write_whole(self.html / name, content)  # a browser of `make live` gets no part of it
-            self.digests[name] = digest
