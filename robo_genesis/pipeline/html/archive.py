@@ -2,8 +2,9 @@
 
 import hashlib
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import BinaryIO
 
 from bs4 import BeautifulSoup
 
@@ -36,14 +37,21 @@ def pack(html: Path) -> Path:
     """
     archive = html / ARCHIVE
     archive.parent.mkdir(exist_ok=True)
-    with zipfile.ZipFile(archive, "w") as packed:
-        for path in sorted(path for path in html.rglob("*") if path.is_file() and path != archive):
-            entry = zipfile.ZipInfo(f"{FOLDER}/{path.relative_to(html).as_posix()}", DATE)
-            packs = path.suffix not in COMPRESSED
+    files = sorted(path for path in html.rglob("*") if path.is_file() and path != archive)
+    names = (f"{FOLDER}/{path.relative_to(html).as_posix()}" for path in files)
+    write_zip(archive, zip(names, map(content, files), strict=True))
+    return archive
+
+
+def write_zip(target: Path | BinaryIO, files: Iterable[tuple[str, bytes]]) -> None:
+    """Write an archive of files by name whose bytes depend on nothing else."""
+    with zipfile.ZipFile(target, "w") as packed:
+        for name, content in files:
+            entry = zipfile.ZipInfo(name, DATE)
+            packs = Path(name).suffix not in COMPRESSED
             entry.compress_type = zipfile.ZIP_DEFLATED if packs else zipfile.ZIP_STORED
             entry.external_attr = 0o644 << 16
-            packed.writestr(entry, content(path), compresslevel=LEVEL)
-    return archive
+            packed.writestr(entry, content, compresslevel=LEVEL)
 
 
 def content(path: Path) -> bytes:
