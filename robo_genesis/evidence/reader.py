@@ -7,8 +7,8 @@ import numpy as np
 
 from robo_genesis.core.experiment import Experiment, MeasuringPage
 from robo_genesis.core.scene import CAMERA_RES
-from robo_genesis.evidence import bundle, trace_files
-from robo_genesis.evidence.bundle import Arrays, Manifest, Metric, Predicate
+from robo_genesis.evidence import trace_files
+from robo_genesis.evidence.bundle import Arrays, Manifest, Metric, Predicate, read_arrays
 from robo_genesis.evidence.picture_file import read_picture
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
 from robo_genesis.lessons import find_page
@@ -27,7 +27,7 @@ def from_bundle(
     """
     predicate = manifest.predicate
     page, rendered = find_page(predicate.lesson, predicate.page), predicate.render.mode == "camera"
-    arrays = bundle.read_arrays(folder)
+    arrays = read_arrays(folder)
     check_cases(folder, arrays, page)
     check_labels(arrays, page)
     return Experiment(

@@ -5,8 +5,7 @@ from pathlib import Path
 
 from robo_genesis.core.checks import FAILED, Check
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle import Manifest, Metric
+from robo_genesis.evidence.bundle import Manifest, Metric, read_metrics
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
 
@@ -19,7 +18,7 @@ def recompute(folder: Path, manifest: Manifest) -> bytes:
     Raises:
         BundleRefused: with the code of a broken law; as the functions below and `from_bundle`.
     """
-    metrics = bundle.read_metrics(folder)
+    metrics = read_metrics(folder)
     experiment = from_bundle(folder, manifest, metrics)
     outcomes = experiment.outcomes()
     for check in outcomes:

@@ -104,8 +104,7 @@ def require_published() -> None:
 def locked(name: str, root: Path = ROOT) -> dict[str, str]:
     """Return a package's entry of package-lock.json, with `version` and `license`."""
     lock = json.loads((root / LOCK[1]).read_text("utf8"))
-    entry: dict[str, str] = lock["packages"][f"node_modules/{name}"]
-    return entry
+    return lock["packages"][f"node_modules/{name}"]
 
 
 def _install(folder: Path) -> None:

@@ -22,7 +22,7 @@ from robo_genesis.pipeline.bundles.status import refused_records
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
 from robo_genesis.pipeline.html.address import site_address, site_root
-from robo_genesis.pipeline.html.archive import write_sums
+from robo_genesis.pipeline.html.archive import pack, write_sums
 from robo_genesis.pipeline.html.checks import Site, run_checks
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.kept import discard
@@ -105,7 +105,6 @@ def run_build(build: Build) -> list[str]:
             results = _execute(build, pages, into, environment, progress, verify)
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
-            draft.prepare()  # first: most files are still those of the last render
             if not build.executed:
                 manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)
@@ -114,7 +113,7 @@ def run_build(build: Build) -> list[str]:
         kept = None if from_nothing else build.cache / project.KEPT
         draft = render(sphinx, staging, BuiltPages.of(results, agreed), kept, meanwhile=accept)
         with ThreadPoolExecutor(1) as beside:  # compression runs beside Python
-            packing = beside.submit(draft.pack)
+            packing = beside.submit(pack, draft.html)
             site = Site(draft.html, site_root())
             progress("pack", packing.result().name)
         sums = write_sums(draft.html, draft.digests)  # last of the site's files, before the checks

@@ -4,7 +4,19 @@ from docutils import nodes
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 
-class PageDirective(SphinxDirective):
+class _OfPage:
+    """What a page can write."""
+
+    def shown(self) -> list[nodes.Node]:
+        """Return its nodes.
+
+        Raises:
+            LookupError, ValueError: it cannot show what the page asks for.
+        """
+        raise NotImplementedError
+
+
+class PageDirective(_OfPage, SphinxDirective):
     """A directive; what it cannot show is an error of the build."""
 
     def run(self) -> list[nodes.Node]:
@@ -14,16 +26,8 @@ class PageDirective(SphinxDirective):
         except (LookupError, ValueError) as error:
             raise self.error(f"{' '.join([self.name, *self.arguments])}: {error}") from error
 
-    def shown(self) -> list[nodes.Node]:
-        """Return the directive's nodes.
 
-        Raises:
-            LookupError, ValueError: it cannot show what the page asks for.
-        """
-        raise NotImplementedError
-
-
-class PageRole(SphinxRole):
+class PageRole(_OfPage, SphinxRole):
     """A role; what it cannot show is an error of the build."""
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
@@ -33,11 +37,3 @@ class PageRole(SphinxRole):
         except (LookupError, ValueError) as error:
             message = f"{self.name}: {error}"
             return [], [self.inliner.reporter.error(message, line=self.lineno)]
-
-    def shown(self) -> list[nodes.Node]:
-        """Return the role's nodes.
-
-        Raises:
-            LookupError, ValueError: it cannot show what the page asks for.
-        """
-        raise NotImplementedError

@@ -6,6 +6,7 @@ from pathlib import Path
 import yaml
 from tiny_book import cell, make_book, notebook, paragraphs
 
+from robo_genesis.pipeline.html.archive import pack
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
@@ -83,7 +84,7 @@ def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Pa
     store, pages = folder / "store", find_pages(book)
     results = [as_executed(page, store / page.docname, seconds[page.docname]) for page in pages]
     draft = draft_of(book, folder, results)
-    draft.pack()
+    pack(draft.html)
     return draft.html
 
 

@@ -9,8 +9,8 @@ from types import MappingProxyType
 from robo_genesis.core import project
 from robo_genesis.core.checks import FAILED
 from robo_genesis.core.comparison import HELD, outcome
-from robo_genesis.evidence import bundle, copies
-from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence import copies
+from robo_genesis.evidence.bundle import Manifest, by_full_name, read_manifest, read_metrics
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
@@ -157,7 +157,7 @@ def bundle_status(
         code, reason = refusal.code, str(refusal)
         summary = SUMMARIES.get(code, UNREADABLE)
         if code in ("stale", FAILED):  # both are sound
-            refused = bundle.read_manifest(folder)
+            refused = read_manifest(folder)
             about = f"{refused.predicate.lesson}/{refused.predicate.page}"
             if code == "stale":
                 summary = why_stale(refused, book, root)
@@ -174,7 +174,7 @@ def bundle_status(
 
 def not_shown(folder: Path, manifest: Manifest) -> list[str]:
     """Return a line for each claimed ordering that an accepted bundle does not show."""
-    numbers, lines = bundle.by_full_name(bundle.read_metrics(folder)), []
+    numbers, lines = by_full_name(read_metrics(folder)), []
     for claimed in specification(manifest.predicate.lesson, manifest.predicate.page).relations:
         (first, second), metric, claim, _ = claimed
         held, values = outcome(numbers, claimed)

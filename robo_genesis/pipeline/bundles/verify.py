@@ -17,11 +17,9 @@ from robo_genesis.core import project
 from robo_genesis.core.comparison import differences
 from robo_genesis.core.files import derived, derived_value
 from robo_genesis.core.git import git, git_or_none
-from robo_genesis.core.project import PUBLISHED
 from robo_genesis.core.scene import SEED
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, bundle_files, manifest_rules
-from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.manifest_rules import CLOCKS, MANIFEST
 from robo_genesis.evidence.recompute import as_judged_today, recompute
 from robo_genesis.evidence.refusals import BundleRefused, expect, unexpected
@@ -92,7 +90,7 @@ def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
 def _page_files(book: Path) -> list[Path]:
     """Return the table of contents and every file that may be a page, also in linked folders."""
     found = glob("**/*.md", root_dir=book, recursive=True)  # follows links, skips hidden names
-    pages = sorted(name for name in found if not name.startswith(f"{PUBLISHED}{os.sep}"))
+    pages = sorted(name for name in found if not name.startswith(f"{project.PUBLISHED}{os.sep}"))
     return [*book.glob("_toc.yml"), *(book / name for name in pages)]
 
 
@@ -109,7 +107,7 @@ def _read_codes(book: Path) -> bytes:
     return json.dumps(codes).encode()
 
 
-def changed(manifest: Manifest, root: Path, book: Path) -> list[tuple[str, Any, Any]] | None:
+def changed(manifest: bundle.Manifest, root: Path, book: Path) -> list[tuple[str, Any, Any]] | None:
     """Return (path, recorded, current) of what differs; None if a bundle has the current key.
 
     Raises:
@@ -124,7 +122,7 @@ def changed(manifest: Manifest, root: Path, book: Path) -> list[tuple[str, Any, 
     return list(differences(recorded, current))
 
 
-def check_current(manifest: Manifest, root: Path, book: Path) -> None:
+def check_current(manifest: bundle.Manifest, root: Path, book: Path) -> None:
     """Require that a bundle has the evidence key of the checkout.
 
     Raises:
@@ -143,7 +141,7 @@ def check_current(manifest: Manifest, root: Path, book: Path) -> None:
     )
 
 
-def check_commit(manifest: Manifest, root: Path) -> None:
+def check_commit(manifest: bundle.Manifest, root: Path) -> None:
     """Require that the commit that a bundle names is older than the run, and has its code.
 
     Code of a tree with changes is that of no commit. A shallow clone lacks older commits, and each
@@ -173,7 +171,7 @@ def check_commit(manifest: Manifest, root: Path) -> None:
         expect("commit", MANIFEST, f"list of what differs from commit {commit}", found, [])
 
 
-def _changed_since(commit: str, manifest: Manifest, root: Path) -> list[str]:
+def _changed_since(commit: str, manifest: bundle.Manifest, root: Path) -> list[str]:
     """Return what is `changed` in a bundle since a commit."""
     if git_or_none(root, "diff", "--quiet", commit, "--", *DECIDING) is not None:
         return []
@@ -196,7 +194,7 @@ def verify_bundle(
     root: Path = project.ROOT,
     book: Path = project.BOOK,
     once: bool = False,
-) -> Manifest:
+) -> bundle.Manifest:
     """Check one bundle against its files, the checkout and the pin.
 
     Damaged and false bundles are refused before `stale`, so that a stale bundle is sound.

@@ -2,8 +2,9 @@
 
 import hashlib
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import BinaryIO
 
 from bs4 import BeautifulSoup
 
@@ -19,52 +20,38 @@ COMPRESSED = {".jpg", ".png", ".webp", ".whl", ".woff2", ".zip"}
 """Suffixes of files that compression makes no smaller."""
 LEVEL = 3
 """The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 % smaller."""
-LASTING = ("_downloads/", "_images/", "replay/", "takeaways/")
-"""Folders whose files most renders leave as they are, or write again with the same content."""
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
 SUMS = "SHA256SUMS"
 """The file with the digests, as `sha256sum -c` reads them. It does not list itself."""
 
 
-def lasting(name: str) -> bool:
-    """Return whether a file of the site is in one of the lasting folders."""
-    return name.startswith(LASTING)
-
-
-def begin(html: Path) -> zipfile.ZipFile:
-    """Begin the archive of a site with its lasting files, which come first; see `pack`."""
-    (html / ARCHIVE).parent.mkdir(exist_ok=True)
-    packed = zipfile.ZipFile(html / ARCHIVE, "w")
-    _add(packed, html, lasting)
-    return packed
-
-
-def pack(html: Path, begun: zipfile.ZipFile | None = None) -> Path:
+def pack(html: Path) -> Path:
     """Put the archive of a site into the site.
 
     Args:
         html: the folder of the complete site, before its checks: they include links to the archive.
-        begun: what `begin` returned, if no lasting file has changed since.
 
     Returns:
         The archive. The same files make the same bytes.
     """
-    with begun or begin(html) as packed:
-        _add(packed, html, lambda name: not lasting(name))
-    return html / ARCHIVE
+    archive = html / ARCHIVE
+    archive.parent.mkdir(exist_ok=True)
+    files = sorted(path for path in html.rglob("*") if path.is_file() and path != archive)
+    names = (f"{FOLDER}/{path.relative_to(html).as_posix()}" for path in files)
+    write_zip(archive, zip(names, map(content, files), strict=True))
+    return archive
 
 
-def _add(packed: zipfile.ZipFile, html: Path, chosen: Callable[[str], bool]) -> None:
-    """Add the files with chosen names, sorted, except the archive itself."""
-    for path in sorted(path for path in html.rglob("*") if path.is_file()):
-        name = path.relative_to(html).as_posix()
-        if name != ARCHIVE and chosen(name):
-            entry = zipfile.ZipInfo(f"{FOLDER}/{name}", DATE)
-            packs = path.suffix not in COMPRESSED
+def write_zip(target: Path | BinaryIO, files: Iterable[tuple[str, bytes]]) -> None:
+    """Write an archive of files by name whose bytes depend on nothing else."""
+    with zipfile.ZipFile(target, "w") as packed:
+        for name, content in files:
+            entry = zipfile.ZipInfo(name, DATE)
+            packs = Path(name).suffix not in COMPRESSED
             entry.compress_type = zipfile.ZIP_DEFLATED if packs else zipfile.ZIP_STORED
             entry.external_attr = 0o644 << 16
-            packed.writestr(entry, content(path), compresslevel=LEVEL)
+            packed.writestr(entry, content, compresslevel=LEVEL)
 
 
 def content(path: Path) -> bytes:

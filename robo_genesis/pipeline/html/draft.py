@@ -1,17 +1,14 @@
-"""The site of a build before it is published: a copy of what Sphinx rendered, and its archive.
+"""The site of a build before it is published, or of `make live`: a copy of what Sphinx rendered.
 
-Most files of a kept folder stay as they are. They are copied and packed while Sphinx works, and
-what it changed is copied again after it.
+Most files of a kept folder stay as they are, and only what changed is copied again.
 """
 
 import hashlib
 import os
 from contextlib import suppress
 from pathlib import Path
-from zipfile import ZipFile
 
 from robo_genesis.core.files import write_whole
-from robo_genesis.pipeline.html import archive
 
 BUILD_INFO = ".buildinfo"
 """A note of Sphinx for its next build, which depends on the checkout's path."""
@@ -33,15 +30,7 @@ class Draft:
         self.rendered, self.folder = rendered, folder
         self.html = folder / "html"
         self.digests: dict[str, str] = {}
-        self._packed: ZipFile | None = None
         self.html.mkdir(parents=True)
-
-    def prepare(self) -> None:
-        """Copy and pack what is there while Sphinx works; `complete` and `pack` correct it."""
-        for name in self._names():
-            with suppress(OSError):  # Sphinx is replacing the file
-                self._copy(name)
-        self._packed = archive.begin(self.html)
 
     def complete(self) -> "Draft":
         """Make the copy equal to what Sphinx rendered, after it ended; return this draft.
@@ -49,29 +38,27 @@ class Draft:
         Raises:
             OSError: a file or folder cannot be read.
         """
-        names = self._names(missing_ok=False)
-        changed = self.digests.keys() - names
-        for name in changed:  # first, because a folder may have taken a file's name
+        names = self._names()
+        for name in self.digests.keys() - names:  # first: a folder may have taken a file's name
             (self.html / name).unlink()
             with suppress(OSError):  # the folder has other files
                 os.removedirs((self.html / name).parent)
             del self.digests[name]
-        changed |= {name for name in names if self._copy(name)}
-        if self._packed and any(map(archive.lasting, changed)):
-            self._packed.close()
-            self._packed = None
+        for name in names:
+            content = (self.rendered / name).read_bytes()
+            digest = hashlib.sha256(content).hexdigest()
+            if digest != self.digests.get(name):
+                write_whole(
+                    self.html / name, content
+                )  # a browser of `make live` gets no part of it
+                self.digests[name] = digest
         return self
 
-    def pack(self) -> Path:
-        """Put the archive into the complete site and return it."""
-        return archive.pack(self.html, self._packed)
-
-    def _names(self, missing_ok: bool = True) -> set[str]:
-        """Return the names of the rendered files; a folder may disappear if `missing_ok`."""
+    def _names(self) -> set[str]:
+        """Return the names of the rendered files."""
 
         def report(error: OSError) -> None:
-            if not missing_ok:
-                raise error
+            raise error
 
         return {
             Path(here, file).relative_to(self.rendered).as_posix()
@@ -79,13 +66,3 @@ class Draft:
             for file in files
             if file != BUILD_INFO
         }
-
-    def _copy(self, name: str) -> bool:
-        """Copy a file if its content is not in the copy; return whether it was copied."""
-        content = (self.rendered / name).read_bytes()
-        digest = hashlib.sha256(content).hexdigest()
-        if digest == self.digests.get(name):
-            return False
-        write_whole(self.html / name, content)  # a browser of `make live` gets no part of it
-        self.digests[name] = digest
-        return True

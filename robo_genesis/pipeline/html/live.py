@@ -145,8 +145,7 @@ class Live:
         """Execute a page as `make execute` does, and report a failure."""
         say(f"{page.docname}: runs ...")
         command = [sys.executable, str(project.ROOT / "build_scripts" / "execute.py")]
-        command += ["--book", str(self.book), "--cache", str(self.cache)]
-        command += ["--timeout", str(self.timeout)]
+        command += [f"--book={self.book}", f"--cache={self.cache}", f"--timeout={self.timeout}"]
         running = subprocess.Popen(
             command,
             env=os.environ | {"PAGE": page.docname, "TO": str(self.folder / "executed")},

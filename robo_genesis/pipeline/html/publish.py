@@ -33,8 +33,7 @@ def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
         if result.bundle is not None:
             lesson, page = str(result.page.lesson), str(result.page.page)
             own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
-            place = draft.folder.joinpath(*own, result.bundle.name)
-            shutil.copytree(result.bundle, place)
+            shutil.copytree(result.bundle, draft.folder.joinpath(*own, result.bundle.name))
 
 
 def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None) -> Path:

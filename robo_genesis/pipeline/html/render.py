@@ -29,8 +29,8 @@ def render(
         sphinx: the process that has loaded the book's configuration.
         staging: folder for the result; its older content is removed.
         built: the executed pages.
-        kept_folder: has the doctrees, pages, states of runs and compiled templates of the last
-            render, and gets those of this one. None renders from nothing.
+        kept_folder: has the doctrees, pages and states of runs of the last render, and gets those
+            of this one. None renders from nothing.
         meanwhile: called once, while Sphinx works. What it raises is raised here; the next render
             then starts from nothing.
 

@@ -23,8 +23,7 @@ from nbformat import NotebookNode
 from robo_genesis.core import shown
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import quoted
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.bundle import Manifest, read_metrics, read_printed
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.pages import printed
@@ -93,7 +92,7 @@ def require_printed(docname: str, executed: NotebookNode, folder: Path) -> None:
         BundleRefused: `shown`, naming page, cell, output and place of the first difference;
             `missing-file` if the build did not write the bundle's last file.
     """
-    found, kept = printed.outputs_of(executed), bundle.read_printed(folder)
+    found, kept = printed.outputs_of(executed), read_printed(folder)
     for cell, outputs in enumerate(zip_longest(found, kept, fillvalue=()), start=1):
         for number, (here, there) in enumerate(zip_longest(*outputs), start=1):
             if here != there:
@@ -106,7 +105,7 @@ def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
 
     Metrics that another machine computes again may differ in the last digit.
     """
-    recorded = bundle.read_metrics(folder)
+    recorded = read_metrics(folder)
     run = from_bundle(folder, manifest, recorded)
     metrics = {
         case: type(found)(**{name: recorded[case][name].value for name in found.about("unit")})

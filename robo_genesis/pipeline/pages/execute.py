@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
-from robo_genesis.core.project import COMMAND
 from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import TIMEOUT
 from robo_genesis.pipeline.pages.book import Page
@@ -201,7 +200,7 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
     return {
         **project.engine_cache_environment(root, cache),
         **project.environment_contract({**os.environ, **settings}),
-        COMMAND: command,
+        project.COMMAND: command,
     }
 
 

@@ -141,10 +141,8 @@ def read_record(place: Path) -> Record:
     try:
         return Record.model_validate_json((place / RECORD).read_bytes())
     except (OSError, ValidationError) as error:
-        raise PageRefused(
-            "record",
-            f"{RECORD} is not what `make execute` writes. Execute the page again.\n{error}",
-        ) from error
+        what = f"{RECORD} is not what `make execute` writes. Execute the page again."
+        raise PageRefused("record", f"{what}\n{error}") from error
 
 
 def require_this_page(place: Path, record: Record, page: Page, fingerprint: str) -> NotebookNode:

@@ -164,10 +164,8 @@ def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -
         try:
             name = folder.read_record(place).docname
             if name not in known:
-                valid = ", ".join(known)
-                raise folder.PageRefused(
-                    "page", f"its page is {name!r}. Pages of this book: {valid}."
-                )
+                valid = f"Pages of this book: {', '.join(known)}."
+                raise folder.PageRefused("page", f"its page is {name!r}. {valid}")
             result = result_of(known[name], place, into[name].name)
             if name in found:
                 other = found[name].folder

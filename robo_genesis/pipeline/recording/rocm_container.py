@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.core.project import ENGINE_PREFIXES
+from robo_genesis.core.project import ENGINE_PREFIXES, ProjectError
 
 ENGINES = ("docker", "podman")
 IMAGE = "robo-genesis-rocm"
@@ -25,10 +25,6 @@ DEVICES = (Path("/dev/kfd"), Path("/dev/dri"))
 PASSED = tuple(name for name in ENGINE_PREFIXES if name not in ("ROCM_", "NVIDIA_TF32_"))
 
 WITHOUT = "book/evidence/recording.md describes the steps without a container."
-
-
-class ContainerError(Exception):
-    """No container can be started; the message says what was found and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +44,7 @@ def record(host: Host) -> int:
         host: see there.
 
     Raises:
-        ContainerError: nothing was started.
+        ProjectError: nothing was started.
     """
     for command in commands(host):
         status = subprocess.run(command, cwd=host.root, check=False).returncode
@@ -69,17 +65,17 @@ def commands(host: Host) -> list[list[str]]:
         host: see there. LESSON of its environment names the lab.
 
     Raises:
-        ContainerError: docker and podman, or a device is missing.
+        ProjectError: docker and podman, or a device is missing.
     """
     engine = next(filter(host.find, ENGINES), None)
     if engine is None:
-        raise ContainerError(
+        raise ProjectError(
             f"PATH has neither {' nor '.join(ENGINES)}. Install one of them, or record without it: "
             f"{WITHOUT}"
         )
     for device in host.devices:
         if not device.exists():
-            raise ContainerError(
+            raise ProjectError(
                 f"{device} is missing here. A recording needs an AMD GPU with its kernel driver: "
                 f"{' and '.join(map(str, host.devices))} must exist. Install amdgpu-dkms, or use "
                 "another machine."

@@ -157,7 +157,7 @@ class CourseMap(MapDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the cards and the list, without the list where no lesson is planned."""
         lessons = self.lessons()
-        cards = [self.card(lesson) for lesson in lessons if lesson.page]
+        cards = [self.card(lesson, lesson.page) for lesson in lessons if lesson.page]
         shown: list[nodes.Node] = [nodes.bullet_list("", *cards, classes=["course-map"])]
         planned = [
             nodes.list_item("", named(lesson, lesson.title), ids=[anchor(lesson.id)])
@@ -169,17 +169,16 @@ class CourseMap(MapDirective):
             shown.append(nodes.bullet_list("", *planned, classes=["planned-lessons"]))
         return shown
 
-    def card(self, lesson: Lesson) -> nodes.list_item:
+    def card(self, lesson: Lesson, lecture: str) -> nodes.list_item:
         """Return the card of a published lesson."""
-        assert lesson.page is not None
-        title = page_link(self.env.docname, lesson.page, lesson.title)
+        title = page_link(self.env.docname, lecture, lesson.title)
         return nodes.list_item(
             "",
             card_picture(lesson=lesson.id.lower()),
             named(lesson, title),
             bullets(*map(marked, lesson.outcomes)),
             *needs_line(lesson),
-            *self.times(lesson, lesson.page),
+            *self.times(lesson, lecture),
             ids=[anchor(lesson.id)],
         )
 

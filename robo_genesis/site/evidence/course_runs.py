@@ -16,10 +16,9 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.text import listed
 from robo_genesis.pipeline.pages.built import built_pages
-from robo_genesis.site.course.course_map import MapDirective, page_link
+from robo_genesis.site.course.course_map import MapDirective, named, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, status_list
-from robo_genesis.site.evidence.plain_nodes import paragraph
 from robo_genesis.site.evidence.provenance import all_runs
 
 EVIDENCE = "evidence/index"  # The page that explains the evidence
@@ -82,12 +81,11 @@ class CourseStatus(MapDirective):
     def shown(self) -> list[nodes.Node]:
         """Return a title and a list for each lesson."""
         found: list[nodes.Node] = []
-        for lesson in (lesson for lesson in self.lessons() if lesson.page):
-            assert lesson.page is not None
-            title = page_link(self.env.docname, lesson.page, lesson.title)
-            found.append(paragraph(nodes.strong("", f"{lesson.id} "), title))
-            statuses = lesson_statuses(Path(self.env.srcdir), lesson.id.lower())
-            found.append(status_list(statuses))
+        for lesson in self.lessons():
+            if lesson.page:
+                title = page_link(self.env.docname, lesson.page, lesson.title)
+                statuses = lesson_statuses(Path(self.env.srcdir), lesson.id.lower())
+                found += [named(lesson, title), status_list(statuses)]
         return found
 
 

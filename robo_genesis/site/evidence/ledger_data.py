@@ -4,7 +4,6 @@ import csv
 import hashlib
 import io
 import json
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,9 +11,7 @@ from pathlib import Path
 from robo_genesis.core.files import derived
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.pipeline.bundles.status import Status
-
-ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
-"""The oldest time that a zip can hold: the same bundle always gives the same bytes."""
+from robo_genesis.pipeline.html.archive import write_zip
 
 MEASURED, PRINTED = "Measured", "Printed by this run"
 """How the line below an item begins whose runs are all accepted."""
@@ -152,11 +149,7 @@ def archive(folder: Path) -> bytes:
 
     def pack() -> bytes:
         stream = io.BytesIO()
-        with zipfile.ZipFile(stream, "w") as packed:
-            for name, content in files.items():
-                entry = zipfile.ZipInfo(name, ZIP_EPOCH)
-                entry.create_system, entry.external_attr = 3, 0o644 << 16
-                packed.writestr(entry, content, zipfile.ZIP_DEFLATED)
+        write_zip(stream, files.items())
         return stream.getvalue()
 
     decide = [json.dumps([*files]).encode(), *files.values(), Path(__file__).read_bytes()]

@@ -1,4 +1,4 @@
-"""Measured numbers and lesson states in prose: always read from an accepted bundle.
+"""Measured numbers, guards and lesson states in prose: always read from an accepted bundle.
 
 Roles and a directive, as pages write them:
 
@@ -8,6 +8,8 @@ Roles and a directive, as pages write them:
 | {measured}`l04/lab G2.overshoot mrad` | the same in another unit, with three digits |
 | {measured}`l05/lab sag_explains:baseline.unexplained_share %` | a value that a check found |
 | {measured}`l04/lab engine` | the engine version that the page ran on |
+| {guard}`near_coulomb` | nothing: this check of the page guards the sentence before it |
+| {guard}`l04/lab saturation` | nothing: the same by a check of another page |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
 | {lesson-status} l04 (directive) | one line with the states of a lesson's runs, details in a fold |
@@ -38,7 +40,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_folders,
     recorded_status,
 )
-from robo_genesis.pipeline.pages.built import built_pages, page_outputs
+from robo_genesis.pipeline.pages.built import built_pages, measuring_page, page_outputs
 from robo_genesis.pipeline.pages.printed import value_of
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.plain_nodes import WRITERS, between, bullets
@@ -198,6 +200,31 @@ def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
     return bullets(*lines, classes=["lesson-status"])
 
 
+class Guard(PageRole):
+    """Require that the check which guards the sentence in front of it passed; show nothing."""
+
+    def shown(self) -> list[nodes.Node]:
+        """Return nothing."""
+        place, _, check = self.text.rpartition(" ")
+        require_passed(place or measuring_page(self.env.docname), check)
+        return []
+
+
+def require_passed(lesson_page: str, check: str) -> None:
+    """Require that a check of a page passed.
+
+    Raises:
+        LookupError: the page has no such check; the message lists those that it has.
+        ValueError: the check failed, or the page has no bundle that can be read.
+    """
+    folder = page_outputs(lesson_page) / BACKEND
+    found = {c.name: c for c in bundle.read_manifest(folder).predicate.checks}
+    if check not in found:
+        raise LookupError(f"{lesson_page} has no check {check!r}. Choices: {', '.join(found)}.")
+    if not found[check].passed:
+        raise ValueError(f"the check {check} of {lesson_page} found {found[check].found}.")
+
+
 class EngineLink(PageRole):
     """Link to the pinned release of the engine, or with `engine-source` to one of its files."""
 
@@ -223,6 +250,7 @@ def visit_measured(self: Any, node: measured_value) -> None:
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
+    app.add_role("guard", Guard())
     for name in ("engine-source", "engine-release"):
         app.add_role(name, EngineLink())
     app.add_directive("lesson-status", LessonStatus)

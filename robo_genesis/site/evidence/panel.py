@@ -21,9 +21,8 @@ from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import course_marks, find_replay
-from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.measured import BACKEND
+from robo_genesis.site.evidence.measured import BACKEND, page_run, recorded_runs
 from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, text_table
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
@@ -39,7 +38,7 @@ class Evidence(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return one panel per backend with a run."""
-        runs = measured.recorded_runs(Path(self.env.srcdir), self.arguments[0])
+        runs = recorded_runs(Path(self.env.srcdir), self.arguments[0])
         return [self.panel(run) for run in runs if run.status.state != "missing"]
 
     def panel(self, run: PageRun) -> nodes.Node:
@@ -57,7 +56,7 @@ class Evidence(PageDirective):
         panel += response(self.env, *run_shown)
         panel += frames(self.env, *run_shown)
         panel += replay_block(self, run.key, folder)
-        here = measured.page_run(Path(self.env.srcdir), lesson)
+        here = page_run(Path(self.env.srcdir), lesson)
         found = comparison(here.folder, folder)
         panel += nodes.container("", *found, evidence_runs=(here.key, run.key))
         panel += nodes.raw("", warnings_html(run.predicate.warnings), format="html")

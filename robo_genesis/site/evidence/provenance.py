@@ -20,9 +20,8 @@ from sphinx.util import logging
 
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.evidence import ledger_data, measured, refusals
-from robo_genesis.site.evidence import origin as sphinx_origin
 from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, PageRun
-from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
+from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin, register
 from robo_genesis.site.frame.executed import RECOMPUTED
 
 LOG = "the engine's log"
@@ -33,6 +32,12 @@ WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
     None: "illustration", (): "settings", NO_BUNDLE: "unbound",
 }  # fmt: skip
 """The kind of an item that belongs to no run, by its origin."""
+
+UNBOUND = (
+    "a cell shows a {}, but the page declares no bundle. Give its front matter "
+    "`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values "
+    f"`{INPUTS}`."
+)
 
 logger = logging.getLogger(__name__)
 
@@ -64,8 +69,8 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
         cell, keys = cell_of(last), origin(last, page)
         if not (texts or is_picture or (is_table and keys is not None)):
             continue
-        if not texts and (problem := _problem(keys, is_table)):
-            logger.warning(problem, location=env.docname)
+        if not texts and keys == NO_BUNDLE:
+            logger.warning(UNBOUND.format("table" if is_table else "picture"), location=env.docname)
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
         item = describe(holder, node, env.docname, keys, book, texts)
@@ -85,17 +90,6 @@ def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Elemen
     parts = (part for part in box if part.get("nb_element", "") != left_out)
     others = lambda node: isinstance(node, nodes.table | nodes.image)  # noqa: E731
     return [part for part in parts if part.astext().strip() and not [*part.findall(others)]]
-
-
-def _problem(keys: tuple[str, ...] | None, is_table: bool) -> str | None:
-    """Return why a table or picture cannot be listed."""
-    if keys == NO_BUNDLE:
-        what = "table" if is_table else "picture"
-        return (
-            f"a cell shows a {what}, but the page declares no bundle. Give its front matter "
-            f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
-        )
-    return None
 
 
 def describe(
@@ -167,6 +161,6 @@ def add_line(holder: nodes.Element, text: str, row: str) -> None:
 
 def setup(app: Sphinx) -> None:
     """Register the passes over each page that was read."""
-    sphinx_origin.register(app)
+    register(app)
     app.connect("doctree-read", refusals.refuse, priority=890)  # before the lines are added
     app.connect("doctree-read", read_page, priority=900)  # pictures are collected before

@@ -10,8 +10,7 @@ from robo_genesis.lessons import LESSONS, course_marks, find_lesson
 
 def labels_of(lesson: str) -> Mapping[str, str]:
     """Return `LABELS` in a lesson's `spec`: words by the name of a run, for some runs."""
-    found: Mapping[str, str] = getattr(find_lesson(lesson).spec, "LABELS", {})
-    return found
+    return getattr(find_lesson(lesson).spec, "LABELS", {})
 
 
 def label(lesson: str, case: str) -> str:

@@ -24,11 +24,12 @@ may have a `tag` and a `state`, and one cell `opens`.
 import base64
 import pickle
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from html import escape
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from docutils import nodes
@@ -42,16 +43,24 @@ from robo_genesis.core.files import derived
 from robo_genesis.core.markup import filled
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
+from robo_genesis.core.trace import Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.bound import accepted_experiment
+from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import html, image
-from robo_genesis.site.figures.posture_model import glb, with_target
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay import directive as replays
+
+if TYPE_CHECKING:
+    from robo_genesis.site.replay.scenery import Camera  # loads slowly
+
+CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
+"""Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
+are longer than the hand, which hides the target when it is there."""
 
 
 class ExplorerDirective(PageDirective):
@@ -87,8 +96,7 @@ class Recorded:
         found = find(f"robo_genesis.lessons.{self.lesson}.explorer.explored")
         inputs = [repr((self.lesson, name)).encode(), *replays.bundle_inputs(self.folder)]
         made = derived("explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name)))
-        data: dict[str, Any] = pickle.loads(made)
-        return data
+        return pickle.loads(made)
 
 
 def explorer_block(
@@ -205,6 +213,51 @@ def postures(
     yield panel(data, f"Show in 3D loads the {replay.thing}: {weight} kB.")
     yield from fold(directive, found)
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
+
+
+def with_target(trace: Trace, targets: FloatArray) -> Trace:
+    """Return answers with one more link, the target of each; before the first, that of the first.
+
+    Args:
+        trace: a start and m answers.
+        targets: (m, 3) [m].
+    """
+    places = np.vstack([targets[:1], targets])[:, None]
+    turns = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (len(places), 1, 4))
+    return replace(
+        trace,
+        link_pos=np.concatenate([trace.link_pos, places], axis=1),
+        link_quat=np.concatenate([trace.link_quat, turns], axis=1),
+    )
+
+
+def glb(
+    shape: Path,
+    links: Sequence[str],
+    traces: Mapping[str, Trace],
+    camera: "Camera",
+    credit: str | None,
+) -> bytes:
+    """Return the model of all answers, one animation a map, with the cross and a floor.
+
+    Args:
+        shape: file of the robot's shape.
+        links: of the record, without the cross.
+        traces: with the cross, by map.
+        camera: of the model.
+        credit: copyright of the shape, None where it needs no notice.
+    """
+    import trimesh  # these load slowly
+
+    from robo_genesis.site.replay import model
+    from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
+
+    parts = [part for part in load_shape(shape) if part.link != WORLD]
+    half = CROSS_LENGTH / 2 * np.eye(3)
+    rods = [trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half]
+    cross = [Part(CROSS, AXIS_RGB, rod.vertices, rod.faces) for rod in rods]
+    scenery = Scenery([*parts, *cross, *floor_of(parts)], camera)
+    return model.glb(scenery, [*links, CROSS], traces, credit)
 
 
 def setup(app: Sphinx) -> None:

@@ -25,7 +25,6 @@ from pathlib import Path
 from typing import Any
 
 from docutils import nodes
-from jinja2 import FileSystemBytecodeCache
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
@@ -157,14 +156,6 @@ def plain(value: Any) -> Any:
     return repr(value)
 
 
-def keep_templates(app: Sphinx) -> None:
-    """Keep the compiled templates of the theme beside the doctrees, for the next render there."""
-    folder = Path(app.doctreedir).with_name("templates")
-    folder.mkdir(exist_ok=True)
-    templates: Any = app.builder.templates
-    templates.environment.bytecode_cache = FileSystemBytecodeCache(str(folder))
-
-
 def drop_static_files(app: Sphinx) -> None:
     """Remove the style sheets and scripts before any is written: pages contain their digests.
 
@@ -235,7 +226,6 @@ def setup(app: Sphinx) -> None:
     """Register the steps."""
     app.connect("env-updated", remove_others)
     app.connect("builder-inited", drop_static_files, priority=0)
-    app.connect("builder-inited", keep_templates)
     app.connect("env-get-outdated", including_pages)
     app.connect("env-before-read-docs", note_reading)
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected

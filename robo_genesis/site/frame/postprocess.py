@@ -67,8 +67,7 @@ def note_page(app: Sphinx, page: str, template: str, context: dict[str, Any], do
 
 def written(app: Sphinx) -> set[str]:
     """Return the names of the pages that this build has written so far."""
-    pages: set[str] = vars(app.builder).setdefault("robo_genesis_written", set())
-    return pages
+    return vars(app.builder).setdefault("robo_genesis_written", set())
 
 
 def finish_site(app: Sphinx, error: Exception | None) -> None:

@@ -37,7 +37,7 @@ from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
-from robo_genesis.site.text.question_nodes import question
+from robo_genesis.site.text.questions import question
 
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera

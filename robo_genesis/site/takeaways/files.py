@@ -25,7 +25,6 @@ from robo_genesis.core import project
 from robo_genesis.core.files import NO_SOURCE, derived, files_below, write_whole
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.install import CONSTRAINTS, ENVIRONMENT
 from robo_genesis.pipeline.command import output_of
@@ -139,7 +138,7 @@ def package_facts() -> dict[str, str]:
 
 
 def origin_of(
-    page: Page, ran: Predicate, commands: Iterable[str], config: Config, kind: str
+    page: Page, ran: bundle.Predicate, commands: Iterable[str], config: Config, kind: str
 ) -> str:
     """Return Markdown on the origin of a notebook of a lab, and how to run it."""
     lines = (line for cell in page.notebook.cells for line in cell.source.splitlines())
@@ -180,7 +179,7 @@ def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
         yield case, table, archive
 
 
-def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
+def csv_text(trace: TimeSeries, described: bundle.Arrays, case: str) -> str:
     """Return a run as a table: one row per state, one column per number, units in the head.
 
     The first row is the state before any step. A quantity that is read only after a step is empty
@@ -208,7 +207,7 @@ def _by_state(trace: TimeSeries, field: str, dims: Sequence[str]) -> list[tuple[
     return list(zip(*rows, strict=True))
 
 
-def _labels(field: str, variable: Variable, described: Arrays) -> list[str]:
+def _labels(field: str, variable: bundle.Variable, described: bundle.Arrays) -> list[str]:
     """Return the head of each column: field, joint or link, axis and unit."""
     names = [field]
     for dim in (dim for dim in variable.dims if dim not in ("state", "step")):

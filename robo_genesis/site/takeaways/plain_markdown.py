@@ -98,8 +98,7 @@ def excerpt(folder: Path, first_line: str, content: str) -> str:
     """Return the part of a file that a `literalinclude` on a page in a folder shows."""
     found = parse_directive_text(LiteralInclude, first_line, content)
     path = (folder / found.arguments[0]).resolve()
-    text: str = LiteralIncludeReader(str(path), found.options, Config()).read()[0]
-    return text
+    return LiteralIncludeReader(str(path), found.options, Config()).read()[0]
 
 
 def _inline(lines: list[str], writer: Writer) -> str:

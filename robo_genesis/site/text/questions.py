@@ -30,6 +30,7 @@ A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from docutils import nodes
@@ -37,16 +38,16 @@ from docutils.parsers.rst.directives import flag, unchanged
 from sphinx.application import Sphinx
 
 from robo_genesis.core.comparison import Comparison, compare_values
+from robo_genesis.core.markup import filled
 from robo_genesis.core.tables import comparison_sentence
 from robo_genesis.core.text import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
-from robo_genesis.site.evidence.plain_nodes import WRITERS, html
+from robo_genesis.site.evidence.plain_nodes import WRITERS, between, html
 from robo_genesis.site.figures.case_labels import label
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.text.question_nodes import choice, number, question
 
 EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
@@ -61,6 +62,34 @@ FACTOR = re.compile(r"x\d+(\.\d+)?")
 """The key of a typical wrong number: the value times this factor."""
 HIDES = '<p class="after-answer">The rest of this section shows when you have answered.</p>'
 """Below a question; `course.css` hides what follows it."""
+
+
+class question(between):  # noqa: N801 - docutils names nodes in lower case
+    """A question; its text is between the parts that the build writes."""
+
+
+def choice(attributes: str = "", **shown: Any) -> question:
+    """Return a multiple choice, in which each option has its feedback, which choice.js announces.
+
+    Args:
+        attributes: of the element, for choice.js.
+        shown: `name` of its fields, unique on the page; `answer`, what was measured, and its
+            `origin`; `options`, for each one (text, right, cause).
+    """
+    closing = filled(Path(__file__).with_name("question.html"), **shown)
+    return question(opening=f'<fieldset class="choice"{attributes}><legend>', closing=closing)
+
+
+def number(value: float, tolerance: float, **shown: Any) -> question:
+    """Return a question for a number; choice.js shows the feedback that fits what is typed.
+
+    Args:
+        value: the right number.
+        tolerance: how far from it a number counts as right.
+        shown: as of `choice`, without options; `unit` of the number, empty for none; `feedback`,
+            (key, text) by the keys of the directive.
+    """
+    return choice(f' data-value="{value!r}" data-tolerance="{tolerance!r}"', **shown)
 
 
 def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:
@@ -116,7 +145,7 @@ class Choice(Question):
         smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
         resolution = small(smallest, found.unit)
         shown = options(found.unit, found.order, resolution, causes, found.margin)
-        return text, choice(name, answer, origin, shown)
+        return text, choice(name=name, answer=answer, origin=origin, options=shown)
 
 
 def percents(text: str) -> float:
@@ -146,7 +175,7 @@ class Number(Question):
         if "tolerance" not in self.options:
             raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
         percent, unit = self.options["tolerance"], self.options.get("unit", "")
-        return text, number(name, **asked_number(page, metric, percent, causes, unit))
+        return text, number(name=name, **asked_number(page, metric, percent, causes, unit))
 
 
 def asked_number(

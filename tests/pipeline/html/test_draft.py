@@ -1,7 +1,6 @@
-"""A draft is in the end what Sphinx leaves, whatever it changes while the draft copies."""
+"""A draft is in the end what Sphinx leaves, whatever it had copied before."""
 
 import hashlib
-import os
 import shutil
 from pathlib import Path
 
@@ -50,16 +49,20 @@ def rewrite(rendered: Path) -> None:
     shutil.rmtree(rendered / "figures")
     for name in ("index.html", "notes"):
         (rendered / name).unlink()
-    write(rendered, {"_static/site.css": "p {}", "lessons/one.html": "two", "lessons/new.html": ""})
+    write(
+        rendered, {"_static/site.css": "p {}", "lessons/one.html": "two", "lessons/more.html": ""}
+    )
     write(rendered, {"notes/a": "a folder", "figures": "a file"})
 
 
-@pytest.mark.parametrize("early", [True, False], ids=["prepared", "from nothing"])
-def test_a_draft_is_what_sphinx_leaves_whether_it_was_prepared_or_not(tmp_path, rendered, early):
+@pytest.mark.parametrize("early", [True, False], ids=["copied before", "from nothing"])
+def test_a_draft_is_what_sphinx_leaves_whether_it_was_copied_before_or_not(
+    tmp_path, rendered, early
+):
     (rendered / BUILD_INFO).write_text("a note")
     draft = Draft(rendered, tmp_path / "draft")
     if early:
-        draft.prepare()
+        draft.complete()
         assert (draft.html / "index.html").read_text() == "home"
     rewrite(rendered)
     draft.complete()
@@ -71,46 +74,11 @@ def test_a_draft_is_what_sphinx_leaves_whether_it_was_prepared_or_not(tmp_path, 
     assert draft.digests == {n: hashlib.sha256(t.encode()).hexdigest() for n, t in files.items()}
 
 
-def test_what_sphinx_changes_during_a_copy_is_copied_again(tmp_path, rendered, monkeypatch):
-    copy = Draft._copy
-
-    def disturbed(draft: Draft, name: str) -> bool:
-        path = rendered / name
-        if name == "index.html":
-            path.unlink()  # it was listed before
-        copied = copy(draft, name)
-        before = path.stat()
-        path.write_text(FILES[name].upper())  # of the same size and, as copies have it, time
-        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
-        return copied
-
-    draft = Draft(rendered, tmp_path / "draft")
-    with monkeypatch.context() as patch:
-        patch.setattr(Draft, "_copy", disturbed)
-        draft.prepare()
-    found = content(draft.complete().html)
-    assert found["lessons/one.html"] == "ONE"
-    assert {name: found.get(name) for name in FILES} == {
-        name: None if name == "index.html" else text.upper() for name, text in FILES.items()
-    }
-
-
 def test_what_cannot_be_read_in_the_end_fails(tmp_path, rendered):
     draft = Draft(rendered, tmp_path / "draft")
     (rendered / "lessons/two.html").symlink_to("nothing")
-    draft.prepare()
     with pytest.raises(FileNotFoundError, match="two"):
         draft.complete()
     shutil.rmtree(rendered)
     with pytest.raises(FileNotFoundError, match="rendered"):
         draft.complete()
-
-
-@pytest.mark.parametrize("model", ["a robot", "another robot"])
-def test_the_archive_is_the_same_however_early_it_was_begun(tmp_path, rendered, model):
-    drafts = [Draft(rendered, tmp_path / name) for name in ("early", "late")]
-    drafts[0].prepare()
-    rewrite(rendered)
-    write(rendered, {"replay/model.glb": model, "takeaways/lab/lab.ipynb": "a lab"})
-    early, late = (draft.complete().pack().read_bytes() for draft in drafts)
-    assert early == late

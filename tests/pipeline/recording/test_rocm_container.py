@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.core.project import ROOT
+from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline.recording import rocm_container
-from robo_genesis.pipeline.recording.rocm_container import ContainerError, Host, commands, record
+from robo_genesis.pipeline.recording.rocm_container import Host, commands, record
 
 DOCKERFILE = (ROOT / rocm_container.DOCKERFILE).read_text()
 NULL = Path(os.devnull)
@@ -43,7 +43,7 @@ def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(e
 
 
 def test_a_missing_device_is_named_with_the_remedy():
-    with pytest.raises(ContainerError, match=r"/dev/no-gpu is missing here\. A recording "):
+    with pytest.raises(ProjectError, match=r"/dev/no-gpu is missing here\. A recording "):
         commands(host(devices=(NULL, Path("/dev/no-gpu"))))
 
 
@@ -57,7 +57,7 @@ def test_a_host_without_packages_gets_the_message(tmp_path):
     done = subprocess.run(command, env=given, capture_output=True, text=True)
     assert done.returncode == 1
     said = "PATH has neither docker nor podman. Install one of them, or record w"
-    assert done.stderr.startswith(said), done.stderr
+    assert done.stderr.lstrip().startswith(said), done.stderr
     assert done.stderr.endswith("FAILED: nothing was recorded.\n")
 
 

@@ -8,10 +8,9 @@ import pytest
 from robo_genesis.core import project
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.site.evidence import guard, measured
-from robo_genesis.site.evidence.guard import require_passed
+from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.measured import measured as insert
-from robo_genesis.site.evidence.measured import status_line
+from robo_genesis.site.evidence.measured import require_passed, status_line
 
 ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
 
@@ -81,6 +80,6 @@ def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
         require_passed("l04/elsewhere", "control_law")
     failed = SimpleNamespace(name="sag", passed=False, found={"sag_m": 0.1})
     manifest = SimpleNamespace(predicate=SimpleNamespace(checks=[failed]))
-    monkeypatch.setattr(guard.bundle, "read_manifest", lambda folder: manifest)
+    monkeypatch.setattr(measured.bundle, "read_manifest", lambda folder: manifest)
     with pytest.raises(ValueError, match=r"the check sag of l04/lab found .*0\.1"):
         require_passed("l04/lab", "sag")

@@ -20,7 +20,7 @@ from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.geometry import intrinsics, rays
 from robo_genesis.sim.camera.views import View
 from robo_genesis.site.figures import explorer
-from robo_genesis.site.figures.posture_model import CROSS
+from robo_genesis.site.figures.explorer import CROSS
 
 NAME = "postures-l99-answers-cpu-reach"
 TARGETS = np.array([[0.1 * k, 0.0, 0.5] for k in range(40)])
