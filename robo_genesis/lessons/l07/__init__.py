@@ -1,4 +1,4 @@
-"""L07, a robot turns one joint."""
+"""L07: a scene that can be tested."""
 
 from robo_genesis.core.declaration import on_demand
 
@@ -7,6 +7,6 @@ __getattr__ = on_demand(
     LESSON="pages",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
     describe="robo_genesis.sim.arm.joints",
-    run_case="robo_genesis.sim.arm.joint_control",
+    fixed_parts="robo_genesis.sim.visual_shape",
     read_shape="robo_genesis.sim.visual_shape",
 )

@@ -1,44 +1,57 @@
 """The measuring pages of L07, and its declaration."""
 
-from dataclasses import replace
-
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
-from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import MeasuringPage, counts, runs_of
+from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, spec
-from robo_genesis.lessons.l07.metrics import TurnMetrics, turn_metrics
-from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
+from robo_genesis.lessons.l07 import checks, rungs, spec, study
+from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
+from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
+from robo_genesis.sim.camera import record
 
 MEASURES = False
 
-TURN = MeasuringPage(
-    runs=runs_of(spec.CASES),
-    kind=Trace,
-    joints=JOINT_NAMES,
-    readings={"model": counts(MODEL_COUNTS)},
-    measure=turn_metrics,
-    checks=checks.CHECKS,
-    parameters=spec.parameters,
-    camera=False,
-)
 
-LAB = with_functions(TURN, "law")
-MISTAKES = replace(TURN, runs={}, checks=(checks.structure,))
+def of_scenes(*scenes: str) -> MeasuringPage:
+    """Return a page that examines these scenes."""
+    runs = spec.runs(*scenes)
+    views = record.groups(*rungs.CAMERAS) if "baseline" in scenes else {}
+    frames = record.frame_names(*rungs.CAMERAS) if "baseline" in scenes else ()
+    return MeasuringPage(
+        runs=runs_of(runs),
+        kind=Trace,
+        joints=JOINT_NAMES,
+        readings=study.readings(*scenes) | views,
+        with_camera=study.pixels(*scenes),
+        measure=scene_metrics,
+        checks=checks.CHECKS,
+        parameters=lambda: spec.parameters_of(runs),
+        frames=("initial", "final", *frames),
+    )
+
+
+LECTURE = of_scenes(*spec.SCENES_OF_LECTURE).with_more(
+    lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
+    runs_of(spec.FURTHER),
+    study.forced_readings(),
+    checks.LECTURE,
+)
+LAB = of_scenes("baseline")
+MISTAKES = of_scenes(*spec.SCENES)
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.CASES, TurnMetrics),
-    pages={"lecture": TURN, "lab": LAB, "mistakes": MISTAKES},
+    metrics=dict.fromkeys(spec.ALL | spec.FURTHER, SceneMetrics),
+    pages={"lecture": LECTURE, "lab": LAB, "mistakes": MISTAKES},
     replays={
-        "turn": Replay(
-            tuple(spec.CASES),
-            follows=spec.JOINT,
-            thing="robot",
-            band=0.01,
+        "scenes": Replay(
+            ("baseline", "hovering"),
+            follows="object",
+            thing="object",
             credit=CREDIT,
-            quality="The joint ends {final_error} from its target.",
+            view="The robot lifts an object from the table.",
+            quality="The object rises {rise}, the hand {hand_rise}.",
+            filmed="the scene",
         )
     },
 )
