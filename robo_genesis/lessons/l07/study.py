@@ -37,7 +37,7 @@ def readings(*scenes: str) -> dict[str, Readings]:
 def forced_readings() -> dict[str, Readings]:
     """Return the group of readings of the lifts of the wide box with little friction."""
     units = {f"{name}_{what}": "points" for name in spec.FURTHER for what in COUNTED}
-    return {"forced": Readings(units)}
+    return {"forced_lifts": Readings(units)}
 
 
 def pixels(*scenes: str) -> dict[str, Readings]:
@@ -99,7 +99,7 @@ def record_forced(page: Any, gs: Any) -> None:
         world = run.build(gs, case, spec.VIEW, spec.WRIST)
         page.traces[name], contacts = run.lift(world, page.joints, case)
         found |= {f"{name}_{what}": count for what, count in contacts.items()}
-    page.readings["forced"] = found
+    page.readings["forced_lifts"] = found
 
 
 def conclude(page: Any) -> None:
