@@ -26,16 +26,11 @@ def structure(run: Experiment) -> Iterator[Finding]:
     return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
-def scenes(run: Experiment) -> list[str]:
-    """Return the scenes of a page, in the order of the specification."""
-    return [name for name in spec.SCENES if name in run.traces]
-
-
 def one_rung(run: Experiment) -> Iterator[Finding]:
     """Scene A passes all five rungs, and each other scene of the page fails the one that it was
     made for, and no other.
     """
-    for name in scenes(run):
+    for name in rungs.scenes(run):
         expected = [spec.FAILS[name]] if spec.FAILS[name] else []
         yield equal(f"{name}.fails", rungs.failed(run, name), expected)
         if expected:

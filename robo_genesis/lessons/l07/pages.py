@@ -51,7 +51,7 @@ LESSON = Lesson(
             credit=CREDIT,
             view="The robot lifts an object from the table.",
             quality="The object rises {rise}, the hand {hand_rise}.",
-            filmed="the scene",
+            filmed="scene A",
         )
     },
 )

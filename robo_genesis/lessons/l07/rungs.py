@@ -94,6 +94,11 @@ def measured(run: Experiment, scene: str) -> dict[str, Mapping[str, float]]:
     }
 
 
+def scenes(run: Experiment) -> list[str]:
+    """Return the scenes of a page, in the order of the specification."""
+    return [name for name in spec.SCENES if name in run.traces]
+
+
 def passed(values: Mapping[str, float]) -> bool:
     """Return whether all values of a rung are within their limits."""
     return all(

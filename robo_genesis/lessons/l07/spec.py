@@ -46,6 +46,23 @@ SCENES = {
 LETTERS = dict(zip(SCENES, "ABCDEF", strict=True))
 """What readers call the scenes, so that a name does not answer a question."""
 
+LABELS = {name: f"scene {letter}" for name, letter in LETTERS.items()}
+LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETTERS.items()}
+LABELS |= {"forced": "two solver steps", "forced_fine": "four solver steps"}
+"""Words of a reader for runs."""
+
+MARKS = ("baseline", "first", "second", "third", "other", "further")
+CASE_MARKS = dict(zip(SCENES, MARKS, strict=True)) | {"forced": "second", "forced_fine": "third"}
+"""The mark of each case in the palette."""
+
+SHOWN_LIFTS = {
+    "baseline": "50 mm",
+    "wide": "82 mm",
+    "forced": "82 mm, µ 0.5",
+    "forced_fine": "82 mm, µ 0.5, half the step",
+}
+"""The lifts that are compared, with words for their objects."""
+
 RUNGS = ("built", "stable", "seen", "reachable", "graspable")
 
 FAILS = dict(zip(SCENES, (None, "stable", "built", "seen", "reachable", "graspable"), strict=True))
@@ -97,7 +114,8 @@ TOLERANCES = check_spec.TOLERANCES | {
 } | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1))  # fmt: skip
 """Contacts make rounding grow, so lifts have wide tolerances."""
 
-RELATIONS = ()
+RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)
+"""How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 
 def parameters() -> dict[str, Any]:

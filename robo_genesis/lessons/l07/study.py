@@ -105,8 +105,8 @@ def record_forced(page: Any, gs: Any) -> None:
 def conclude(page: Any) -> None:
     """Give a page the number of the rung that each scene fails, 0 for none or for several."""
     found = page.experiment
-    scenes = [name for name in spec.SCENES if name in found.traces and name != "baseline"]
-    failed = {name: rungs.failed(found, name) for name in scenes}
+    failed = {name: rungs.failed(found, name) for name in rungs.scenes(found)}
+    failed.pop("baseline", None)
     page.readings["fails"] = {
         name: spec.RUNGS.index(rung[0]) + 1 if len(rung) == 1 else 0
         for name, rung in failed.items()
