@@ -1,4 +1,4 @@
-"""Table scenes without Genesis: arms driven by MuJoCo's mechanics, bodies that are moved by hand."""
+"""Table scenes without Genesis: arms by MuJoCo's mechanics, bodies that are moved by hand."""
 
 from dataclasses import replace
 
@@ -49,7 +49,7 @@ def readings() -> dict[str, dict[str, float]]:
     usual = {"depth": 2e-4, "accepted": 2, "pregrasp": 0.136, "grasp": 0.036, "touches": 0}
     usual |= dict.fromkeys(study.COUNTED, 2) | {"descending": 0, "world": 1300.0, "wrist": 1700.0}
     found = {
-        group: {name: usual.get(name.split("_", 1)[1], 0) for name in of.units}
+        group: {name: usual.get(name.split("_", 1)[-1], 0) for name in of.units}
         for group, of in LECTURE.groups(rendered=True).items()
     }
     for name, case in zip(spec.SCENES_OF_LECTURE, scenes, strict=True):

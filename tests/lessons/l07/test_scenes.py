@@ -15,14 +15,19 @@ from robo_genesis.lessons.l07.metrics import BALL, OBJECT
         ((0.0, -0.2, 0.1, 0.1), 0.1),
         ((0.13, 0.14, 0.1, 0.1), 0.05),
         ((0.05, 0.0, 0.1, 0.1), -0.05),
-        ((0.0, 0.0, 0.02, 0.02), -0.06),
+        ((0.01, 0.0, 0.02, 0.02), -0.05),
     ],
 )
 def test_the_gap_of_two_footprints(other, gap):
     one = (0.0, 0.0, 0.1, 0.1)
-    if other[1] == -0.2 or other[2] == 0.1:
-        assert rungs.gap(one, other) == pytest.approx(gap)
+    assert rungs.gap(one, other) == pytest.approx(gap)
     assert rungs.gap(one, other) == rungs.gap(other, one)
+
+
+def test_an_object_that_both_cameras_lose_is_not_seen(scenes):
+    for camera in rungs.CAMERAS:
+        scenes = reading("pixels", f"baseline_{camera}", 150.0)(scenes)
+    assert rungs.failed(scenes, "baseline") == ["seen"]
 
 
 def test_margins_of_the_scenes():
@@ -39,7 +44,7 @@ def test_the_corners_of_both_shapes():
 
 
 def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
-    assert failed(scenes) == {"posture"} - ({"posture"} if not scenes.rendered else set())
+    assert failed(scenes) == set()
     assert rungs.failed(scenes, "baseline") == []
     assert text.ladder_table(scenes).count("**fails**") == len(spec.SCENES_OF_LECTURE) - 1
     for figure in (plots.settling, plots.lifts, plots.views):
@@ -49,12 +54,12 @@ def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
 SPOILED = {
     "another model": (reading("model", "links", 10), {"structure"}),
     "times of another step": (trace("baseline", t=lambda t: 2 * t), {"stamps"}),
-    "margin": (case("baseline_at_rest", bowl_at=(0.55, 0.05)), set()),
     "deep at the start": (reading("object", "baseline_depth", 2e-3), {"one_rung"}),
     "another mass": (reading("object", "baseline_mass", 0.2), {"one_rung"}),
-    "a ball beside the bowl": (trace("baseline_at_rest", link_pos=put((-1, BALL, 0), 0.9)), {"one_rung"}),
+    "a ball beside the bowl": (
+        trace("baseline_at_rest", link_pos=put((-1, BALL, 0), 0.9)), {"one_rung"}
+    ),
     "it slides": (trace("baseline_at_rest", link_pos=shift((-1, OBJECT, 0), 4e-4)), {"one_rung"}),
-    "too few pixels": (reading("outline", "baseline_world", 100.0), set()),
     "no answer": (reading("reach", "baseline_accepted", 1), {"one_rung"}),
     "low fingertips": (reading("reach", "baseline_grasp", 0.01), {"one_rung"}),
     "something on the way": (reading("reach", "baseline_touches", 1), {"one_rung"}),
