@@ -21,8 +21,9 @@ def posture(run: Experiment) -> Figure:
 
 def views(run: Experiment) -> Figure:
     """Show what both cameras see of scene A, without a camera its link origins."""
-    frames = {name: run.frames.get(f"{name}_rgb") for name in rungs.CAMERAS}
-    return plotting.stacked(frames) if run.rendered else posture(run)
+    if not run.rendered:
+        return posture(run)
+    return plotting.stacked({name: run.frames[f"{name}_rgb"] for name in rungs.CAMERAS})
 
 
 def settling(run: Experiment) -> Figure:

@@ -62,7 +62,8 @@ class SceneCase(Controlled):
     @property
     def centre(self) -> FloatArray:
         """Centre (3,) of the object at its start [m]."""
-        return np.array(self.place) + [0, 0, self.gap + self.size[2] / 2]
+        x, y, z = self.place
+        return np.array([x, y, z + self.gap + self.size[2] / 2])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

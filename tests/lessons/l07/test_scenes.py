@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lessons.changed_runs import case, failed, put, reading, shift, trace
+from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l07 import plots, rungs, spec, text
 from robo_genesis.lessons.l07.metrics import BALL, OBJECT
