@@ -74,7 +74,7 @@ SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 
 
 def lift_of(scene: SceneCase, **changed: Any) -> LiftCase:
-    """Return the run that lifts the object of a scene from the stand."""
+    """Return the run that lifts the object of a scene from the spot."""
     fields = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
     return LiftCase(**fields | {"steps": LIFTING, "settings": reaching.ONE_START} | changed)
 
