@@ -41,7 +41,7 @@ MISTAKES = of_scenes(*spec.SCENES)
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.ALL | spec.FURTHER, SceneMetrics),
+    metrics=dict.fromkeys(spec.CASES, SceneMetrics),
     pages={"lecture": LECTURE, "lab": LAB, "mistakes": MISTAKES},
     replays={
         "scenes": Replay(
