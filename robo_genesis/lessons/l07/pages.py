@@ -7,7 +7,7 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, counts, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, spec
+from robo_genesis.lessons.l07 import bowl_checks, bowls, checks, spec
 from robo_genesis.lessons.l07.metrics import TurnMetrics, turn_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 
@@ -29,8 +29,8 @@ MISTAKES = replace(TURN, runs={}, checks=(checks.structure,))
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.CASES, TurnMetrics),
-    pages={"lecture": TURN, "lab": LAB, "mistakes": MISTAKES},
+    metrics=dict.fromkeys(spec.CASES, TurnMetrics) | dict.fromkeys(bowls.CASES, bowls.BowlMetrics),
+    pages={"lecture": TURN, "lab": LAB, "mistakes": MISTAKES, "meshes": bowl_checks.MESHES},
     replays={
         "turn": Replay(
             tuple(spec.CASES),
