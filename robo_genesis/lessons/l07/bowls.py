@@ -196,18 +196,16 @@ def pieces() -> list[Any]:
 
 def box_model(fixed: bool) -> str:
     """Return an MJCF model of a bowl of boxes: a plate, and upright walls around it."""
-    half, plate = PLATE / 2, RIM * np.cos(np.pi / WALLS)
-    wall = f"{half} {RIM * np.tan(np.pi / WALLS)} {HEIGHT / 2}"
+    half, plate, wide = PLATE / 2, RIM * np.cos(np.pi / WALLS), RIM * np.tan(np.pi / WALLS)
     boxes = f'<geom size="{plate} {plate} {half}" pos="0 0 {half}"/>'
     for angle in 2 * np.pi * np.arange(WALLS) / WALLS:
-        x, y = (RIM - half) * np.cos(angle), (RIM - half) * np.sin(angle)
-        boxes += f'<geom size="{wall}" pos="{x} {y} {HEIGHT / 2}" euler="0 0 {angle}"/>'
-    joint = "" if fixed else "<freejoint/>"
-    return (
-        '<mujoco model="bowl"><compiler angle="radian"/><default>'
-        f'<geom type="box" density="{DENSITY}"/></default>'
-        f'<worldbody><body name="bowl">{joint}{boxes}</body></worldbody></mujoco>'
-    )
+        place = f"{(RIM - half) * np.cos(angle)} {(RIM - half) * np.sin(angle)} {HEIGHT / 2}"
+        size = f"{half} {wide} {HEIGHT / 2}"
+        boxes += f'<geom size="{size}" pos="{place}" euler="0 0 {angle}"/>'
+    given = f'<default><geom type="box" density="{DENSITY}"/></default>'
+    body = f'<body name="bowl">{"" if fixed else "<freejoint/>"}{boxes}</body>'
+    units = '<compiler angle="radian"/>'
+    return f'<mujoco model="bowl">{units}{given}<worldbody>{body}</worldbody></mujoco>'
 
 
 def add(
@@ -258,47 +256,42 @@ def run_case(gs: Any, case: BowlCase) -> tuple[BodyTrace, float, float]:
     balls = [gs.morphs.Sphere(radius=case.radius, pos=tuple(start)) for start in case.starts]
     links = [scene.add_entity(ball).link_start for ball in balls]
     scene.build()
-    build, solver, taken = time.perf_counter() - begin, scene.rigid_solver, []
-    getters = (
-        solver.get_links_pos, solver.get_links_quat, solver.get_links_vel, solver.get_links_ang
-    )  # fmt: skip
+    build, of, taken = time.perf_counter() - begin, scene.rigid_solver, []
+    getters = of.get_links_pos, of.get_links_quat, of.get_links_vel, of.get_links_ang
 
     def step() -> None:
         start = time.perf_counter()
         scene.step()
         taken.append(time.perf_counter() - start)
 
-    states = record_states(step, case.steps, lambda: tuple(to_numpy(of(links)) for of in getters))
+    states = record_states(step, case.steps, lambda: tuple(to_numpy(get(links)) for get in getters))
     return BodyTrace(times(case), *stacked(states)), build, float(np.median(taken))
 
 
 def read_geometry(gs: Any) -> dict[str, dict[str, float]]:
     """Return `READINGS` without the times, from free bowls side by side."""
-    scene = new_scene(gs, BIG["in_default"])
-    bowls = {
-        choice: add(gs, scene, choice, (0.0, 0.3 * place, 0.0), fixed=False)
-        for place, choice in enumerate(CHOICES)
-    }
-    shapes = {choice: [geom.get_trimesh() for geom in of.geoms] for choice, of in bowls.items()}
+    scene, bowls = new_scene(gs, BIG["in_default"]), {}
+    for place, of in enumerate(CHOICES):
+        bowls[of] = add(gs, scene, of, (0.0, 0.3 * place, 0.0), fixed=False)
+    shapes = {of: [geom.get_trimesh() for geom in bowl.geoms] for of, bowl in bowls.items()}
     seen = {of: volume([geom.get_trimesh() for geom in bowls[of].vgeoms]) for of in CHOICES}
-    solid = {choice: volume(meshes) for choice, meshes in shapes.items()}
+    solid = {of: volume(meshes) for of, meshes in shapes.items()}
     right = DENSITY * seen["default"] / solid["default"]
     bowls["corrected"] = add(gs, scene, "default", (0.3, 0.0, 0.0), fixed=False, rho=right)
     scene.build()
     points = np.vstack([[*one.vertices, one.vertices.mean(axis=0)] for one in pieces()])
-    grid = np.stack(np.broadcast_arrays(ACROSS[:, None], 0.0, UP), axis=-1)
-    tops = {of: np.where(outside(shapes[of], grid) < 1e-6, UP, 0.0).max(axis=1) for of in CUT}
-    return {
-        "geoms": {choice: float(len(meshes)) for choice, meshes in shapes.items()},
+    found = {
+        "geoms": {of: float(len(meshes)) for of, meshes in shapes.items()},
         "collision_volume": solid,
         "visual_volume": seen,
-        "mass": {choice: float(of.get_mass()) for choice, of in bowls.items()},
+        "mass": {of: float(bowl.get_mass()) for of, bowl in bowls.items()},
         "uncovered": {of: float(max(outside(shapes[of], points).max(), 0)) for of in DECOMPOSED},
-        **{
-            f"top_{of}": dict(zip(READINGS[f"top_{of}"].units, heights.tolist(), strict=True))
-            for of, heights in tops.items()
-        },
     }
+    grid = np.stack(np.broadcast_arrays(ACROSS[:, None], 0.0, UP), axis=-1)
+    for of in CUT:
+        tops = np.where(outside(shapes[of], grid) < 1e-6, UP, 0.0).max(axis=1).tolist()
+        found[f"top_{of}"] = dict(zip(READINGS[f"top_{of}"].units, tops, strict=True))
+    return found
 
 
 def volume(meshes: list[Any]) -> float:
