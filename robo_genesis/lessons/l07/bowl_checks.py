@@ -29,7 +29,7 @@ def sunk(run: Experiment, name: str) -> int:
 
 def one_hull_holds_none(run: Experiment) -> Iterator[Finding]:
     """A bowl of one hull holds none of the balls: at y = 0 its top is level with the rim."""
-    yield equal("in_one_hull.inside", run.metrics["in_one_hull"].inside, 0)
+    yield equal("in_one_hull.inside_percent", run.metrics["in_one_hull"].inside, 0.0)
     heights = run.readings["top_one_hull"].values()
     yield within("one_hull.lowest_top_m", min(heights), HEIGHT, FLAT)
 
@@ -41,7 +41,7 @@ def others_hold_all(run: Experiment) -> Iterator[Finding]:
     for name, case in (bowls.BIG | bowls.ATTACKS).items():
         if case.choice != "one_hull":
             inside, lowest = run.metrics[name].inside, run.metrics[name].lowest
-            yield equal(f"{name}.inside", inside, len(BALLS))
+            yield equal(f"{name}.inside_percent", inside, 100.0)
             yield above(f"{name}.lowest_m", lowest, case.floor - FLOOR[0])
             yield below(f"{name}.over_floor_m", (lowest or np.inf) - case.floor, FLOOR[1])
             yield equal(f"{name}.sunk", sunk(run, name), 0)
@@ -70,14 +70,14 @@ def mass_is_of_collision(run: Experiment) -> Iterator[Finding]:
     """
     right = {"corrected": run.readings["visual_volume"]["default"]}
     for name, volume in {**run.readings["collision_volume"], **right}.items():
-        mass = run.readings["mass"][name]
+        mass = run.readings["bowl_mass"][name]
         yield nearly(f"{name}.mass_kg", mass, 1e-6 * DENSITY * volume, SHARE)
 
 
 def small_balls_count_as_inside(run: Experiment) -> Iterator[Finding]:
     """All balls of 4 mm count as inside in each run, whether they sank in or not."""
     for name in bowls.SMALL:
-        yield equal(f"{name}.inside", run.metrics[name].inside, len(BALLS))
+        yield equal(f"{name}.inside_percent", run.metrics[name].inside, 100.0)
         yield noted(f"{name}.sunk", sunk(run, name))
 
 

@@ -19,6 +19,11 @@ def millimetres(value: float | None) -> str:
     return "–" if value is None else f"{1000 * value:.1f}".replace("-", "−")
 
 
+def counted(found: bowls.BowlMetrics) -> str:
+    """Write how many balls are inside: `12 of 12`."""
+    return f"{found.inside / 100 * len(BALLS):.0f} of {len(BALLS)}"
+
+
 def choices(run: Experiment) -> str:
     """Return geoms, volume, balls and mass by choice."""
     rows = []
@@ -27,11 +32,11 @@ def choices(run: Experiment) -> str:
         rows.append(
             {
                 "collision geometry": words,
-                "geoms": f"{run.readings['geoms'][choice]:.0f}",
+                "geoms": f"{run.readings['bowl_geoms'][choice]:.0f}",
                 "volume / visual": f"{run.readings['collision_volume'][choice] / seen:.2f}",
-                "balls inside": f"{found.inside} of {len(BALLS)}",
+                "balls inside": counted(found),
                 "lowest ball [mm]": millimetres(found.lowest),
-                "free bowl [g]": f"{1000 * run.readings['mass'][choice]:.1f}",
+                "free bowl [g]": f"{1000 * run.readings['bowl_mass'][choice]:.1f}",
                 "density × visual volume [g]": f"{1e-3 * DENSITY * seen:.1f}",
             }
         )
@@ -54,7 +59,7 @@ def tried(run: Experiment, group: str) -> str:
         words += f", start {1000 * case.shift:g} mm aside" * (case.shift > 0)
         found = run.metrics[name]
         by_hand, lowest = millimetres(case.depth), millimetres(found.lowest)
-        rows[words] = by_hand, found.inside, sunk(run, name), lowest
+        rows[words] = by_hand, counted(found), sunk(run, name), lowest
     heads = ("v T / e [mm]", "inside", "sunk in", "lowest ball [mm]")
     return number_table("run", dict.fromkeys(heads, 0), rows)
 

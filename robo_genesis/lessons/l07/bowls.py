@@ -106,15 +106,15 @@ ACROSS, UP = np.arange(-72, 73, 3) / 1000, np.arange(101) / 2000
 """Places x on the line y = 0, and heights, where `CUT` collision geometry is sampled [m]."""
 
 READINGS = {
-    "geoms": Readings(dict.fromkeys(CHOICES, "1")),
+    "bowl_geoms": Readings(dict.fromkeys(CHOICES, "1")),
     "collision_volume": Readings(dict.fromkeys(CHOICES, "cm³")),
     "visual_volume": Readings(dict.fromkeys(CHOICES, "cm³")),
-    "mass": Readings(dict.fromkeys([*CHOICES, "corrected"], "kg")),
+    "bowl_mass": Readings(dict.fromkeys([*CHOICES, "corrected"], "kg")),
     "uncovered": Readings(dict.fromkeys(DECOMPOSED, "m")),
     **{f"top_{of}": Readings({f"x_{1e3 * x:+.0f}mm": "m" for x in ACROSS}) for of in CUT},
     **{
         what: Readings(dict.fromkeys(CHOICES, "s"), "performance", dict.fromkeys(CHOICES, limits))
-        for what, limits in {"build": (0.0, 600.0), "step": (1e-5, 10.0)}.items()
+        for what, limits in {"build": (0.0, 3600.0), "step": (1e-5, 10.0)}.items()
     },
 }
 """The engine's values: of the geometry, and the time of a build and of one outer step."""
@@ -122,8 +122,9 @@ READINGS = {
 # Another processor may get other hulls from CoACD, and each contact makes rounding grow: balls may
 # come to lie anywhere. Counts of the balls inside must agree, and all claims.
 TOLERANCES = {
-    "geoms": (12.0, 0.0), "cm³": (0.05, 0.15), "mass": (1e-6, 0.15), "uncovered": (1e-4, 0.0),
-    "lowest": (HEIGHT, 0.0), **dict.fromkeys([f"top_{of}" for of in CUT], (HEIGHT, 0.0)),
+    "bowl_geoms": (12.0, 0.0), "cm³": (0.05, 0.15), "bowl_mass": (1e-6, 0.15), "uncovered": (1e-4, 0.0),
+    "lowest": (HEIGHT, 0.0), "inside": (0.0, 0.0),
+    **dict.fromkeys([f"top_{of}" for of in CUT], (HEIGHT, 0.0)),
     **dict.fromkeys(CASES, (10.0, 0.0)),
 }  # fmt: skip
 
@@ -132,14 +133,15 @@ TOLERANCES = {
 class BowlMetrics(CaseMetrics):
     """Where the balls are at the end: inside, if below the rim and within its outer radius."""
 
-    inside: int = metric("1", "balls inside", "link_pos_m")
+    inside: float = metric("%", "balls inside", "link_pos_m")
     lowest: float | None = metric("m", "lowest bottom of a ball inside", "link_pos_m")
 
 
 def bowl_metrics(trace: BodyTrace, case: BowlCase) -> BowlMetrics:
     """Measure the end of a run."""
     z = heights_inside(trace)
-    return BowlMetrics(len(z), float(z.min()) - case.radius if len(z) else None)
+    lowest = float(z.min()) - case.radius if len(z) else None
+    return BowlMetrics(100 * len(z) / len(BALLS), lowest)
 
 
 def heights_inside(trace: BodyTrace) -> FloatArray:
@@ -281,10 +283,10 @@ def read_geometry(gs: Any) -> dict[str, dict[str, float]]:
     scene.build()
     points = np.vstack([[*one.vertices, one.vertices.mean(axis=0)] for one in pieces()])
     found = {
-        "geoms": {of: float(len(meshes)) for of, meshes in shapes.items()},
+        "bowl_geoms": {of: float(len(meshes)) for of, meshes in shapes.items()},
         "collision_volume": solid,
         "visual_volume": seen,
-        "mass": {of: float(bowl.get_mass()) for of, bowl in bowls.items()},
+        "bowl_mass": {of: float(bowl.get_mass()) for of, bowl in bowls.items()},
         "uncovered": {of: float(max(outside(shapes[of], points).max(), 0)) for of in DECOMPOSED},
     }
     grid = np.stack(np.broadcast_arrays(ACROSS[:, None], 0.0, UP), axis=-1)

@@ -21,7 +21,7 @@ BASELINE = ControlCase(q_target=TURNED, steps=60)
 CASES = {"baseline": BASELINE, "kp_halved": replace(BASELINE, kp=KP_BASELINE / 2)}
 
 ARRIVED = 0.05  # the largest distance from the target that counts as arrived [rad]
-RESOLUTION = {"rad": 1e-5, "rad/s": 1e-3, "s": DT / 2, "1": 0.5}
+RESOLUTION = {"rad": 1e-5, "rad/s": 1e-3, "s": DT / 2, "1": 0.5, "%": 1.0}
 TOLERANCES, RELATIONS = (
     check_spec.TOLERANCES | bowls.TOLERANCES,
     (),
