@@ -77,7 +77,8 @@ class BowlCase:
     @property
     def depth(self) -> float:
         """How deep the lowest balls sink into this face at fine steps, v T / e [m]."""
-        return T / np.e * float(np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - self.floor)))
+        speed = float(np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - self.floor)))
+        return speed * max(T, 2 * self.h) / np.e
 
 
 BIG = {f"in_{choice}": BowlCase(choice) for choice in CHOICES}
