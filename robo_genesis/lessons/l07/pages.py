@@ -7,8 +7,9 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, counts, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, spec
+from robo_genesis.lessons.l07 import checks, rest, spec
 from robo_genesis.lessons.l07.metrics import TurnMetrics, turn_metrics
+from robo_genesis.lessons.l07.rest_checks import REST
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 
 MEASURES = False
@@ -29,8 +30,8 @@ MISTAKES = replace(TURN, runs={}, checks=(checks.structure,))
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.CASES, TurnMetrics),
-    pages={"lecture": TURN, "lab": LAB, "mistakes": MISTAKES},
+    metrics=dict.fromkeys(spec.CASES, TurnMetrics) | dict.fromkeys(rest.CASES, rest.RestMetrics),
+    pages={"lecture": TURN, "lab": LAB, "mistakes": MISTAKES, "rest": REST},
     replays={
         "turn": Replay(
             tuple(spec.CASES),

@@ -8,6 +8,7 @@ import numpy as np
 from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import DT
+from robo_genesis.lessons.l07 import rest
 from robo_genesis.sim.arm.franka import JOINT_NAMES, KP_BASELINE, Q_START
 from robo_genesis.sim.arm.joint_control import ControlCase
 
@@ -20,8 +21,9 @@ BASELINE = ControlCase(q_target=TURNED, steps=60)
 CASES = {"baseline": BASELINE, "kp_halved": replace(BASELINE, kp=KP_BASELINE / 2)}
 
 ARRIVED = 0.05  # the largest distance from the target that counts as arrived [rad]
-RESOLUTION = {"rad": 1e-5, "rad/s": 1e-3, "s": DT / 2, "1": 0.5}
-TOLERANCES, RELATIONS = check_spec.TOLERANCES, ()  # tolerances of all units of a joint trace
+RESOLUTION = rest.RESOLUTION | {"rad": 1e-5, "rad/s": 1e-3, "s": DT / 2, "1": 0.5}
+LABELS = rest.LABELS
+TOLERANCES, RELATIONS = check_spec.TOLERANCES | rest.TOLERANCES, ()
 
 
 def parameters() -> dict[str, Any]:
