@@ -37,7 +37,7 @@ FRICTIONS = {f"mu_{mu}": {"friction": mu / 100} for mu in (300, 200, 150, 120, 1
 DIAGONAL = {"yaw": np.pi / 4, "duration": 0.3}
 
 
-def rows(of: Mapping[str, Mapping[str, float]] = ROW, **scenes: Any) -> dict[str, Any]:
+def rows(of: Mapping[str, Mapping[str, float]] = ROW, /, **scenes: Any) -> dict[str, Any]:
     """Return scenes with boxes side by side by name, from their tilt [°] and other settings."""
     found: dict[str, dict[str, ContactCase]] = {scene: {} for scene in scenes}
     for scene, (tilt, settings) in scenes.items():
@@ -54,12 +54,11 @@ PYRAMIDS = rows(
     T_5ms=(10, {"time_constant": 0.005}), T_20ms=(10, {"time_constant": 0.02}),
 ) | rows(STEEP, tilt_15=(15, {}), tilt_20=(20, {}))  # fmt: skip
 ROUND = {"cone": "elliptic", "impratio": 100.0, "settle": 0.3}  # the engine's impratio for it
-ELLIPTIC = rows(elliptic_0=(0, ROUND), elliptic_10=(10, ROUND)) | rows(
-    STEEP, elliptic_20=(20, ROUND)
-)
+ELLIPTIC = rows(elliptic_10=(10, ROUND)) | rows(STEEP, elliptic_20=(20, ROUND))
 IMPRATIO = rows(
-    elliptic_alone=(10, ROUND | {"impratio": 1.0}), impratio_100=(10, {"impratio": 100.0})
-)
+    elliptic_alone=(10, ROUND | {"impratio": 1.0}), impratio_100=(10, {"impratio": 100.0}),
+    elliptic_0=(0, ROUND),
+)  # fmt: skip
 NOSLIP = rows(FRICTIONS, **{f"noslip_{tilt}": (tilt, {"noslip": 5}) for tilt in (5, 15, 20)})
 FREE = rows(STEEP, axis_24=(24, {"duration": 0.3})) | rows(
     FRICTIONS, diagonal_18=(18, DIAGONAL), diagonal_20=(20, DIAGONAL)

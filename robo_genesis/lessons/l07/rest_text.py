@@ -37,8 +37,16 @@ def creeps(run: Experiment, names: list[str]) -> Iterator[dict[str, str]]:
         }  # fmt: skip
 
 
-changes = as_table(lambda run: creeps(run, CHANGED))
-cures = as_table(lambda run: creeps(run, CURES))
+@as_table
+def changes(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return creep and depth of the boxes that differ in one setting."""
+    return creeps(run, CHANGED)
+
+
+@as_table
+def cures(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return creep and depth of the box with each of the settings that may reduce its creep."""
+    return creeps(run, CURES)
 
 
 @as_table
@@ -48,8 +56,8 @@ def judged(run: Experiment) -> Iterator[dict[str, str]]:
         of = run.metrics[name]
         yield {
             "box": label, "slow samples": f"{of.slow:.0f} %",
-            "highest speed": scaled_value(of.fastest, "mm/s"),
-            "displacement": scaled_value(of.moved, "mm"),
+            "highest speed": f"{1000 * of.fastest:.3g} mm/s",
+            "displacement": f"{1000 * of.moved:.3f} mm",
             "at rest": "yes" if of.moved < rest.BOUND else "no",
         }  # fmt: skip
 
