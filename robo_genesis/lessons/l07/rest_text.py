@@ -17,10 +17,6 @@ MEASURES = False
 CHANGED, CURES = [*rest.LABELS][:10], ["tilt_10_box", "T_5ms_box", *[*rest.LABELS][10:]]
 """The runs of both tables of creep."""
 
-JUDGED = {
-    "fall_box": "level, after a fall", "tilt_10_box": "10°, μ = 0.5",
-    "tilt_10_rough": "10°, μ = 2", "noslip_15_mu_50": "15°, μ = 0.5, noslip",
-}  # fmt: skip
 MARKS = {"box": ("first", "μ = 0.5"), "firm": ("second", "μ = 1"), "rough": ("third", "μ = 2")}
 
 
@@ -47,19 +43,6 @@ def changes(run: Experiment) -> Iterator[dict[str, str]]:
 def cures(run: Experiment) -> Iterator[dict[str, str]]:
     """Return creep and depth of the box with each of the settings that may reduce its creep."""
     return creeps(run, CURES)
-
-
-@as_table
-def judged(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return for some boxes what speed and displacement of the last window say."""
-    for name, label in JUDGED.items():
-        of = run.metrics[name]
-        yield {
-            "box": label, "slow samples": f"{of.slow:.0f} %",
-            "highest speed": f"{1000 * of.fastest:.3g} mm/s",
-            "displacement": f"{1000 * of.moved:.3f} mm",
-            "at rest": "yes" if of.moved < rest.BOUND else "no",
-        }  # fmt: skip
 
 
 def by_tilt(run: Experiment) -> Figure:
