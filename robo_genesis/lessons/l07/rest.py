@@ -92,7 +92,7 @@ TOLERANCES: dict[str, tuple[float, float]] = {
 }  # fmt: skip
 """By metric or case, (atol, rtol) of a value between engines, backends or processors."""
 
-RESOLUTION = {"m": 1e-5, "m/s": 5e-6}
+RESOLUTION = {"m": 1e-5, "m/s": 5e-6, "%": 1.0}
 """By unit, the difference below which two values are equal. float32 changes a creep by up to
 3e-6 m/s at a solver step of 1 ms."""
 
