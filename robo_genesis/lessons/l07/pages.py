@@ -4,7 +4,16 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, rungs, spec, study
+from robo_genesis.lessons.l07 import (
+    bowl_checks,
+    bowls,
+    checks,
+    rest,
+    rest_checks,
+    rungs,
+    spec,
+    study,
+)
 from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record
@@ -41,8 +50,16 @@ MISTAKES = of_scenes(*spec.SCENES)
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.CASES, SceneMetrics),
-    pages={"lecture": LECTURE, "lab": LAB, "mistakes": MISTAKES},
+    metrics=dict.fromkeys(spec.CASES, SceneMetrics)
+    | dict.fromkeys(bowls.CASES, bowls.BowlMetrics)
+    | dict.fromkeys(rest.CASES, rest.RestMetrics),
+    pages={
+        "lecture": LECTURE,
+        "lab": LAB,
+        "mistakes": MISTAKES,
+        "meshes": bowl_checks.MESHES,
+        "rest": rest_checks.REST,
+    },
     replays={
         "scenes": Replay(
             ("baseline", "hovering"),
