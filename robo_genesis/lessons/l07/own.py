@@ -3,15 +3,11 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from matplotlib.figure import Figure
-
-from robo_genesis.core import plotting
 from robo_genesis.core.exercises import refused
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import SCALES, bullets, listed, scaled_value, with_unit
 from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.lessons.l07.study import Facts
-from robo_genesis.sim.arm.franka import LINK_PARENTS
 
 MEASURES = False
 
@@ -22,11 +18,6 @@ UNITS = dict.fromkeys(("margin", "depth", "ball", "pregrasp", "grasp", "width"),
     "support": "µm", "drift": "µm", "moved": "µm", "mass": "%", "share": "%", "rise": "%"
 }  # fmt: skip
 """Units in which quantities are printed; the others are counts, or true and false."""
-
-
-def posture(run: Experiment) -> Figure:
-    """Show the camera frames of both ends of the lift, without a camera the link origins."""
-    return plotting.robot_ends(run.frames, run.traces["baseline"], LINK_PARENTS)
 
 
 def given(facts: Facts, *names: str) -> Results:

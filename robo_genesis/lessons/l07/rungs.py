@@ -1,13 +1,14 @@
 """The ladder: what each rung measures of a scene, and whether the scene passes it."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l07 import bowls, spec
-from robo_genesis.lessons.l07.metrics import BALL, SceneMetrics
+from robo_genesis.lessons.l07.metrics import BALL
 from robo_genesis.lessons.l07.run import TABLE, SceneCase
 
 MEASURES = False
@@ -77,7 +78,7 @@ def measured(run: Experiment, scene: str) -> dict[str, dict[str, float]]:
 
 def values(
     case: SceneCase,
-    metrics: tuple[SceneMetrics, SceneMetrics],
+    metrics: tuple[Any, Any],
     ball: FloatArray,
     found: Mapping[str, Mapping[str, float]],
 ) -> dict[str, dict[str, float]]:
@@ -85,7 +86,7 @@ def values(
 
     Args:
         case: its settings.
-        metrics: of the run at rest and of the lift.
+        metrics: `SceneMetrics` of the run at rest and of the lift.
         ball: (3,) where the ball ends [m].
         found: readings by group and name.
     """
