@@ -44,7 +44,9 @@ def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results | None:
 def number(name: str, value: Any) -> str:
     """Return the value of a quantity with its unit."""
     unit = UNITS.get(name)
-    return with_unit(SCALES[unit] * value, unit, 2) if unit else f"{value}"
+    if unit:
+        return with_unit(SCALES[unit] * value, unit, 2)
+    return f"{value:.0f}" if isinstance(value, float) else f"{value}"
 
 
 def compared(
@@ -70,6 +72,8 @@ def compared(
     missing = [rung for rung in course if mine[rung] is None]
     if missing:
         lines.append(f"Your functions do not judge {listed(missing)} yet.")
+    else:
+        lines.append(f"The first rung that fails by your ladder: {ladder(results) or 'none'}.")
     if other:
         lines.append(f"Yours and the course's verdict differ: {listed(other)}. Compare the values.")
     return "\n".join([*lines, outcome([rung for rung, good in course.items() if not good])])
