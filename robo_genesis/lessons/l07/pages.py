@@ -2,6 +2,7 @@
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import (
@@ -45,7 +46,7 @@ LECTURE = of_scenes(*spec.SCENES_OF_LECTURE).with_more(
     study.forced_readings(),
     checks.LECTURE,
 )
-LAB = of_scenes("baseline")
+LAB = with_functions(of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder")
 MISTAKES = of_scenes(*spec.SCENES)
 
 LESSON = Lesson(
