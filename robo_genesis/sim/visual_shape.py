@@ -1,13 +1,14 @@
 """The visual meshes of the engine, each in the frame of its link."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.arm.kinematics import rotate
 
 FILE = "shape.npz"
@@ -60,6 +61,15 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
             vertices, faces = trimesh.util.append_faces(*zip(*meshes, strict=True))
             parts.append(Part(name, rgb, vertices.astype(np.float32), faces.astype(np.int32)))
     return parts
+
+
+def fixed_parts(entity: Any) -> list[Part]:
+    """Return the geometry of a built entity that does not move, at its place in the world."""
+    place, quat = to_numpy(entity.get_pos()), to_numpy(entity.get_quat())
+    return [
+        replace(part, link=WORLD, vertices=(rotate(quat, part.vertices) + place).astype(np.float32))
+        for part in read_shape(entity)
+    ]
 
 
 def floor(width: float) -> Part:

@@ -25,8 +25,13 @@ def runs(
         replay: what is shown of them.
 
     Raises:
-        ValueError: the robot has no such joint; as `Runs`.
+        ValueError: the record has no such joint or link; as `Runs`.
     """
+    if replay.follows in links:
+        heights = followed(traces, links.index(replay.follows))
+        thing = f"the {replay.thing}"
+        moves = {case: f"**{case}**:" for case in traces}
+        return Runs(replay, thing, traces=traces, links=links, channels=heights, moves=moves)
     joint, of_joint = replay.follows, channels(traces, joints, replay.follows)
     reaching = distances(traces, links, replay.goal, replay.hand) if replay.goal else []
     return Runs(
@@ -61,6 +66,12 @@ def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[
         Channel("velocity", "q̇", f"{unit}/s", 4, qd),
         Channel("control force", "force", effort, 2, force),
     ]
+
+
+def followed(traces: Mapping[str, Trace], link: int) -> list[Channel]:
+    """Return the height of the origin of a link of the robot, or of a body beside it."""
+    heights = {case: 1000 * trace.link_pos[:, link, 2] for case, trace in traces.items()}
+    return [Channel("height", "z", "mm", 1, heights)]
 
 
 def distances(

@@ -1,6 +1,6 @@
 """Position control of a robot's joints: reset, command a target, step, record."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -147,28 +147,44 @@ def set_up(robot: Any, dofs: list[int], case: ControlCase) -> None:
             raise CaseError(f"{name} reads back {to_numpy(found)} after reset, asked for {asked}.")
 
 
-def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
+def run_case(
+    scene: Any, robot: Any, joints: JointMap, case: ControlCase, bodies: Sequence[Any] = (),
+    begin: Callable[[], None] | None = None, after: Callable[[int], None] | None = None,
+) -> Trace:  # fmt: skip
     """Reset, then command the target of each step and step; record every state.
 
     Position, link poses: before the first step and after each. Velocity and both forces: after
     each step, with the time at which the step ends. `get_dofs_control_force` computes
     its value from the state at the call, so after a step it belongs to the new state.
 
+    Args:
+        scene: built, with the robot.
+        robot: its entity.
+        joints: all its joints.
+        case: the settings.
+        bodies: further entities whose links the trace has after those of the robot.
+        begin: is called after the reset, as to place a body.
+        after: is called after each step with its number, as to read contacts.
+
     Returns:
         A trace of `case.steps` steps.
     """
     reset(scene, robot, joints, case)
+    if begin:
+        begin()
     dofs = joints.dofs_idx_local.tolist()
     targets = np.broadcast_to(case.q_target, (case.steps, len(dofs))).copy()
     robot.control_dofs_position(targets[0], dofs)
-    readings = [read(robot, dofs)]
+    readings = [read(robot, dofs, bodies)]
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
-    begin = engine_time(scene)
-    for q_target in targets:
+    started = engine_time(scene)
+    for k, q_target in enumerate(targets):
         robot.control_dofs_position(q_target, dofs)  # at t[k]: the target of this step
         scene.step()  # bounded effort drives the dynamics for dt
-        readings.append(read(robot, dofs))  # at t[k+1]: the new state
-    passed = engine_time(scene) - begin
+        readings.append(read(robot, dofs, bodies))  # at t[k+1]: the new state
+        if after:
+            after(k)
+    passed = engine_time(scene) - started
     if not np.isclose(passed, case.steps * case.dt, rtol=1e-5, atol=0):
         raise CaseError(
             f"The engine's clock advanced {passed:g} s in {case.steps} steps of {case.dt:g} s: the "
@@ -241,16 +257,16 @@ def assemble(
     )
 
 
-def read(robot: Any, dofs: list[int]) -> tuple[FloatArray, ...]:
+def read(robot: Any, dofs: list[int], bodies: Sequence[Any] = ()) -> tuple[FloatArray, ...]:
     """Return what the engine has now.
 
-    Position (d,), link positions (l, 3) [m] and orientations (l, 4); velocity, control force and
-    internal force, each (d,).
+    Position (d,), link positions (l, 3) [m] and orientations (l, 4), those of `bodies` last;
+    velocity, control force and internal force, each (d,).
     """
     return (
         to_numpy(robot.get_dofs_position(dofs)),
-        to_numpy(robot.get_links_pos()),
-        to_numpy(robot.get_links_quat()),
+        np.concatenate([to_numpy(of.get_links_pos()) for of in (robot, *bodies)]),
+        np.concatenate([to_numpy(of.get_links_quat()) for of in (robot, *bodies)]),
         to_numpy(robot.get_dofs_velocity(dofs)),
         to_numpy(robot.get_dofs_control_force(dofs)),
         to_numpy(robot.get_dofs_force(dofs)),

@@ -67,6 +67,19 @@ def project(points: FloatArray, K: FloatArray, transform: FloatArray) -> FloatAr
     return np.asarray((seen / depth @ K.T)[..., :2])
 
 
+def outline_area(points: FloatArray, K: FloatArray, transform: FloatArray) -> float:
+    """Return the area of the picture of a convex body, whole and not hidden [pixel].
+
+    Args:
+        points: (n, 3) its corners in the world, all in front of the camera [m].
+        K: camera matrix.
+        transform: of the camera.
+    """
+    from scipy.spatial import ConvexHull
+
+    return float(ConvexHull(project(points, K, transform)).volume)  # of two dimensions: the area
+
+
 def silhouette_centre(
     centre: FloatArray, radius: float, K: FloatArray, transform: FloatArray
 ) -> FloatArray:  # fmt: skip

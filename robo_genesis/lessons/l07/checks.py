@@ -1,0 +1,105 @@
+"""Named checks of L07; the docstring of each is its claim."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, within
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l07 import run as runs
+from robo_genesis.lessons.l07 import rungs, spec
+from robo_genesis.lessons.l07.metrics import OBJECT
+from robo_genesis.lessons.l07.run import LiftCase
+from robo_genesis.sim.arm import lifting
+from robo_genesis.sim.arm.kinematics import measured_hand
+from robo_genesis.sim.arm.laws import commanded, driven_run, model_joints
+from robo_genesis.sim.common_checks import posture, stamps
+from robo_genesis.sim.laws import apart, kept, unit_quaternions
+
+MEASURES = False
+
+
+def structure(run: Experiment) -> Iterator[Finding]:
+    """The robot has the links, joints and DOFs of its model file."""
+    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
+
+
+def one_rung(run: Experiment) -> Iterator[Finding]:
+    """Scene A passes all five rungs, and each other scene of the page fails the one that it was
+    made for, and no other.
+    """
+    for name in rungs.scenes(run):
+        expected = [spec.FAILS[name]] if spec.FAILS[name] else []
+        yield equal(f"{name}.fails", rungs.failed(run, name), expected)
+        if expected:
+            number = run.readings["fails"][name]
+            yield equal(f"{name}.number", number, spec.RUNGS.index(expected[0]) + 1)
+
+
+def reached(run: Experiment) -> Iterator[Finding]:
+    """Before closing and at the end the hand is within 8 mm of its waypoint, if nothing is in
+    its way.
+    """
+    for name, case in run.cases.items():
+        if isinstance(case, LiftCase) and case.size[1] <= spec.LIMITS["width"][1]:
+            points = lifting.waypoints((*case.spot, 0.0), case.size[2])
+            for phase, point in zip(("settle", "hold"), points[1:], strict=True):
+                hand = measured_hand(run.traces[name], lifting.ENDS[phase]).position
+                yield at_most(f"{name}.{phase}_m", float(np.linalg.norm(hand - point)), 8e-3)
+
+
+def hovering_is_at_rest(run: Experiment) -> Iterator[Finding]:
+    """The hovering object is 5 mm above the table, keeps its place to 1 µm, and is lifted with the
+    hand.
+    """
+    rest, lift = run.metrics["hovering_at_rest"], run.metrics["hovering"]
+    yield within("hovering.support_m", rest.support, 5e-3, 1e-6)
+    yield at_most("hovering.drift_m", rest.drift, 1e-6)
+    yield above("hovering.share_of_the_rise", lift.rise / lift.hand_rise, 0.99)
+
+
+def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
+    """With friction 0.5, a box that is 82 mm wide is lifted by more than 40 mm with two solver
+    steps in an outer step, and by less than 5 mm with four. Both times the open hand touches it on
+    its way down.
+    """
+    coarse, fine = run.metrics["forced"], run.metrics["forced_fine"]
+    yield above("forced.rise_m", coarse.rise, 0.04)
+    yield below("forced_fine.rise_m", fine.rise, 5e-3)
+    for name in spec.FURTHER:
+        yield above(f"{name}.descending", run.readings["forced_lifts"][f"{name}_descending"], 0)
+
+
+def robot_of(trace: Trace) -> Trace:
+    """Return a run without the links of the bodies."""
+    return replace(
+        trace, link_pos=trace.link_pos[:, :OBJECT], link_quat=trace.link_quat[:, :OBJECT]
+    )
+
+
+def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+    """At each sample links and control forces are those of the driven robot, and in a scene at rest
+    all forces and velocities. Bodies begin where their case puts them.
+    """
+    yield from kept("the joint map", model_joints(run.joints))
+    for name, case in run.cases.items():
+        trace, robot = run.traces[name], robot_of(run.traces[name])
+        command = case.commanding(robot.target)
+        lifts = isinstance(case, LiftCase)
+        law = commanded if lifts else driven_run
+        yield from kept(name, law(robot, command, run.links[:OBJECT]))
+        yield from kept(f"{name}, bodies", bodies(trace, case))
+
+
+def bodies(trace: Trace, case: runs.SceneCase) -> Iterator[Finding]:
+    """Yield a body that does not begin at its place, or has no orientation."""
+    yield from unit_quaternions(trace.link_quat)
+    start = trace.link_pos[0, OBJECT:]
+    expected = np.array([case.centre, (*case.bowl_at, runs.BALL_HEIGHT)])
+    yield from apart("start", "link_pos of the bodies [m]", start, expected, 1e-6)
+
+
+CHECKS = (structure, stamps, one_rung, reached, laws_of_motion, posture)
+LECTURE = (hovering_is_at_rest, lift_depends_on_the_step)

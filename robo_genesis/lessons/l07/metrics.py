@@ -1,0 +1,56 @@
+"""Metrics of a scene at rest and of a lift, each from its trace alone."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis.core.metrics import CaseMetrics, metric
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l07.run import LiftCase, SceneCase
+from robo_genesis.sim.arm.kinematics import HAND
+from robo_genesis.sim.arm.lifting import ENDS
+
+OBJECT, BALL = 11, 12
+"""Indices of both bodies among the links of the arrays, after those of the robot."""
+
+WINDOW = 20  # Steps at the end in which an object at rest keeps its place
+
+
+@dataclass(frozen=True, slots=True)
+class SceneMetrics(CaseMetrics):
+    """What one run shows of its object; the metrics of the other kind of run are None."""
+
+    support: float | None = metric("m", "support error", "link_pos_m")
+    drift: float | None = metric("m", "drift", "link_pos_m")
+    moved: float | None = metric("m", "moved in the last 0.2 s", "link_pos_m")
+    ball: float | None = metric("m", "height of the ball's lowest point", "link_pos_m")
+    pushed: float | None = metric("m", "pushed before closing", "link_pos_m")
+    rise: float | None = metric("m", "rise of the object", "link_pos_m")
+    hand_rise: float | None = metric("m", "rise of the hand", "link_pos_m")
+    opening: float | None = metric("m", "opening after closing", "q_rad_or_m")
+
+
+def scene_metrics(trace: Trace, case: SceneCase) -> SceneMetrics:
+    """Measure one run of a scene.
+
+    Raises:
+        ValueError: the trace lacks a body, or a phase of the lift.
+    """
+    if trace.link_pos.shape[1] <= BALL or trace.steps != case.steps:
+        raise ValueError(
+            f"The trace has {trace.link_pos.shape[1]} links and {trace.steps} steps, expected "
+            f"{BALL + 1} links and {case.steps} steps."
+        )
+    at = trace.link_pos[:, OBJECT].astype(np.float64)
+    if not isinstance(case, LiftCase):
+        support = at[-1, 2] - case.size[2] / 2 - case.place[2]
+        apart = np.linalg.norm(at - at[0], axis=1)[-1]
+        window = np.ptp(at[-WINDOW - 1 :], axis=0).max()
+        ball = trace.link_pos[-1, BALL, 2] - case.ball_radius
+        return SceneMetrics(*map(float, (support, apart, window, ball)), *[None] * 4)
+    before, opened, shut = (ENDS[name] for name in ("approach", "settle", "close"))
+    hand = trace.link_pos[:, HAND, 2].astype(np.float64)
+    pushed = np.linalg.norm(at[opened] - at[before])
+    rises = at[-1, 2] - at[shut, 2], hand[-1] - hand[shut]
+    opening = trace.q[shut, -2:].astype(np.float64).sum()
+    return SceneMetrics(*[None] * 4, *map(float, (pushed, *rises, opening)))

@@ -1,0 +1,75 @@
+"""The measuring pages of L07, and its declaration."""
+
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
+from robo_genesis.core.experiment import MeasuringPage, runs_of
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l07 import (
+    bowl_checks,
+    bowls,
+    checks,
+    rest,
+    rest_checks,
+    rungs,
+    spec,
+    study,
+)
+from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
+from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
+from robo_genesis.sim.camera import record
+
+MEASURES = False
+
+
+def of_scenes(*scenes: str) -> MeasuringPage:
+    """Return a page that examines these scenes."""
+    runs = spec.runs(*scenes)
+    views = record.groups(*rungs.CAMERAS) if "baseline" in scenes else {}
+    frames = record.frame_names(*rungs.CAMERAS) if "baseline" in scenes else ()
+    return MeasuringPage(
+        runs=runs_of(runs),
+        kind=Trace,
+        joints=JOINT_NAMES,
+        readings=study.readings(*scenes) | views,
+        with_camera=study.pixels(*scenes),
+        measure=scene_metrics,
+        checks=checks.CHECKS,
+        parameters=lambda: spec.parameters_of(runs),
+        frames=("initial", "final", *frames),
+    )
+
+
+LECTURE = of_scenes(*spec.SCENES_OF_LECTURE).with_more(
+    lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
+    runs_of(spec.FURTHER),
+    study.forced_readings(),
+    checks.LECTURE,
+)
+LAB = with_functions(of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder")
+MISTAKES = of_scenes(*spec.SCENES)
+
+LESSON = Lesson(
+    spec=spec,
+    metrics=dict.fromkeys(spec.CASES, SceneMetrics)
+    | dict.fromkeys(bowls.CASES, bowls.BowlMetrics)
+    | dict.fromkeys(rest.CASES, rest.RestMetrics),
+    pages={
+        "lecture": LECTURE,
+        "lab": LAB,
+        "mistakes": MISTAKES,
+        "meshes": bowl_checks.MESHES,
+        "rest": rest_checks.REST,
+    },
+    replays={
+        "scenes": Replay(
+            ("baseline", "hovering"),
+            follows="object",
+            thing="object",
+            credit=CREDIT,
+            view="The robot lifts an object from the table.",
+            quality="The object rises {rise}, the hand {hand_rise}.",
+            filmed="scene A",
+        )
+    },
+)

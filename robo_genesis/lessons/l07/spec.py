@@ -1,0 +1,136 @@
+"""Specification of lesson L07: table scenes of which each fails one rung, limits and tolerances.
+
+Pages, checks, verification and tests read the experiment here. The module is data and computes
+nothing. `parameters()` has the values that decide what runs; all other values only judge.
+"""
+
+import dataclasses
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core import check_spec
+from robo_genesis.core.experiment import inputs, json_value
+from robo_genesis.core.scene import CAMERA
+from robo_genesis.lessons.l07 import bowls, rest, run
+from robo_genesis.lessons.l07.run import LiftCase, SceneCase
+from robo_genesis.sim.arm import franka, lifting, reaching
+
+MEASURES = False
+
+MINIMUM_HARDWARE = "cpu"
+
+EXPECTED_MODEL = franka.MODEL_COUNTS
+
+KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
+KP[7:], KV[7:] = 480.0, 20.0  # Fingers that close on 50 mm press with 12 N
+
+RESTING, LIFTING = 60, lifting.ENDS["hold"]
+"""Outer steps of a scene at rest, and of a lift."""
+
+GOOD = SceneCase(
+    shape="cylinder", size=(0.05, 0.05, 0.07), place=(0.5, -0.05, 0.0), kp=KP, kv=KV, steps=RESTING
+)
+
+SCENES = {
+    "baseline": GOOD,
+    "hovering": replace(GOOD, gap=0.005, weightless=True),
+    "filled": replace(GOOD, bowl="one_hull"),
+    "outside": replace(GOOD, place=(0.15, 0.33, 0.0), fov=24.0),
+    "below": replace(GOOD, place=(0.45, -0.46, -0.3)),
+    "wide": replace(GOOD, shape="box", size=(0.05, 0.082, 0.06)),
+}
+"""The scene that passes all rungs, and five that fail one each."""
+
+LETTERS = dict(zip(SCENES, "ABCDEF", strict=True))
+"""What readers call the scenes, so that a name does not answer a question."""
+
+LABELS = {name: f"scene {letter}" for name, letter in LETTERS.items()}
+LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETTERS.items()}
+LABELS |= rest.LABELS | {"forced": "two solver steps", "forced_fine": "four solver steps"}
+"""Words of a reader for runs."""
+
+MARKS = ("baseline", "first", "second", "third", "other", "further")
+CASE_MARKS = dict(zip(SCENES, MARKS, strict=True)) | {"forced": "second", "forced_fine": "third"}
+"""The mark of each case in the palette."""
+
+SHOWN_LIFTS = {
+    "baseline": "50 mm",
+    "wide": "82 mm",
+    "forced": "82 mm, µ 0.5",
+    "forced_fine": "82 mm, µ 0.5, half the step",
+}
+"""The lifts that are compared, with words for their objects."""
+
+RUNGS = ("built", "stable", "seen", "reachable", "graspable")
+
+FAILS = dict(zip(SCENES, (None, "stable", "built", "seen", "reachable", "graspable"), strict=True))
+"""The one rung that each scene fails; not fitted to a run."""
+
+
+FORCED = replace(SCENES["wide"], friction=0.5, pads=0.5)
+SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
+
+
+def lift_of(scene: SceneCase, **changed: Any) -> LiftCase:
+    """Return the run that lifts the object of a scene from the spot."""
+    fields = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    return LiftCase(**fields | {"steps": LIFTING, "settings": reaching.ONE_START} | changed)
+
+
+def runs(*scenes: str) -> dict[str, SceneCase]:
+    """Return both runs of scenes: the lift has the name of the scene, the other one `_at_rest`."""
+    lifts = {name: lift_of(SCENES[name]) for name in scenes}
+    return lifts | {f"{name}_at_rest": SCENES[name] for name in scenes}
+
+
+CASES = runs("baseline")
+ALL = runs(*SCENES)
+FURTHER = {"forced": lift_of(FORCED), "forced_fine": lift_of(FORCED, substeps=4)}
+"""The wide box with little friction, at two solver steps."""
+
+CASES = runs(*SCENES) | FURTHER
+
+VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0), "near": 0.1, "far": 20.0}
+"""The camera in the world; `fov` is that of the scene."""
+
+WRIST = {"res": CAMERA["res"], "fov": 60, "near": 0.01, "far": 20.0, "GUI": False}
+"""The camera on the hand. With the default near limit, 0.1 m, it would cut a held object open."""
+
+LIMITS: dict[str, tuple[float, float]] = {
+    "margin": (5e-3, np.inf), "depth": (0, 1e-3), "mass": (0, 0.01), "ball": (0, 0.025),
+    "support": (0, 5e-4), "drift": (0, 2e-3), "moved": (0, 2e-4),
+    "pixels": (200, np.inf), "share": (0.5, np.inf),
+    "accepted": (2, 2), "pregrasp": (0.03, np.inf), "grasp": (0.02, np.inf), "touches": (0, 0),
+    "width": (0, 0.076), "descending": (0, 0), "fingers": (1, np.inf), "rise": (0.8, np.inf),
+}  # fmt: skip
+"""Least and largest value that passes, by quantity: [m], shares, pixels or counts."""
+
+RESOLUTION = rest.RESOLUTION | {
+    "%": 1.0,
+    "m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5, "kg": 1e-6, "pixel": 3.0, "steps": 0.5,
+    "points": 0.5, "poses": 0.5, "postures": 0.5,
+}  # fmt: skip
+TOLERANCES = check_spec.TOLERANCES | bowls.TOLERANCES | rest.TOLERANCES | {
+    "pixel": (20.0, 0.01), "steps": (20.0, 0.0), "points": (4.0, 0.0), "poses": (0.0, 0.0),
+    "postures": (3.0, 0.0),
+} | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1))  # fmt: skip
+"""Contacts make rounding grow, so lifts have wide tolerances."""
+
+RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)
+"""How the second case of a pair compares with the first [m]; not fitted to a run."""
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the scenes as JSON values, for the evidence key."""
+    return parameters_of(runs("baseline"))
+
+
+def parameters_of(cases: dict[str, Any]) -> dict[str, Any]:
+    """Return the inputs of a page with these runs."""
+    table = {name: getattr(run, name) for name in ("TABLE", "FLOOR", "ON_HAND", "BALL_HEIGHT")}
+    names = ("PHASES", "PAD", "HAND_TO_PAD", "ABOVE", "RISE")
+    table |= {name: getattr(lifting, name) for name in names}
+    wrist = {name: value for name, value in WRIST.items() if name != "GUI"}
+    return inputs(cases, VIEW, table=json_value(table), wrist=wrist, counted=list(EXPECTED_MODEL))

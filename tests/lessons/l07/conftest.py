@@ -1,0 +1,75 @@
+"""Table scenes without Genesis: arms by MuJoCo's mechanics, bodies that are moved by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from robot_runs import LINKS, answer, driven
+
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l07 import run, spec, study
+from robo_genesis.lessons.l07.pages import LECTURE
+from robo_genesis.sim.arm import lifting
+from robo_genesis.sim.arm.kinematics import HAND
+
+UNTURNED = np.float32([1, 0, 0, 0])
+
+
+def trace_of(name: str, case: run.SceneCase) -> Trace:
+    """Return a run whose object keeps its place, sinks in a little, or follows the closed hand."""
+    lifts = isinstance(case, run.LiftCase)
+    command = case.q_start
+    if lifts:
+        points = lifting.waypoints((*case.spot, 0.0), case.size[2])
+        answers = [answer(point, case.q_start, 50) for point in points]
+        command = lifting.lift_command(case.q_start, answers)
+    arm = driven(case.commanding(command), LINKS)
+    body = np.tile(case.centre, (case.steps + 1, 1))
+    rises = case.size[1] < 0.08 or name == "forced"
+    if lifts and rises:
+        held = slice(lifting.ENDS["close"], None)
+        body[held, 2] += arm.link_pos[held, HAND, 2] - arm.link_pos[held, HAND, 2][0]
+    if not lifts and not case.weightless:
+        body[1:, 2] -= 14e-6
+    ball = np.tile([*case.bowl_at, run.BALL_HEIGHT], (case.steps + 1, 1))
+    ball[1:, 2] = 0.06 if case.bowl == "one_hull" else 0.013
+    bodies = np.stack([body, ball], axis=1)
+    quat = np.tile(UNTURNED, (case.steps + 1, 2, 1))
+    return replace(
+        arm,
+        link_pos=np.concatenate([arm.link_pos, np.float32(bodies)], axis=1),
+        link_quat=np.concatenate([arm.link_quat, quat], axis=1),
+    )
+
+
+def readings() -> dict[str, dict[str, float]]:
+    """Return what the engine would report of the lecture's scenes."""
+    scenes = [spec.SCENES[name] for name in spec.SCENES_OF_LECTURE]
+    usual = {"depth": 2e-4, "accepted": 2, "pregrasp": 0.136, "grasp": 0.036, "touches": 0}
+    usual |= dict.fromkeys(study.COUNTED, 2) | {"descending": 0, "world": 1300.0, "wrist": 1700.0}
+    found = {
+        group: {name: usual.get(name.split("_", 1)[-1], 0) for name in of.units}
+        for group, of in LECTURE.groups(rendered=True).items()
+    }
+    for name, case in zip(spec.SCENES_OF_LECTURE, scenes, strict=True):
+        found["object"][f"{name}_mass"] = case.density * case.volume
+    found["contacts"]["wide_descending"] = 50
+    found["forced_lifts"] = dict.fromkeys(found["forced_lifts"], 3)
+    found["fails"] = {"hovering": 2, "filled": 1, "wide": 5}
+    return found | {"model": spec.EXPECTED_MODEL}
+
+
+@pytest.fixture(scope="session")
+def scenes(joints) -> Experiment:
+    """A run of the lecture, without a camera, that passes its checks."""
+    runs = {name: of.case for name, of in LECTURE.runs.items()}
+    return Experiment(
+        page=LECTURE,
+        traces={name: trace_of(name, case) for name, case in runs.items()},
+        links=[*LINKS, "object", "ball"],
+        readings=readings(),
+        frames={},
+        rendered=False,
+        joints=joints,
+    )

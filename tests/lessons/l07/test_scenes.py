@@ -1,0 +1,96 @@
+"""Rungs and checks of L07: known values, and each check with an input that breaks its claim."""
+
+import numpy as np
+import pytest
+from lessons.changed_runs import failed, put, reading, shift, trace
+
+from robo_genesis.lessons.l07 import plots, rungs, spec, text
+from robo_genesis.lessons.l07.metrics import BALL, OBJECT
+
+
+@pytest.mark.parametrize(
+    ("other", "gap"),
+    [
+        ((0.3, 0.0, 0.1, 0.1), 0.2),
+        ((0.0, -0.2, 0.1, 0.1), 0.1),
+        ((0.13, 0.14, 0.1, 0.1), 0.05),
+        ((0.05, 0.0, 0.1, 0.1), -0.05),
+        ((0.01, 0.0, 0.02, 0.02), -0.05),
+    ],
+)
+def test_the_gap_of_two_footprints(other, gap):
+    one = (0.0, 0.0, 0.1, 0.1)
+    assert rungs.gap(one, other) == pytest.approx(gap)
+    assert rungs.gap(one, other) == rungs.gap(other, one)
+
+
+def test_an_object_that_both_cameras_lose_is_not_seen(scenes):
+    for camera in rungs.CAMERAS:
+        scenes = reading("pixels", f"baseline_{camera}", 150.0)(scenes)
+    assert rungs.failed(scenes, "baseline") == ["seen"]
+
+
+def test_margins_of_the_scenes():
+    assert rungs.margin(spec.SCENES["baseline"]) == pytest.approx(0.17)
+    assert rungs.margin(spec.SCENES["outside"]) == pytest.approx(0.045)  # to the table's edge
+
+
+def test_the_corners_of_both_shapes():
+    box, cylinder = (spec.SCENES[name] for name in ("wide", "baseline"))
+    at = np.array([0.1, 0.2, 0.3])
+    assert np.ptp(rungs.corners(box, at), axis=0) == pytest.approx(box.size)
+    assert np.ptp(rungs.corners(cylinder, at), axis=0) == pytest.approx(cylinder.size)
+    assert rungs.corners(box, at).mean(axis=0) == pytest.approx(at)
+
+
+def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
+    assert failed(scenes) == set()
+    assert rungs.failed(scenes, "baseline") == []
+    assert text.ladder_table(scenes).count("**fails**") == len(spec.SCENES_OF_LECTURE) - 1
+    for figure in (plots.settling, plots.lifts, plots.views):
+        assert figure(scenes).axes
+
+
+SPOILED = {
+    "another model": (reading("model", "links", 10), {"structure"}),
+    "times of another step": (trace("baseline", t=lambda t: 2 * t), {"stamps"}),
+    "deep at the start": (reading("object", "baseline_depth", 2e-3), {"one_rung"}),
+    "another mass": (reading("object", "baseline_mass", 0.2), {"one_rung"}),
+    "a ball beside the bowl": (
+        trace("baseline_at_rest", link_pos=put((-1, BALL, 0), 0.9)), {"one_rung"}
+    ),
+    "it slides": (trace("baseline_at_rest", link_pos=shift((-1, OBJECT, 0), 4e-4)), {"one_rung"}),
+    "no answer": (reading("reach", "baseline_accepted", 1), {"one_rung"}),
+    "low fingertips": (reading("reach", "baseline_grasp", 0.01), {"one_rung"}),
+    "something on the way": (reading("reach", "baseline_touches", 1), {"one_rung"}),
+    "touched on the way down": (reading("contacts", "baseline_descending", 1), {"one_rung"}),
+    "one finger": (reading("contacts", "baseline_held_left", 0), {"one_rung"}),
+    "it slips": (trace("baseline", link_pos=shift((-1, OBJECT, 2), -0.02)), {"one_rung"}),
+    "another number": (reading("fails", "hovering", 3), {"one_rung"}),
+    "the hovering one falls": (
+        trace("hovering_at_rest", link_pos=shift((-1, OBJECT, 2), -1e-5)), {"hovering_is_at_rest"}
+    ),
+    "both steps lift": (
+        trace("forced_fine", link_pos=shift((-1, OBJECT, 2), 0.04)), {"lift_depends_on_the_step"}
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SPOILED)
+def test_a_check_fails_for_its_own_fault(scenes, name):
+    spoil, expected = SPOILED[name]
+    assert failed(spoil(scenes)) == expected
+
+
+@pytest.mark.engine
+def test_a_second_run_of_the_engine_is_equal(real_engine):
+    from types import SimpleNamespace
+
+    from robo_genesis.lessons.l07 import study
+
+    page = SimpleNamespace(traces={}, readings={}, frames={}, links=[], render=False, joints=None)
+    first = [study.examine(page, real_engine.gs, "baseline")] and dict(page.traces)
+    study.examine(page, real_engine.gs, "baseline")
+    for name, of in first.items():
+        again = page.traces[name]
+        assert all(np.array_equal(getattr(of, f), getattr(again, f)) for f in of.arrays())
