@@ -182,7 +182,7 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
 )
 def test_the_rest_of_a_section_waits_for_an_answer(page, answer):
     given = {"value": 4.0, "tolerance": 0.1, "unit": "", "feedback": FEEDBACK}
-    asked = question_nodes.number("choice-5", **MEASURED, **given)
+    asked = questions.number("choice-5", **MEASURED, **given)
     rest = '<div><p id="result">4</p></div></section><section><p id="later">Next</p></section>'
     style, script = (BOOK / "_static" / name for name in ("course.css", "choice.js"))
     head = f"<!doctype html><style>{style.read_text()}</style>"
