@@ -1,0 +1,21 @@
+"""The decimal numbers that prose of L07 may hold: configured inputs and calculations by hand."""
+
+from robo_genesis.lessons.l07 import spec
+
+GOOD, OUTSIDE = spec.SCENES["baseline"], spec.SCENES["outside"]
+
+CONFIGURED = {
+    "radius of the cylinder [m]": GOOD.size[0] / 2,
+    "height of the cylinder [m]": GOOD.size[2],
+    "its centre above the table [m]": GOOD.size[2] / 2,
+    "its mass, by hand [kg]": 0.055,
+    "force that holds it, by hand [N]": 0.27,
+    "place of the bowl, x [m]": GOOD.bowl_at[0],
+    "place of the bowl, y [m]": GOOD.bowl_at[1],
+    "place of scene D, x [m]": OUTSIDE.place[0],
+    "place of scene D, y [m]": OUTSIDE.place[1],
+    "width of a box at its diagonal, by hand [mm]": 70.7,
+    "cos ψ + sin ψ, by hand": 1.4,
+    "speed after half a metre, by hand [m/s]": 3.1,
+    "depth of a contact by it, by hand [mm]": 11.5,
+}
