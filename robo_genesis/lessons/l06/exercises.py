@@ -65,26 +65,11 @@ VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
 """Environments of the scene, DOFs and environments of commands that must be sent."""
 
 # The engine would send many of these commands.
-REFUSED: dict[str, tuple[tuple[int, ...], Any]] = {
-    "one_row_for_two": ((1, 3), [0, 2]),
-    "no_rows_for_two": ((3,), [0, 2]),
-    "no_rows_for_one": ((3,), [1]),
-    "one_after_the_other": ((6,), [0, 2]),
-    "a_row_for_each_joint": ((3, 2), [0, 2]),
-    "one_number_for_each": ((2,), [0, 2]),
-    "one_column": ((2, 1), [0, 2]),
-    "a_further_axis": ((2, 3, 1), [0, 2]),
-    "rows_of_all_for_two": ((3, 3), [0, 2]),
-    "two_rows_for_one": ((2, 3), [1]),
-    "rows_for_no_environment": ((2, 3), []),
-    "named_twice": ((2, 3), [1, 1]),
-    "does_not_exist": ((2, 3), [1, 3]),
-    "negative": ((2, 3), [-1, 1]),
-    "not_whole": ((2, 3), [1.5, 0]),
-    "a_mask": ((2, 3), np.array([False, True])),
-    "a_mask_in_a_list": ((2, 3), [False, True]),
-}
-"""Shapes and environments that must raise a ValueError in a scene of three."""
+SHAPES = ((1, 3), (3,), (6,), (3, 2), (2,), (2, 1), (2, 3, 1), (3, 3))
+"""Shapes that do not have one row for each of two environments, with three DOFs; (2,) with two."""
+
+NUMBERS = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], [False, True], np.array([False, True]))
+"""Environments that do not fit two rows and a scene of three environments."""
 
 
 @as_test
@@ -99,12 +84,14 @@ def subset(command: Callable[..., Any]) -> Iterator[Finding]:
         yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
         yield equal(f"{name}.commands_sent", robot.calls, 1)
     robot, torch = Robot(3), import_module("torch")
-    masks = {"a_torch_mask": ((2, 3), torch.tensor([False, True]))}
-    for name, (shape, envs) in (REFUSED | masks).items():
+    wrong: list[tuple[Any, Any]] = [((3,), [1]), *((shape, [0, 2]) for shape in SHAPES)]
+    wrong += [((2, 3), envs) for envs in (*NUMBERS, torch.tensor([False, True]))]
+    for shape, envs in wrong:
         dofs = [0, 2] if shape == (2,) else [0, 1, 2]
         error = refused(partial(command, robot, dofs, np.ones(shape), envs))
-        yield equal(f"{name}.raises_value_error", isinstance(error, ValueError), True)
-        yield equal(f"{name}.commands_sent", robot.calls, 0)
+        label = f"shape_{shape}_for_{envs}"
+        yield equal(f"{label}.raises_value_error", isinstance(error, ValueError), True)
+        yield equal(f"{label}.commands_sent", robot.calls, 0)
     command(robot, [0, 1, 2], np.zeros((0, 3)), [])
     yield equal("no_environments.commands_sent", robot.calls, 0)
 

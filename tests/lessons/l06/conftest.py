@@ -16,6 +16,10 @@ from robo_genesis.lessons.l06.run import Environment
 
 ROUNDING = np.float32(1.2e-7)
 
+COMPARED = (9, 0, 0, 9, 0, 0, 9, 4, 1e-3, 9, 0, 0, 9, 9, 1)
+PRESSED = (*COMPARED, 0.1, 180, 150, 180, 150, 0, 0, 0, 0)
+"""Plausible comparisons, height of the lowest pressed hand, and forces."""
+
 
 def run_of(world: Environment) -> Trace:
     """Return the run of one world."""
@@ -61,9 +65,7 @@ def worlds(joints) -> Experiment:
             "mixed": dict(zip(study.READINGS["mixed"].units, residuals, strict=True)),
             "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
             "hand_mass": masses,
-            study.EQUALITY: dict(
-                zip(equality, [9, 0, 0, 9, 4, 1e-3, 9, 0, 0, 9, 9, 1, 0.1], strict=True)
-            ),
+            study.EQUALITY: dict(zip(equality, PRESSED, strict=True)),
         }
         | swept(runs),
         frames={},

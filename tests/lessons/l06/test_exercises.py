@@ -12,17 +12,12 @@ from robo_genesis.sim.arm import kinematics as of
 SOLVED = solutions("l06")
 
 
-def not_whole(envs):
-    return len(envs) > 0 and np.asarray(envs).dtype.kind != "i"
-
-
 def checked(
-    robot, dofs, q, envs, known=None, axes=None, twice=False, change=lambda q, envs, n: (q, envs),
-    mask=not_whole,
-):  # fmt: skip
+    robot, dofs, q, envs, known=None, axes=None, twice=False, change=lambda q, envs, n: (q, envs)
+):
     """Check what the task asks for; other values of the last arguments make mistakes."""
     known = known or range(robot.scene.n_envs)
-    if mask(envs):
+    if len(envs) and np.asarray(envs).dtype.kind != "i":
         raise ValueError(envs)
     envs = [int(k) for k in envs]
     if not {*envs} <= {*known} or (len({*envs}) < len(envs) and not twice):
@@ -78,19 +73,17 @@ CASES = {
         "right": SOLVED["command"],
         "engine alone": lambda robot, dofs, q, envs: robot.control_dofs_position(q, dofs, envs),
         "right in another way": checked,
-        "masks of NumPy alone": partial(
-            checked, mask=lambda envs: isinstance(envs, np.ndarray) and envs.dtype == bool
+        "masks in lists": lambda r, d, q, e: checked(
+            r, d, q, [k + 0 for k in e] if isinstance(e, list) else e
         ),
-        "masks of Torch not looked at": partial(
-            checked, mask=lambda envs: not hasattr(envs, "cpu") and not_whole(envs)
+        "masks of Torch": lambda r, d, q, e: checked(
+            r, d, q, [int(k) for k in e] if hasattr(e, "cpu") else e
         ),
-        "masks alone": partial(checked, mask=lambda envs: np.asarray(envs).dtype == bool),
-        "rows without environments": lambda robot, dofs, q, envs: (
-            checked(robot, dofs, q, envs) if len(envs) else None
+        "parts cut off": lambda r, d, q, e: checked(
+            r, d, q, e if np.asarray(e).dtype == bool else [int(k) for k in e]
         ),
-        "a further axis": partial(
-            checked, axes=2, change=lambda q, e, n: (q.reshape(len(e), -1), e)
-        ),
+        "rows for none": lambda r, d, q, e: checked(r, d, q, e) if len(e) else None,
+        "a further axis": lambda r, d, q, e: checked(r, d, q[..., 0] if np.ndim(q) > 2 else q, e),
         "sorted": lambda robot, dofs, q, envs: checked(robot, dofs, q, sorted(envs)),
         "numbers as rows": lambda r, d, q, envs: checked(r, d, np.asarray(q)[list(envs)], envs),
         "numbers too high": partial(checked, known=range(9)),
