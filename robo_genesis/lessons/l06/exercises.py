@@ -68,7 +68,8 @@ VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
 SHAPES = ((1, 3), (3,), (6,), (3, 2), (2,), (2, 1), (2, 3, 1), (3, 3))
 """Shapes that do not have one row for each of two environments, with three DOFs; (2,) with two."""
 
-NUMBERS = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], [False, True], np.array([False, True]))
+MASK = [False, True]
+NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK, np.array(MASK))
 """Environments that do not fit two rows and a scene of three environments."""
 
 
@@ -85,7 +86,7 @@ def subset(command: Callable[..., Any]) -> Iterator[Finding]:
         yield equal(f"{name}.commands_sent", robot.calls, 1)
     robot, torch = Robot(3), import_module("torch")
     wrong: list[tuple[Any, Any]] = [((3,), [1]), *((shape, [0, 2]) for shape in SHAPES)]
-    wrong += [((2, 3), envs) for envs in (*NUMBERS, torch.tensor([False, True]))]
+    wrong += [((2, 3), envs) for envs in (*NUMBERS, torch.tensor(MASK))]
     for shape, envs in wrong:
         dofs = [0, 2] if shape == (2,) else [0, 1, 2]
         error = refused(partial(command, robot, dofs, np.ones(shape), envs))
