@@ -65,6 +65,12 @@ def find_lesson(name: str) -> Lesson:
     Raises:
         LookupError: it does not exist; the message lists the lessons.
     """
+    if not LESSONS:
+        raise LookupError(
+            f"No lesson was found in {Path(__file__).parent}: Python imported the course from the "
+            "closed wheel. Install the wheel with `python -m pip install`, or unpack it, and take "
+            "it off PYTHONPATH."
+        )
     if name not in LESSONS:
         raise LookupError(f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}.")
     return LESSONS[name]

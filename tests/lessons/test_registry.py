@@ -72,6 +72,12 @@ def test_a_lookup_error_lists_the_choices():
         find_replay("l03", "falls")
 
 
+def test_a_closed_wheel_says_what_to_do(monkeypatch):
+    monkeypatch.setattr("robo_genesis.lessons.LESSONS", {})
+    with pytest.raises(LookupError, match=r"closed wheel\. Install the wheel"):
+        find_lesson("l01")
+
+
 def test_a_lesson_gives_its_modules_and_what_it_offers_when_they_are_used():
     from robo_genesis.lessons import l03, l05
 

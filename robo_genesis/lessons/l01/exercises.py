@@ -23,6 +23,8 @@ def height_after(height: Callable[..., Any]) -> Iterator[Finding]:
         ("on_the_moon", 2.0, 1.62, 0.02, 7),
         ("one_step", 0.5, case.gravity, 0.01, 1),
         ("no_step", 0.5, case.gravity, 0.01, 0),
+        ("below_the_floor", 0.5, case.gravity, 0.01, 100),
+        ("many_digits", 0.5, case.gravity, 1 / 70, 9),
     ):
         expected = z0 - float(summed_drop(h, n, g))
         yield within(f"{name}_m", float(height(z0, g, h, n)), expected, TINY)

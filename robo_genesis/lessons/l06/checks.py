@@ -94,12 +94,27 @@ def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
 
 
 def pressed_on_the_floor(run: Experiment) -> Iterator[Finding]:
-    """With the hands kept above their targets by the floor, rows in another order are equal to the
-    last bit.
+    """With the hands kept above their targets by the floor, rows in another order and rows after
+    a partial reset are equal to the last bit.
     """
     found = run.readings[study.EQUALITY]
-    yield equal("entries_that_differ", found["pressed_permuted_differ"], 0)
+    for claim in ("permuted", "again"):
+        yield equal(f"{claim}.entries_that_differ", found[f"pressed_{claim}_differ"], 0)
     yield above("lowest_hand_m", found["pressed_height"], 0.07)
+
+
+def old_forces_after_a_reset(run: Experiment) -> Iterator[Finding]:
+    """After a partial reset of hands that press on the floor with more than 50 N, the engine
+    returns their old contact forces, or zero as newer versions do. One step later they are zero.
+    Forces of the joints are the old ones until that step.
+    """
+    found = run.readings[study.EQUALITY]
+    for k in spec.LATER:
+        before, after, later = (found[f"force_{k}_{when}"] for when in study.WHEN)
+        yield above(f"row_{k}.force_before_N", before, 50.0)
+        yield equal(f"row_{k}.neither_old_nor_zero_N", min(after, abs(after - before)), 0.0)
+        yield equal(f"row_{k}.force_one_step_later_N", later, 0.0)
+        yield equal(f"row_{k}.joint_forces_that_changed", found[f"joints_{k}_changed"], 0)
 
 
 def answers_depend_on_the_row(run: Experiment) -> Iterator[Finding]:
@@ -184,6 +199,6 @@ WITHOUT_CAMERA = (
 )  # fmt: skip
 CHECKS = (*WITHOUT_CAMERA, posture)
 LECTURE = (
-    pressed_on_the_floor, answers_depend_on_the_row, sweep_repeats_the_runs, price_of_stiffness,
-    stiffest_fail,
+    pressed_on_the_floor, old_forces_after_a_reset, answers_depend_on_the_row,
+    sweep_repeats_the_runs, price_of_stiffness, stiffest_fail,
 )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
@@ -64,21 +65,12 @@ VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
 """Environments of the scene, DOFs and environments of commands that must be sent."""
 
 # The engine would send many of these commands.
-REFUSED: dict[str, tuple[int, tuple[int, ...], Sequence[int]]] = {
-    "one_row_for_two": (3, (1, 3), [1, 3]),
-    "no_rows_for_two": (3, (3,), [1, 3]),
-    "no_rows_for_one": (3, (3,), [1]),
-    "one_after_the_other": (3, (6,), [1, 3]),
-    "a_row_for_each_joint": (3, (3, 2), [1, 3]),
-    "one_number_for_each": (2, (2,), [1, 3]),
-    "one_column": (3, (2, 1), [1, 3]),
-    "rows_of_all_for_two": (3, (4, 3), [1, 3]),
-    "two_rows_for_one": (3, (2, 3), [1]),
-    "named_twice": (3, (2, 3), [1, 1]),
-    "does_not_exist": (3, (2, 3), [1, 4]),
-    "negative": (3, (2, 3), [-1, 1]),
-}
-"""Numbers of DOFs, shapes and environments that must raise a ValueError."""
+SHAPES = ((1, 3), (3,), (6,), (3, 2), (2,), (2, 1), (2, 3, 1), (3, 3))
+"""Shapes that do not have one row for each of two environments, with three DOFs; (2,) with two."""
+
+MASK = [False, True]
+NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK, np.array(MASK))
+"""Environments that do not fit two rows and a scene of three environments."""
 
 
 @as_test
@@ -92,15 +84,15 @@ def subset(command: Callable[..., Any]) -> Iterator[Finding]:
         command(robot, dofs, q, np.array(envs))
         yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
         yield equal(f"{name}.commands_sent", robot.calls, 1)
-    for name, (count, shape, envs) in REFUSED.items():
-        robot = Robot()
-        error = refused(partial(command, robot, list(range(count)), np.ones(shape), envs))
-        yield equal(f"{name}.raises_value_error", isinstance(error, ValueError), True)
-        yield equal(f"{name}.commands_sent", robot.calls, 0)
-    for name, asked in (("fewer_environments", [3]), ("a_mask", np.array([False, True]))):
-        robot = Robot(3)
-        error = refused(partial(command, robot, [0, 1, 2], np.ones((len(asked), 3)), asked))
-        yield equal(f"{name}.raises_value_error", isinstance(error, ValueError), True)
+    robot, torch = Robot(3), import_module("torch")
+    wrong: list[tuple[Any, Any]] = [((3,), [1]), *((shape, [0, 2]) for shape in SHAPES)]
+    wrong += [((2, 3), envs) for envs in (*NUMBERS, torch.tensor(MASK))]
+    for shape, envs in wrong:
+        dofs = [0, 2] if shape == (2,) else [0, 1, 2]
+        error = refused(partial(command, robot, dofs, np.ones(shape), envs))
+        label = f"shape_{shape}_for_{envs}"
+        yield equal(f"{label}.raises_value_error", isinstance(error, ValueError), True)
+        yield equal(f"{label}.commands_sent", robot.calls, 0)
     command(robot, [0, 1, 2], np.zeros((0, 3)), [])
     yield equal("no_environments.commands_sent", robot.calls, 0)
 

@@ -1,6 +1,6 @@
 """Runs of L06: ask, accept and command all environments of a scene, or some of them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -86,17 +86,20 @@ def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment
 def reset_some(
     scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment],
     envs: Sequence[int], after: int,
-) -> list[Trace]:  # fmt: skip
-    """Reset some environments while all are moving, and command their first target again.
+) -> Iterator[Batch]:  # fmt: skip
+    """Reset some environments after some steps, and command their first target again.
 
-    Returns:
-        The run of each world: of `envs` from their reset on, of the others from the start on.
+    Yields:
+        The batch before the reset, after it, one step later, and after `switch` further steps. Its
+        traces of `envs` begin at their last reset, the others at the start.
     """
     batch = start(scene, robot, joints, worlds)
     q_target = commands(worlds, ask(robot, joints, worlds))
     batch.command(q_target)
     batch.step(after)
+    yield batch
     batch.reset_rows(envs)
     batch.command(q_target[list(envs)], envs)
-    batch.step(worlds[0].switch)
-    return [batch.trace(k) for k in range(len(worlds))]
+    for steps in (0, 1, worlds[0].switch - 1):
+        batch.step(steps)
+        yield batch

@@ -15,7 +15,7 @@ from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.batch import set_link_mass
 from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR, IkAnswer
 from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.joints import JointMap, resolve_joints
+from robo_genesis.sim.arm.joints import JointMap, resolve_joints, to_numpy
 
 READINGS = {
     "model": counts(spec.EXPECTED_MODEL),
@@ -25,15 +25,21 @@ READINGS = {
 }
 """Counts, residuals and verdicts of a question with a target beyond reach, and masses of hands."""
 
-EQUALITY, READ = "equality", ("pressed_permuted", "pressed_alone", "one_start", "restarts")
+EQUALITY = "equality"
+READ = ("pressed_permuted", "pressed_again", "pressed_alone", "one_start", "restarts")
 COMPARED = {"compared": "1", "differ": "1", "apart": "rad"}
 """Of two runs: numbers that are compared, how many differ, largest difference of an arm joint."""
+
+WHEN = ("before", "after", "next")
+"""When contact forces of the pressed hands are read: around a partial reset, and a step later."""
 
 # Rounding decides how far runs in contact separate, so that another run need not repeat it.
 LECTURE_READINGS = {
     EQUALITY: Readings(
         {f"{claim}_{what}": unit for claim in READ for what, unit in COMPARED.items()}
-        | {"pressed_height": "m"},
+        | {"pressed_height": "m"}
+        | {f"force_{k}_{when}": "N" for when in WHEN for k in spec.LATER}
+        | {f"joints_{k}_changed": "1" for k in spec.LATER},
         "performance",
     ),
     "sweep_end": Readings(dict.fromkeys(spec.SWEEP.values(), "m")),
@@ -91,8 +97,8 @@ def record_copies(page: Any, scene: Any, robot: Any) -> None:
     rows = reach(scene, robot, page.joints, [worlds[k] for k in spec.ORDER])
     page.traces |= {f"permuted_{k}": rows[spec.ORDER.index(k)] for k in spec.ENVS}
     envs = list(spec.LATER)
-    rows = reset_some(scene, robot, page.joints, worlds, envs, spec.RESET_AFTER)
-    page.traces |= {f"{'again' if k in envs else 'beside'}_{k}": rows[k] for k in spec.ENVS}
+    *_, batch = reset_some(scene, robot, page.joints, worlds, envs, spec.RESET_AFTER)
+    page.traces |= {f"{'again' if k in envs else 'beside'}_{k}": batch.trace(k) for k in spec.ENVS}
 
 
 def record_variants(page: Any, scene: Any, robot: Any) -> None:
@@ -109,19 +115,29 @@ def record_variants(page: Any, scene: Any, robot: Any) -> None:
 def read_equality(page: Any, scene: Any, robot: Any, alone: Any, single: Any) -> None:
     """Give a page the comparisons of `READ`: hands pressed on the floor, and equal questions."""
     worlds, joints = list(spec.PRESSED.values()), resolve_joints(single, JOINT_NAMES)
-    rows = reach(scene, robot, page.joints, worlds)
+    rows: list[Trace] = []
+    forces, torques, envs = [], [], list(spec.LATER)
+    for batch in reset_some(scene, robot, page.joints, worlds, envs, spec.STEPS):
+        rows = rows or [batch.trace(k) for k in spec.ENVS]
+        each_link = to_numpy(robot.get_links_net_contact_force())
+        forces.append(np.linalg.norm(each_link, axis=2).max(axis=1)[envs])
+        torques.append(to_numpy(robot.get_dofs_force())[envs])
+    again = [(rows[k], batch.trace(k)) for k in envs]
+    changed = (torques[1] != torques[0]).sum(axis=1)
     ordered = reach(scene, robot, page.joints, [worlds[k] for k in spec.ORDER])
     permuted = [(rows[k], ordered[j]) for j, k in enumerate(spec.ORDER)]
     each = [(rows[k], reach(alone, single, joints, [worlds[k]])[0]) for k in spec.ENVS]
-    found = [compared(permuted), compared(each)]
+    found = [compared(permuted), compared(again), compared(each)]
     for settings in (spec.ONE_START, spec.IK):
         question = replace(spec.FIRST, positions=spec.RESTARTED, settings=settings)
         q = ask(robot, page.joints, [question] * len(spec.ENVS)).q
         differ = q[1:] != q[0]
         found.append((differ.size, int(differ.sum()), float(np.abs(q[1:] - q[0]).max())))
     height = min(row.link_pos[-1, kinematics.HAND, 2] for row in rows)
-    values = [*(float(value) for of in found for value in of), float(height)]
-    page.readings[EQUALITY] = dict(zip(LECTURE_READINGS[EQUALITY].units, values, strict=True))
+    values = [*(value for of in found for value in of), height, *np.ravel(forces[:-1]), *changed]
+    page.readings[EQUALITY] = dict(
+        zip(LECTURE_READINGS[EQUALITY].units, map(float, values), strict=True)
+    )
 
 
 def compared(pairs: Sequence[tuple[Trace, Trace]]) -> tuple[int, int, float]:

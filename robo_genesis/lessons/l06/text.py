@@ -11,7 +11,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.text import bullets, decimal, listed
 from robo_genesis.lessons.l06 import spec, study
-from robo_genesis.lessons.l06.throughput import FITTED, GROUP, PARTS
+from robo_genesis.lessons.l06.throughput import ENDS, FITTED, GROUP, PARTS
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 from robo_genesis.sim.throughput import Model, fit
 
@@ -41,17 +41,17 @@ def mixed_table(run: Experiment) -> Iterator[dict[str, str]]:
 
 def row_table(run: Experiment) -> str:
     """Return residual and distances of each environment."""
-    heads = {
-        "residual of the last command [mm]": 3,
-        "first target after 1.8 s [mm]": 2,
-        "last target at the end [mm]": 2,
-        "motion after 1.8 s [mm]": 2,
+    shown = {
+        "residual of the last command [mm]": ("residual", 3),
+        "first target after 1.8 s [mm]": ("first_distance", 2),
+        "last target at the end [mm]": ("final_distance", 2),
+        "motion after 1.8 s [mm]": ("moved_later", 2),
     }
-    found = {spec.LABELS[name]: run.metrics[name] for name in spec.WORLDS}
     rows = {
-        label: [1e3 * v for v in (m.residual, m.first_distance, m.final_distance, m.moved_later)]
-        for label, m in found.items()
+        spec.LABELS[name]: [1e3 * getattr(run.metrics[name], of) for of, _ in shown.values()]
+        for name in spec.WORLDS
     }
+    heads = {head: digits for head, (_, digits) in shown.items()}
     return tables.number_table("run", heads, rows)
 
 
@@ -76,10 +76,12 @@ CLAIMED = {
     "permuted": f"the worlds in the order {', '.join(map(str, spec.ORDER))}",
     "beside": f"environments {ends(spec.BESIDE)}, while {ends(spec.AGAIN)} are reset and "
     f"commanded after {spec.RESET_AFTER * spec.FIRST.dt:g} s",
-    "again": f"environments {ends(spec.AGAIN)} from their reset on, against their first start",
+    "again": f"environments {ends(spec.AGAIN)} from their reset on, compared with their first "
+    "episode",
     "plain": "the plain robot beside other gains and loads, against environment 0",
     "alone": "each world alone, in free motion",
     "pressed_permuted": "the other order, hands pressed on the floor",
+    "pressed_again": f"{ends(spec.AGAIN)} from their reset on, hands pressed on the floor",
     "pressed_alone": "alone, hands pressed on the floor",
     "one_start": "four equal questions to the solver in one call, with one start",
     "restarts": "the same with up to 50 starts",
@@ -193,9 +195,9 @@ def fits(run: Experiment) -> list[Model]:
     return [fit(of, [found[size] for size in of]) for of in combinations(FITTED, 3)]
 
 
-def span(values: Sequence[float]) -> str:
-    """Return the least and the largest value with two digits each."""
-    least, most = (three(float(f"{of(values):.2g}")) for of in (min, max))
+def span(values: Sequence[float], digits: int = 2) -> str:
+    """Return the least and the largest value with so many digits each."""
+    least, most = (three(float(f"{of(values):.{digits}g}")) for of in (min, max))
     return f"{least} to {most}"
 
 
@@ -206,7 +208,7 @@ def model_table(run: Experiment) -> str:
         expected = [float(model.step_time(size)) for model in models]
         name = f"{size}{', fitted' * (size in FITTED)}"
         times, shares = [1e3 * of for of in expected], [step / of for of in expected]
-        rows[name] = ms(step), span(times), span(shares)
+        rows[name] = ms(step), span(times), span(shares, 3)
     heads = {"measured [ms]": 0, "models [ms]": 0, "measured / model": 0}
     return tables.timed_table("B", heads, rows)
 
@@ -224,22 +226,23 @@ def constants_table(run: Experiment) -> str:
 
 
 def parts_table(run: Experiment) -> str:
-    """Return both parts of a step from 1 and 256 environments, for other contents and substeps."""
+    """Return both parts of a step from the sizes of `ENDS`, for other contents and substeps."""
     found, rows = run.readings[GROUP], {}
     for part, substeps in {"": SUBSTEPS, **PARTS}.items():
         label = f"{part.partition('_')[0] or 'robot'}, substeps: {substeps}"
         of = part and f"{part}_"
-        model = fit((1, 256), [found[f"step_{of}{size}"] for size in (1, 256)])
+        model = fit(ENDS, [found[f"step_{of}{size}"] for size in ENDS])
         rows[label] = ms(model.fixed), three(1e6 * model.each)
     return tables.timed_table("scene", dict.fromkeys(("*a* [ms]", "*b* [µs]"), 0), rows)
 
 
 def cache_table(run: Experiment) -> str:
-    """Compare one scene of 1024 environments with one of 1000 and with four of 256."""
-    found = run.readings[GROUP]
-    one = found["step_1024"]
-    others = {"one scene of 1000": "1000", "four scenes of 256, in turn": "four_scenes"}
-    rows = {"one scene of 1024": (ms(one), "")}
-    for name, step in ((name, found[f"step_{of}"]) for name, of in others.items()):
-        rows[name] = ms(step), three(one / step)
-    return tables.timed_table("a step of", {"time [ms]": 0, "1024 takes … times as long": 0}, rows)
+    """Compare one scene of 1024 or 1000 environments with four scenes of a quarter of them."""
+    rows = {}
+    for size in (1024, 1000):
+        four = size // 4
+        names = {f"one scene of {size}": size, f"four scenes of {four}, in turn": f"four_of_{four}"}
+        for name, of in names.items():
+            step = run.readings[GROUP][f"step_{of}"]
+            rows[name] = ms(step), three(1e6 * step / size)
+    return tables.timed_table("a step of", {"time [ms]": 0, "for each environment [µs]": 0}, rows)

@@ -62,11 +62,17 @@ class Protocol:
 
 PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
 PARTS = {"sphere": 2, "robot_1": 1, "robot_4": 4}
-"""Scenes that are timed with 1 and 256 environments, by content, and their substeps."""
+"""Scenes that are timed with the sizes of `ENDS`, by content, and their substeps."""
+
+ENDS = (1, 64)
+"""Numbers of environments from which both parts of a step are computed."""
+
+FOUR = {"four_of_256": 256, "four_of_250": 250}
+"""Four scenes of a size that are stepped in turn."""
 
 DEEPER = Protocol(
     (1, 4, 16, 60, 64, 250, 256, 1000, 1024),
-    (*(f"{of}_{size}" for of in PARTS for size in (1, 256)), "four_scenes"),
+    (*(f"{of}_{size}" for of in PARTS for size in ENDS), *FOUR),
 )
 """The same with sizes beside powers of two, and with other scenes."""
 
@@ -135,10 +141,12 @@ def explanations(built: Mapping[int, Any], build: Callable[..., Any]) -> dict[st
             start(body)
         return calls_of(scene, body)
 
-    four = [calls_of(*built[256]), *(calls(256) for _ in range(3))]
     parts = {
         f"{of}_{size}": calls(size, substeps, of.partition("_")[0])
         for of, substeps in PARTS.items()
-        for size in (1, 256)
+        for size in ENDS
     }
-    return parts | {"four_scenes": timing.together(four)}
+    return parts | {
+        name: timing.together([calls_of(*built[size]), *(calls(size) for _ in range(3))])
+        for name, size in FOUR.items()
+    }

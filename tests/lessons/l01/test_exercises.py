@@ -31,6 +31,9 @@ CASES = {
         "school": lambda z0, g, h, n: height(z0, g, h, n, school=True),
         "explicit Euler": lambda z0, g, h, n: height(z0, g, h, n, extra=-1),
         "typed values": lambda z0, g, h, n: height(0.5, 9.81, h, n),
+        "rounded": lambda *given: round(height(*given), 8),
+        "not below zero": lambda *given: max(height(*given), 0),
+        "not below the floor": lambda *given: max(height(*given), 0.08),
         "distance for height": lambda z0, g, h, n: height(0, g, h, n),
     },
     "fall": {
