@@ -164,6 +164,7 @@ def test_the_executed_notebook_has_outputs_and_the_solutions_only_if_the_site_ha
     assert cells[0].outputs[0].text == "hello"
     assert cells[-1].outputs[0].traceback == ["ValueError: no"]
     assert ("SECRET code" in text) == (shown == "1")
+    assert ("The solution is left out on this site" in text) == (shown == "0")
     assert next(c for c in cells if c.source == "log()").metadata.jupyter.outputs_hidden
     assert "It was 0.12 s." in text
     assert "Only on the site" not in text
