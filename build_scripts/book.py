@@ -27,7 +27,7 @@ def main() -> int:
     args = arguments.parse_args()
     command.set_contract()
     release = command.choice("RELEASE", "0", ("0", "1")) == "1"
-    command.choice(SOLUTIONS, "1", ("0", "1"))
+    command.choice(SOLUTIONS, "1", ("0", "1"), ": 0 leaves solutions out")
     jobs = command.positive("JOBS", os.cpu_count() or 1)
     handed = {"executed": command.path("EXECUTED"), "second": command.path("SECOND")}
     if handed["second"] and not handed["executed"]:

@@ -34,6 +34,8 @@ REASONS = (
     "The course's code differs: your package is of another build of the site.",
 )
 
+OWN = "This is the site's own run or an edited copy of it: both have the same run id."
+
 CONCLUSIONS = {
     EQUAL: "Your run agrees with the site's within the tolerances of the lesson.",
     WITHIN: "Your run agrees with the site's within the tolerances of the lesson.",
@@ -93,7 +95,8 @@ def explained(comparison: BundleComparison) -> list[str]:
             "`functions` fails if the test of a function did not pass."
         ]
     without_notes = report.summary(replace(comparison, notes=()))  # they are about recordings
-    return [*without_notes.splitlines(), CONCLUSIONS[comparison.state], *found]
+    own = [OWN] * (comparison.new.run_id == comparison.old.run_id)
+    return [*without_notes.splitlines(), CONCLUSIONS[comparison.state], *own, *found]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -34,6 +34,14 @@ def test_an_equal_run_agrees_with_the_archive_and_with_the_folder(mine, archive,
         assert "clean checkout" not in said
 
 
+def test_the_site_s_own_run_is_not_taken_for_a_student_s(mine, archive, capsys):
+    for change, named in ((seal, True), (both(predicate(run_id="0" * 32), seal), False)):
+        change(mine)
+        assert main([str(mine), archive]) == 0
+        said = capsys.readouterr().out
+        assert ("This is the site's own run or an edited copy of it" in said) == named
+
+
 accelerated = part("backend", actual="cuda", actual_at_end="cuda")
 DIFFERS = "Your run differs from the site's"
 

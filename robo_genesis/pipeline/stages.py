@@ -21,7 +21,7 @@ from robo_genesis.pipeline.bundles.of_build import verify_results
 from robo_genesis.pipeline.bundles.status import refused_records
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
-from robo_genesis.pipeline.html.address import site_address, site_root
+from robo_genesis.pipeline.html.address import described, site_address, site_root
 from robo_genesis.pipeline.html.archive import pack, write_sums
 from robo_genesis.pipeline.html.checks import Site, run_checks
 from robo_genesis.pipeline.html.draft import Draft
@@ -90,6 +90,7 @@ def run_build(build: Build) -> list[str]:
         inputs = up_to_date.inputs_digest(build.root, build.book)  # before any is read
         engine, pages, into, environment = _prepare(build)
         npm.require_published()
+        about = [*described(build.book), f"Engine: {project.ENGINE} {engine}"]
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         manifests: dict[str, Any] = {}
@@ -128,7 +129,7 @@ def run_build(build: Build) -> list[str]:
             if build.executed:  # stored only now: what was refused must not stop later builds
                 put(result.folder, into[result.page.docname])
         forget(build.cache / project.STORE, pages, into)
-        summary = partial(_summary, engine, results, manifests, checked)
+        summary = partial(_summary, about, results, manifests, checked)
 
         def finish(published: Path) -> None:
             now = up_to_date.inputs_digest(build.root, build.book)
@@ -265,14 +266,14 @@ def _check(site: Site, progress: Progress) -> int:
 
 
 def _summary(
-    engine: str,
+    about: Sequence[str],
     results: Sequence[PageResult],
     manifests: Mapping[str, Any],
     checked: int,
     executed: int,
 ) -> list[str]:
     """Return the facts that a build ends with, one line for each lab."""
-    lines = [f"Engine: {project.ENGINE} {engine}"]
+    lines = [*about]
     for page in (result.page for result in results if result.page.page == "lab"):
         facts = manifests[page.docname].predicate
         renderer = facts.render.renderer or "SKIP: no camera frames"

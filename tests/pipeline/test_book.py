@@ -60,7 +60,9 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
     assert (book / "_build/evidence/l04/cpu/manifest.json").is_file()
     assert built.last == [
         f"Site: {book / '_build/html/index.html'}",
-        f"Engine: genesis-world {built.last[1].split()[-1]}",
+        "Solutions: shown. SOLUTIONS=0 leaves them out.",
+        "Address: none. SITE_URL=https://example.org/course/ gives one.",
+        f"Engine: genesis-world {built.last[3].split()[-1]}",
         "Lesson l04: engine 1.2.3, backend requested cpu, actual cpu, render camera (llvmpipe)",
         "Pages: 2 executed, 0 reused.",
         "Checks passed: 2 on what was measured, 5 on the site.",
@@ -241,6 +243,7 @@ def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left
     ("settings", "said"),
     [
         ({"RENDER": "yes"}, "RENDER='yes' is not valid. Choices: 0, 1."),
+        ({"SOLUTIONS": "no"}, "'no' is not valid: 0 leaves solutions out. Choices: 0, 1."),
         ({"ROBO_GENESIS_BACKEND": "auto"}, "records accelerators. Unset it. Choices: cpu."),
         ({"JOBS": "0"}, "JOBS='0' is not valid. Give a number"),
         ({"RELEASE": "1", "RENDER": "0"}, "RENDER='0' is not valid with RELEASE=1"),

@@ -32,7 +32,7 @@ from robo_genesis.pipeline.pages.book import Page
 SHOW, FINISH = "page.show", "page.finish"
 """The calls that show a measured output; pages give this name to the result of `rg.open_page`."""
 
-AGAIN = "Do not edit executed pages: execute the page again."
+AGAIN = "The page was edited, or the environment moved: `make clean book` executes the page again."
 ONCE = "Call page.show once for each output, outside of loops and conditions."
 BOUNDARY = 60  # Characters that a message shows on both sides of a difference
 

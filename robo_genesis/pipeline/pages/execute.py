@@ -54,8 +54,9 @@ class Underway:
         cell = f"cell {self.cell} of {self.cells}" if self.cell else "kernel starts"
         cell += " waits" if self.waits else ""
         elapsed = now - self.begin
-        left = f", ~{max(0.0, self.last.seconds - elapsed):.0f} s left" if self.last else ""
-        return f"{cell}, {elapsed:.0f} s{left}"
+        left = self.last.seconds - elapsed if self.last else 0.0
+        rest = f", ~{left:.0f} s left" if left > 0 else ", longer than last time" * (left < 0)
+        return f"{cell}, {elapsed:.0f} s{rest}"
 
 
 class Lines:

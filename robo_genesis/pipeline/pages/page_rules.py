@@ -23,6 +23,8 @@ from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
 from robo_genesis.pipeline.pages.syntax import PACKAGE, plain_python
 
 SOLUTION = "solution"  # The tag of a code cell and the class of a directive that contain a solution
+# What a site without solutions shows in place of a cell with one.
+NO_SOLUTION = "The solution is left out on this site; the outputs are those of its run."
 EXPLANATION = "explanation"  # The class of a fold that a site without solutions keeps
 
 TAGS = (

@@ -13,7 +13,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import WORK_SHEET, Page
-from robo_genesis.pipeline.pages.page_rules import SOLUTION
+from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
 from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
@@ -112,11 +112,14 @@ def _cells(
     for cell in page.notebook.cells:
         is_code = cell.cell_type == "code"
         output = next(outputs, None) if is_code else None
-        if not left_out & set(cell.metadata.get("tags", [])):
+        tags = left_out & set(cell.metadata.get("tags", []))
+        if not tags:
             if is_code:
                 yield from _code(cell, writer, output)
             else:
                 yield from _sections(plain(cell.source, writer))
+        elif ran and SOLUTION in tags:
+            yield new_markdown_cell(f"*{NO_SOLUTION}*")
 
 
 def _sections(text: str) -> list[NotebookNode]:

@@ -15,7 +15,7 @@ from sphinx.directives.code import LiteralInclude
 from sphinx.transforms import SphinxTransform
 
 from robo_genesis.core.project import solutions_shown
-from robo_genesis.pipeline.pages.page_rules import SOLUTION
+from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
 from robo_genesis.pipeline.pages.syntax import is_text
 
 MARKS = {SOLUTION, f"tag_{SOLUTION}"}  # The second is the class that a code cell has from its tag
@@ -69,7 +69,10 @@ class LeaveOutSolutions(SphinxTransform):
         """Remove them from the page."""
         for node in [*self.document.findall(nodes.Element)]:
             if MARKS.intersection((*node["classes"], *node.get("container_classes", ()))):
-                node.parent.remove(node)
+                cell = "cell" in node["classes"]  # The outputs of cells below follow from it
+                said = [nodes.paragraph("", "", nodes.emphasis("", NO_SOLUTION))] * cell
+                place = node.parent.index(node)
+                node.parent[place : place + 1] = said
 
 
 def hide_sources(app: Sphinx, config: Config) -> None:

@@ -1,9 +1,10 @@
 """The site's address; test_render and test_elsewhere look at sites without and with one."""
 
 import pytest
+import yaml
 
 from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.html.address import site_address, site_root
+from robo_genesis.pipeline.html.address import described, site_address, site_root
 
 
 @pytest.mark.parametrize(
@@ -20,10 +21,34 @@ def test_an_address_ends_with_a_slash_and_has_a_root(given, address, root):
     assert site_root(given) == root
 
 
-INVALID = ["example.org", "ftp://example.org", "https://", "https://a.org/?x", "https://a.org/#x"]
+INVALID = [
+    "example.org", "ftp://example.org", "https://", "https://a.org/?x", "https://a.org/#x",
+    "https://a.org/course/index.html", "https://a.org/b c/", "https://user:pw@a.org/", " ",
+    "https://a.org/b/ ",
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("given", INVALID)
 def test_another_text_is_refused(given):
     with pytest.raises(ProjectError, match="Give an address like"):
         site_address({"SITE_URL": given})
+
+
+def test_a_build_says_which_site_it_makes_and_which_link_leads_to_the_solutions(
+    tmp_path, monkeypatch
+):
+    repository = "https://github.com/a/course"
+    config = {"sphinx": {"config": {"course_repository": repository}}}
+    (tmp_path / "_config.yml").write_text(yaml.safe_dump(config))
+    monkeypatch.setenv("SITE_URL", "https://example.org/b")
+    monkeypatch.setenv("SOLUTIONS", "0")
+    assert described(tmp_path) == [
+        "Solutions: left out.",
+        "Address: https://example.org/b/",
+        f"Pages link to {repository}: whoever may read it finds the solutions there.",
+    ]
+    config["sphinx"]["config"]["course_repository"] = ""
+    (tmp_path / "_config.yml").write_text(yaml.safe_dump(config))
+    assert len(described(tmp_path)) == 2
+    monkeypatch.setenv("SOLUTIONS", "1")
+    assert described(tmp_path)[0] == "Solutions: shown. SOLUTIONS=0 leaves them out."

@@ -13,6 +13,7 @@ from PIL import Image
 from small_book import render_with
 from tiny_book import cell, make_book, notebook
 
+from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline.html.checks import Site, run_checks
 
 ADDRESS = "https://example.org/robot/course/"
@@ -81,6 +82,10 @@ def test_links_of_the_404_page_begin_at_the_root_and_the_site_passes_its_checks(
     assert [line for check in checks for line in check.problems] == []
 
 
+def test_the_licence_is_a_file_of_the_site(html):
+    assert (html / "_static/LICENSE.txt").read_text() == (ROOT / "LICENSE").read_text()
+
+
 def leaks(html: Path, text: str) -> set[str]:
     """Return the files that contain a text, as code or highlighted."""
     marked = re.compile(r"(<[^>]*>|\s)*".join(map(re.escape, text.split())))
@@ -91,5 +96,7 @@ def leaks(html: Path, text: str) -> set[str]:
 def test_no_file_has_a_solution_or_an_answer(html, tmp_path):
     assert leaks(html, PUBLIC) == {"solved.html"}  # nor is the source published
     assert leaks(html, SECRET) == set()
+    said = [mark.get_text() for mark in parsed(html, "solved").select("article p > em")]
+    assert said == ["The solution is left out on this site; the outputs are those of its run."]
     shown = rendered(tmp_path)
     assert {"solved.html", "solved.md"} <= leaks(shown, SECRET)

@@ -149,6 +149,7 @@ def test_an_executed_notebook_has_what_the_site_shows(page, tmp_path, monkeypatc
     assert cells[0].outputs[0].text == "hello"
     assert cells[-1].outputs[0].traceback == ["ValueError: no"]
     assert ("SECRET code" in text) == (shown == "1")
+    assert ("The solution is left out on this site" in text) == (shown == "0")
     assert next(c for c in cells if c.source == "log()").metadata.jupyter.outputs_hidden
     assert "It was 0.12 s." in text
     assert "Only on the site" not in text
