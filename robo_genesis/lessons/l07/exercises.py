@@ -98,8 +98,8 @@ def reach(reachable: Callable[..., Any]) -> Iterator[Finding]:
         given = zero, np.array(heights), np.array(touches)
         yield equal(name, reachable(*given, limits, least), expected)
     for last, expected in ((-0.1, True), (-0.3, False)):
-        given = np.full((3, 6), 0.1), np.array([0.02, 0.01, last]), still, (0.2, 0.2)
-        yield equal(f"third_at_{last}_m", reachable(*given, np.array([-0.1, 0, -0.2])), expected)
+        loose = np.full((3, 6), 0.1), np.array([0.02, 0.01, last]), still, (0.2, 0.2)
+        yield equal(f"third_at_{last}_m", reachable(*loose, np.array([-0.1, 0, -0.2])), expected)
     yield equal("no_answers", reachable(zero[:0], least[:0], still, limits, least[:0]), False)
 
 
