@@ -97,8 +97,9 @@ def reach(reachable: Callable[..., Any]) -> Iterator[Finding]:
     for name, (heights, touches, expected) in TIPS.items():
         given = zero, np.array(heights), np.array(touches)
         yield equal(name, reachable(*given, limits, least), expected)
-    found = reachable(zero + 0.1, least - 0.01, still, (0.2, 0.2), np.array([-0.1, 0.005]))
-    yield equal("other_limits", found, True)
+    for last, expected in ((-0.1, True), (-0.3, False)):
+        loose = np.full((3, 6), 0.1), np.array([0.02, 0.01, last]), still, (0.2, 0.2)
+        yield equal(f"third_at_{last}_m", reachable(*loose, np.array([-0.1, 0, -0.2])), expected)
     yield equal("no_answers", reachable(zero[:0], least[:0], still, limits, least[:0]), False)
 
 
@@ -110,9 +111,8 @@ RESULTS: dict[str, tuple[dict[str, dict[str, tuple[float, float, float]]], str |
     "truth_values": ({"b": {"x": (True, 1, 1)}, "a": {"y": (False, 1, 1)}}, "a"),
     "two_fail": ({"c": GOOD, "b": {"x": (4, 2, 3)}, "a": {"x": (1, 2, 3)}, "d": GOOD}, "b"),
     "first_value": ({"a": {"x": (4, 2, 3), "y": (2, 2, 3)}, "b": GOOD}, "a"),
-    "last_value": ({"b": {"y": (2, 2, 3), "x": (1.9, 2, 3)}, "a": GOOD}, "b"),
     "negative": ({"b": {"x": (-1, 0.5, inf)}}, "b"), "infinite": ({"b": {"x": (inf, 0, 9)}}, "b"),
-    "nan": ({"c": {"x": (2, 1, 3), "y": (nan, 0, 1)}, "a": {"x": (5, 0, 1)}}, "c"),
+    "nan": ({"c": {"x": (2, 1, 3), "y": (nan, 0, 1)}, "a": {}}, "c"),
     "nothing_measured": ({"c": GOOD, "b": {}, "a": {"x": (5, 0, 1)}}, "b"),
 }  # fmt: skip
 

@@ -45,7 +45,8 @@ def number(name: str, value: Any) -> str:
     """Return the value of a quantity with its unit."""
     unit = UNITS.get(name)
     if unit:
-        return with_unit(SCALES[unit] * value, unit, 2)
+        scaled = SCALES[unit] * value
+        return with_unit(scaled, unit, 1 if abs(scaled) >= 10 else 2)
     return f"{value:.0f}" if isinstance(value, float) else f"{value}"
 
 
@@ -94,8 +95,8 @@ def conclusions(run: Experiment) -> str:
     values = {name: value for of in found.values() for name, value in of.items()}
     t = {name: number(name, value) for name, value in values.items()}
     failed = rungs.failed(run, "baseline")
-    picture = f"One camera shows {values['pixels']:.0f} pixels of it, {t['share']} of its outline."
-    outline = f"This run has no camera. The outline would cover {values['pixels']:.0f} pixels."
+    picture = f"one camera shows {values['pixels']:.0f} pixels of it, {t['share']} of its outline."
+    outline = f"this run has no camera; the outline would cover {values['pixels']:.0f} pixels."
     m = run.metrics["baseline"]
     return bullets([
         f"The scene fails {listed(failed)}." if failed else "The scene passes all five rungs.",
