@@ -4,7 +4,7 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, rungs, spec, study
+from robo_genesis.lessons.l07 import checks, mistakes, rungs, spec, study, table_map
 from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record
@@ -30,14 +30,20 @@ def of_scenes(*scenes: str) -> MeasuringPage:
     )
 
 
-LECTURE = of_scenes(*spec.SCENES_OF_LECTURE).with_more(
-    lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
-    runs_of(spec.FURTHER),
-    study.forced_readings(),
-    checks.LECTURE,
+LECTURE = (
+    of_scenes(*spec.SCENES_OF_LECTURE)
+    .with_more(
+        lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
+        runs_of(spec.FURTHER),
+        study.forced_readings(),
+        checks.LECTURE,
+    )
+    .with_more(table_map.parameters, table_map.RUNS, table_map.READINGS, (table_map.map_follows,))
 )
 LAB = of_scenes("baseline")
-MISTAKES = of_scenes(*spec.SCENES)
+MISTAKES = of_scenes(*spec.SCENES).with_more(
+    dict, checks=(checks.hovering_is_at_rest, mistakes.symptoms)
+)
 
 LESSON = Lesson(
     spec=spec,
