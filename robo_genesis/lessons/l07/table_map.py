@@ -108,7 +108,7 @@ def residuals(trace: Trace) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 def outline(found: Experiment, camera: str, cell: int) -> float:
     """Return the area of the object's outline in a view at home [pixel], 0 if not all is inside."""
-    view = view_of(found, camera)
+    view = view_of(replace(found, rendered=False), camera)  # without its pictures
     pose = view.intrinsics, view.transform
     points = rungs.corners(spec.GOOD, np.array([*CASE.places[cell], spec.GOOD.centre[2]]))
     pixels = project(points, *pose)
@@ -154,9 +154,10 @@ def explored(found: Experiment) -> dict[str, Any]:
     """Return the data of the map, as `site/figures/explorer.py` shows them."""
     cells = [_cell(found, number) for number in CELLS]
     rows = [
-        {"label": f"{y:.2f}", "cells": cells[at * len(X) :][: len(X)]} for at, y in enumerate(Y)
+        {"label": f"{y:.2f}".replace("-", "−"), "cells": cells[k * len(X) :][: len(X)]}
+        for k, y in enumerate(Y)
     ]
-    caption = "Table from above. x [m] to the right, y [m] upwards."
+    caption = "Table from above. x [m] to the right, y [m] upwards. An outline cut off counts 0."
     columns = ["place x, y [m]", *WORDS.values()]
     return {
         "choices": ("Map", "Cells show"),
