@@ -32,7 +32,7 @@ def near_limit(world: run.World, render: bool) -> Mistake:
     for distance in NEAR:
         top = z + spec.GOOD.size[2] / 2
         camera.set_pose(pos=(x, y, top + distance), lookat=(x, y, 0), up=(0, 1, 0))
-        view = look(camera)
+        view: Any = look(camera)
         mine = view.segmentation == segment_number(world.scene, world.body.links[0])
         found.append((int(mine.sum()), float(view.depth[tuple(np.array(mine.shape) // 2)])))
     (drawn, _), (left, depth) = found

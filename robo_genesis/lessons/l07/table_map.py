@@ -91,11 +91,11 @@ def record(page: Any, world: run.World, joints: JointMap) -> None:
 
 def with_bodies(trace: Trace) -> Trace:
     """Return a run with the object in each answer's cell, and the ball at its start."""
-    at = [(*place, spec.GOOD.centre[2]) for place in np.repeat(CASE.places, 2, axis=0)]
-    body = np.float32([spec.GOOD.centre, *at])
-    ball = np.float32([(*spec.GOOD.bowl_at, run.BALL_HEIGHT)] * len(body))
-    quat = np.tile(np.float32([1, 0, 0, 0]), (len(body), 2, 1))
-    pos = np.concatenate([trace.link_pos, np.stack([body, ball], axis=1)], axis=1)
+    states = trace.steps + 1
+    bodies = np.tile([spec.GOOD.centre, (*spec.GOOD.bowl_at, run.BALL_HEIGHT)], (states, 1, 1))
+    bodies[1:, 0, :2] = np.repeat(CASE.places, 2, axis=0)
+    quat = np.tile(np.array([1, 0, 0, 0], np.float32), (states, 2, 1))
+    pos = np.concatenate([trace.link_pos, bodies.astype(np.float32)], axis=1)
     return replace(trace, link_pos=pos, link_quat=np.concatenate([trace.link_quat, quat], axis=1))
 
 
