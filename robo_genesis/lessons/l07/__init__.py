@@ -8,5 +8,8 @@ __getattr__ = on_demand(
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
     describe="robo_genesis.sim.arm.joints",
     fixed_parts="robo_genesis.sim.visual_shape",
+    build_world="robo_genesis.sim.bodies.contacts",
+    record_world="robo_genesis.sim.bodies.contacts",
+    mujoco_contacts="robo_genesis.sim.mujoco.contacts",
     read_shape="robo_genesis.sim.visual_shape",
 )

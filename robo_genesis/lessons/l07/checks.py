@@ -44,7 +44,7 @@ def reached(run: Experiment) -> Iterator[Finding]:
     """
     for name, case in run.cases.items():
         if isinstance(case, LiftCase) and case.size[1] <= spec.LIMITS["width"][1]:
-            points = lifting.waypoints((*case.stand, 0.0), case.size[2])
+            points = lifting.waypoints((*case.spot, 0.0), case.size[2])
             for phase, point in zip(("settle", "hold"), points[1:], strict=True):
                 hand = measured_hand(run.traces[name], lifting.ENDS[phase]).position
                 yield at_most(f"{name}.{phase}_m", float(np.linalg.norm(hand - point)), 8e-3)

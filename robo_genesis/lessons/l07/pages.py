@@ -2,9 +2,21 @@
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, mistakes, rungs, spec, study, table_map
+from robo_genesis.lessons.l07 import (
+    bowl_checks,
+    bowls,
+    checks,
+    mistakes,
+    rest,
+    rest_checks,
+    rungs,
+    spec,
+    study,
+    table_map,
+)
 from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record
@@ -40,15 +52,23 @@ LECTURE = (
     )
     .with_more(table_map.parameters, table_map.RUNS, table_map.READINGS, (table_map.map_follows,))
 )
-LAB = of_scenes("baseline")
+LAB = with_functions(of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder")
 MISTAKES = of_scenes(*spec.SCENES).with_more(
     dict, checks=(checks.hovering_is_at_rest, mistakes.symptoms)
 )
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.ALL | spec.FURTHER, SceneMetrics),
-    pages={"lecture": LECTURE, "lab": LAB, "mistakes": MISTAKES},
+    metrics=dict.fromkeys(spec.CASES, SceneMetrics)
+    | dict.fromkeys(bowls.CASES, bowls.BowlMetrics)
+    | dict.fromkeys(rest.CASES, rest.RestMetrics),
+    pages={
+        "lecture": LECTURE,
+        "lab": LAB,
+        "mistakes": MISTAKES,
+        "meshes": bowl_checks.MESHES,
+        "rest": rest_checks.REST,
+    },
     replays={
         "scenes": Replay(
             ("baseline", "hovering"),

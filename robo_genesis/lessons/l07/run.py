@@ -1,6 +1,6 @@
 """Table scenes of L07: let one rest, look at it, ask for postures, and lift its object.
 
-The base of the robot is at the world's origin and stands on the table, so z = 0 is its surface.
+The base of the robot is at the world's origin, on the table, so z = 0 is its surface.
 """
 
 from collections.abc import Sequence
@@ -68,15 +68,15 @@ class SceneCase(Controlled):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LiftCase(SceneCase):
-    """The same scene; the object begins on the `stand` (x, y), and the robot tries to lift it."""
+    """The same scene; the object begins at the `spot` (x, y), and the robot tries to lift it."""
 
-    stand: tuple[float, float] = (0.55, 0.0)
+    spot: tuple[float, float] = (0.55, 0.0)
     settings: IkSettings
 
     @property
     def centre(self) -> FloatArray:
-        """Centre (3,) of the object on the stand [m]."""
-        return np.array([*self.stand, self.gap + self.size[2] / 2])
+        """Centre (3,) of the object at the spot [m]."""
+        return np.array([*self.spot, self.gap + self.size[2] / 2])
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,8 +167,8 @@ def rest(world: World, joints: JointMap, case: SceneCase) -> tuple[Trace, float]
 
 
 def lift(world: World, joints: JointMap, case: LiftCase) -> tuple[Trace, dict[str, int]]:
-    """Lift the object from the stand; return the run and the counts of `contact_counter`."""
-    points = lifting.waypoints((*case.stand, 0.0), case.size[2])
+    """Lift the object from the spot; return the run and the counts of `contact_counter`."""
+    points = lifting.waypoints((*case.spot, 0.0), case.size[2])
     answers = lifting.ask(world.robot, joints, case.q_start, case.settings, points)
     command = case.commanding(lifting.lift_command(case.q_start, answers))
     counts, after = lifting.contact_counter(world.robot, world.body)

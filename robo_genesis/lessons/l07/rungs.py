@@ -1,6 +1,7 @@
 """The ladder: what each rung measures of a scene, and whether the scene passes it."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -24,15 +25,28 @@ def gap(one: Footprint, other: Footprint) -> float:
     return float(np.hypot(*apart) if (apart > 0).all() else apart.max())
 
 
-def margin(case: SceneCase) -> float:
-    """Return the distance of the object from the bowl, or from an edge of its support [m]."""
+def footprint(case: SceneCase) -> Footprint:
+    """Return the footprint of the object."""
+    return (*case.place[:2], *case.size[:2])
+
+
+def neighbours(case: SceneCase) -> list[Footprint]:
+    """Return what the object must not overlap: the bowl, and the outside of the table's edges.
+
+    The outside of an edge is a rectangle of 10 m. A shelf has no edges here.
+    """
     (length, width, _), (x, y) = TABLE
-    own = (*case.place[:2], *case.size[:2])
     bowl = (*case.bowl_at, 2 * bowls.RIM, 2 * bowls.RIM)
     if case.place[2]:
-        return gap(own, bowl)
-    sides = np.array([length, width]) / 2 - np.abs(np.subtract(own[:2], (x, y)))
-    return min(gap(own, bowl), float((sides - np.array(own[2:]) / 2).min()))
+        return [bowl]
+    along, across = 5 + length / 2, 5 + width / 2
+    ends = [(x + side * along, y, 10.0, 10.0) for side in (-1, 1)]
+    return [bowl, *ends, *((x, y + side * across, 10.0, 10.0) for side in (-1, 1))]
+
+
+def margin(case: SceneCase) -> float:
+    """Return the distance of the object from the bowl, or from an edge of its support [m]."""
+    return min(gap(footprint(case), other) for other in neighbours(case))
 
 
 def corners(case: SceneCase, centre: FloatArray) -> FloatArray:
@@ -46,9 +60,9 @@ def corners(case: SceneCase, centre: FloatArray) -> FloatArray:
     return np.asarray(centre) + np.vstack(levels) * np.array(case.size) / 2
 
 
-def measured(run: Experiment, scene: str) -> dict[str, Mapping[str, float]]:
+def measured(run: Experiment, scene: str) -> dict[str, dict[str, float]]:
     """Return by rung the values that decide about a scene, by the names of `spec.LIMITS`."""
-    case, rest, lift = spec.SCENES[scene], run.metrics[f"{scene}_at_rest"], run.metrics[scene]
+    rest = f"{scene}_at_rest"
     found = {
         group: {
             name.removeprefix(f"{scene}_"): value
@@ -58,7 +72,25 @@ def measured(run: Experiment, scene: str) -> dict[str, Mapping[str, float]]:
         for group in ("object", "outline", "reach", "contacts", "pixels")
         if group in run.readings
     }
-    ball = run.traces[f"{scene}_at_rest"].link_pos[-1, BALL]
+    ball = run.traces[rest].link_pos[-1, BALL]
+    return values(run.cases[rest], (run.metrics[rest], run.metrics[scene]), ball, found)
+
+
+def values(
+    case: SceneCase,
+    metrics: tuple[Any, Any],
+    ball: FloatArray,
+    found: Mapping[str, Mapping[str, float]],
+) -> dict[str, dict[str, float]]:
+    """Return by rung the values that decide about a scene.
+
+    Args:
+        case: its settings.
+        metrics: `SceneMetrics` of the run at rest and of the lift.
+        ball: (3,) where the ball ends [m].
+        found: readings by group and name.
+    """
+    rest, lift = metrics
     inside = np.hypot(*(ball[:2] - case.bowl_at)) + case.ball_radius < bowls.RIM
     shown = found.get("pixels", found["outline"])
     best = max(CAMERAS, key=lambda name: shown[name])

@@ -1,15 +1,22 @@
 """What the pages of L07 record of their scenes, one after the other."""
 
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from robo_genesis.core.experiment import Readings, counts
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import run, rungs, spec
+from robo_genesis.lessons.l07.metrics import BALL, OBJECT, scene_metrics
 from robo_genesis.sim.arm import kinematics, lifting, reaching
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import MODEL_COUNTS
 from robo_genesis.sim.arm.joints import describe
 from robo_genesis.sim.camera import record
-from robo_genesis.sim.camera.geometry import outline_area
-from robo_genesis.sim.camera.views import look, segment_number
+from robo_genesis.sim.camera.geometry import outline_area, project
+from robo_genesis.sim.camera.views import View, look, segment_number
 
 COUNTED = ("descending", "closed_left", "closed_right", "held_left", "held_right")
 
@@ -22,6 +29,7 @@ def readings(*scenes: str) -> dict[str, Readings]:
             {f"{scene}_{name}": unit for scene in scenes for name, unit in units.items()}
         )
 
+    others = [scene for scene in scenes if scene != "baseline"]
     return {
         "model": counts(MODEL_COUNTS),
         "object": group({"mass": "kg", "depth": "m"}),
@@ -30,8 +38,7 @@ def readings(*scenes: str) -> dict[str, Readings]:
         "contacts": group(
             {name: "steps" if name == "descending" else "points" for name in COUNTED}
         ),
-        "fails": counts(scene for scene in scenes if scene != "baseline"),
-    }
+    } | ({"fails": counts(others)} if others else {})
 
 
 def forced_readings() -> dict[str, Readings]:
@@ -52,44 +59,129 @@ def note(page: Any, group: str, scene: str, **values: float) -> None:
     page.readings[group] = {**page.readings.get(group, {}), **more}
 
 
-def examine(page: Any, gs: Any, scene: str) -> run.World:
-    """Build a scene and give a page everything that its rungs measure; return the scene."""
-    case, lift = spec.SCENES[scene], spec.lift_of(spec.SCENES[scene])
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What one scene showed, before anything is judged.
+
+    | field | meaning |
+    |---|---|
+    | `case`, `world` | its settings, and the built scene |
+    | `rest`, `lift` | both runs |
+    | `depth`, `mass` | of the deepest contact after the first step [m], of the object [kg] |
+    | `views`, `outlines` | by camera, and the area of the object's outline in them [pixel] |
+    | `number` | of the object in the segmentations |
+    | `answers` | of the solver: pregrasp and grasp |
+    | `touches` | contacts of the robot at each posture on its way to the answers |
+    | `contacts` | counts of the lift |
+    """
+
+    case: run.SceneCase
+    world: run.World
+    rest: Trace
+    lift: Trace
+    depth: float
+    mass: float
+    views: dict[str, View]
+    outlines: dict[str, float]
+    number: int
+    answers: list[IkAnswer]
+    touches: np.ndarray
+    contacts: dict[str, int]
+
+    @property
+    def positions(self) -> FloatArray:
+        """Centre (n + 1, 3) of the object at rest [m]."""
+        return self.rest.link_pos[:, OBJECT].astype(np.float64)
+
+    @property
+    def segmentations(self) -> dict[str, np.ndarray]:
+        """Segmentation (H, W) of each camera, none without pictures."""
+        found = {name: view.segmentation for name, view in self.views.items()}
+        return {name: picture for name, picture in found.items() if picture is not None}
+
+    @property
+    def residuals(self) -> FloatArray:
+        """Residuals (2, 6) of the answers: translation [m] and rotation vector [rad]."""
+        return np.array([answer.error for answer in self.answers], dtype=float)
+
+    @property
+    def tips(self) -> FloatArray:
+        """Heights (2,) of the fingertips at the answers, above the table [m]."""
+        poses = (kinematics.hand_pose(answer.q) for answer in self.answers)
+        return np.array([kinematics.fingertip(pose)[2] for pose in poses])
+
+    @property
+    def readings(self) -> dict[str, dict[str, float]]:
+        """The readings by group."""
+        limits = reaching.ONE_START.tolerances
+        good = (kinematics.accepted(a.q, a.error, *limits) for a in self.answers)
+        tips = dict(zip(("pregrasp", "grasp"), self.tips.tolist(), strict=True))
+        seen = {name: float((s == self.number).sum()) for name, s in self.segmentations.items()}
+        reach = {"accepted": sum(map(int, good)), **tips, "touches": int((self.touches > 0).sum())}
+        return {
+            "object": {"mass": self.mass, "depth": self.depth},
+            "outline": self.outlines,
+            "reach": reach,
+            "contacts": dict(self.contacts),
+        } | ({"pixels": seen} if seen else {})
+
+    @property
+    def values(self) -> dict[str, dict[str, float]]:
+        """The values that decide about the scene, by rung."""
+        lift = spec.lift_of(self.case)
+        metrics = scene_metrics(self.rest, self.case), scene_metrics(self.lift, lift)
+        return rungs.values(self.case, metrics, self.rest.link_pos[-1, BALL], self.readings)
+
+
+def facts(page: Any, gs: Any, case: run.SceneCase) -> Facts:
+    """Build a scene, give a page its robot, and return what the scene shows."""
     world = run.build(gs, case, spec.VIEW, spec.WRIST)
     joints = describe(page, world.robot)
     page.links = [*page.links, "object", "ball"]
-    page.traces[f"{scene}_at_rest"], depth = run.rest(world, joints, case)
+    rest, depth = run.rest(world, joints, case)
     mass = float(world.body.get_mass())
-    note(page, "object", scene, mass=mass, depth=depth)
-    see(page, world, scene, case)
+    views = see(world, page.render)
+    corners = rungs.corners(case, rest.link_pos[-1, OBJECT])
+    outlines = {name: outline(corners, view) for name, view in views.items()}
     points = lifting.waypoints(case.place, case.size[2])[:2]
     answers = lifting.ask(world.robot, joints, case.q_start, reaching.ONE_START, points)
-    good = [kinematics.accepted(a.q, a.error, *reaching.ONE_START.tolerances) for a in answers]
-    tips = [float(kinematics.fingertip(kinematics.hand_pose(a.q))[2]) for a in answers]
     way = lifting.line([case.q_start, *(a.q for a in answers)])
-    touched = sum(lifting.touches(world.robot, joints, world.fixed, q) > 0 for q in way)
-    note(page, "reach", scene, accepted=sum(map(int, good)), pregrasp=tips[0], grasp=tips[1],
-         touches=touched)  # fmt: skip
-    page.traces[scene], contacts = run.lift(world, joints, lift)
-    note(page, "contacts", scene, **contacts)
-    return world
+    touches = np.array([lifting.touches(world.robot, joints, world.fixed, q) for q in way])
+    lift, contacts = run.lift(world, joints, spec.lift_of(case))
+    number = segment_number(world.scene, world.body.links[0]) if page.render else 0
+    return Facts(case=case, world=world, rest=rest, lift=lift, depth=depth, mass=mass, views=views,
+                 outlines=outlines, number=number, answers=answers, touches=touches,
+                 contacts=contacts)  # fmt: skip
 
 
-def see(page: Any, world: run.World, scene: str, case: run.SceneCase) -> None:
-    """Give a page the pixels of the object in both cameras, and the views of the good scene."""
-    centre = page.traces[f"{scene}_at_rest"].link_pos[-1, -2]
-    for name, camera in world.cameras.items():
-        if name == "wrist":
-            camera.move_to_attach()
-        view = look(camera, page.render)
-        area = outline_area(rungs.corners(case, centre), view.intrinsics, view.transform)
-        note(page, "outline", scene, **{name: area})
-        if view.segmentation is not None:
-            number = segment_number(world.scene, world.body.links[0])
-            note(page, "pixels", scene, **{name: float((view.segmentation == number).sum())})
-        if scene == "baseline":
-            page.readings |= {f"view_{name}": record.numbers(view)}
+def see(world: run.World, pictures: bool) -> dict[str, View]:
+    """Return the view of each camera."""
+    world.cameras["wrist"].move_to_attach()
+    return {name: look(camera, pictures) for name, camera in world.cameras.items()}
+
+
+def outline(corners: FloatArray, view: View) -> float:
+    """Return the area of the object's outline [pixel], 0 if not all of it is before the camera."""
+    camera = view.intrinsics, view.transform
+    return outline_area(corners, *camera) if np.isfinite(project(corners, *camera)).all() else 0.0
+
+
+def keep(page: Any, scene: str, found: Facts) -> None:
+    """Give a page what a scene of the specification showed, of the good one its views as well."""
+    page.traces |= {f"{scene}_at_rest": found.rest, scene: found.lift}
+    for group, of in found.readings.items():
+        note(page, group, scene, **of)
+    if scene == "baseline":
+        for name, view in found.views.items():
+            page.readings[f"view_{name}"] = record.numbers(view)
             page.frames |= record.frames(name, view)
+
+
+def examine(page: Any, gs: Any, scene: str) -> run.World:
+    """Build a scene and give a page everything that its rungs measure; return the scene."""
+    found = facts(page, gs, spec.SCENES[scene])
+    keep(page, scene, found)
+    return found.world
 
 
 def record_forced(page: Any, gs: Any) -> None:

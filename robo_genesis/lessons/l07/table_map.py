@@ -118,7 +118,7 @@ def outline(found: Experiment, camera: str, cell: int) -> float:
 
 WORDS = {
     "reachable": "the hand reaches it",
-    "world": "in the picture of the camera on the stand",
+    "world": "in the picture of the camera beside the table",
     "wrist": "in the picture of the camera on the hand",
     "graspable": "free of the bowl and the edge",
 }
@@ -159,11 +159,12 @@ def explored(found: Experiment) -> dict[str, Any]:
     ]
     caption = "Table from above. x [m] to the right, y [m] upwards. An outline cut off counts 0."
     columns = ["place x, y [m]", *WORDS.values()]
+    cameras = "beside the table", "on the hand"
     return {
         "choices": ("Map", "Cells show"),
         "maps": [{"run": "table", "label": "Table", "caption": caption, "rows": rows[::-1],
                   "columns": [f"{x:g}" for x in X]}],
-        "measures": [{"label": f"pixels, camera on the {name}"} for name in ("stand", "hand")],
+        "measures": [{"label": f"pixels, camera {place}"} for place in cameras],
         "columns": columns,
         "notes": {"×": "×: out of reach.", "○": "○: the bowl or the edge is in the way."},
         "dt": CASE.dt,

@@ -19,7 +19,7 @@ TOP = 0.725  # Height of its upper face [m]
 
 SHARED = (
     "surface_friction", "duration", "settle", "dt", "substeps", "cone", "resolution", "impratio",
-    "gravity", "time_constant",
+    "gravity", "tilt", "yaw", "time_constant", "noslip",
 )  # fmt: skip
 """Settings that cases in one scene have in common."""
 
@@ -51,8 +51,9 @@ class ContactCase:
     friction, `impratio` the ratio of frictional to normal impedance; for None the engine chooses
     the last two by the cone. `time_constant` is that of all contacts of the scene [s]; the engine
     uses at least two solver steps. `spring` are time constant [s] and damping ratio of the contacts
-    of this body and the surface. None for both means the engine's defaults. `gravity` is a
-    magnitude [m/s²].
+    of this body and the surface. None for both means the engine's defaults. `noslip` is the number
+    of iterations of the post-processing of that name. `gravity` is a magnitude [m/s²]. A surface
+    that is tilted by `tilt` [rad] is gravity that leans, towards x turned by `yaw` [rad] about z.
     """
 
     start: tuple[float, float, float]
@@ -71,7 +72,10 @@ class ContactCase:
     impratio: float | None = None
     time_constant: float | None = None
     spring: tuple[float, float] | None = None
+    noslip: int = 0
     gravity: float = GRAVITY
+    tilt: float = 0.0
+    yaw: float = 0.0
 
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():
@@ -108,6 +112,13 @@ class ContactCase:
         return self.mass * self.size**2 * (1 / 6 if self.shape == "cube" else 1 / 10)
 
     @property
+    def fall(self) -> FloatArray:
+        """Acceleration of a body without contacts, in the axes of the surface (3,) [m/s²]."""
+        along = np.sin(self.tilt)
+        leaning = along * np.cos(self.yaw), along * np.sin(self.yaw), -np.cos(self.tilt)
+        return self.gravity * np.array(leaning)
+
+    @property
     def rest_height(self) -> float:
         """Height of the centre of a body on the surface without penetration [m]."""
         return TOP + self.size / 2
@@ -140,7 +151,7 @@ def build_world(
     common = shared_case(cases)
     scene = gs.Scene(
         sim_options=gs.options.SimOptions(
-            dt=common.dt, substeps=common.substeps, gravity=(0.0, 0.0, -common.gravity)
+            dt=common.dt, substeps=common.substeps, gravity=tuple(common.fall)
         ),
         rigid_options=gs.options.RigidOptions(**rigid_options(gs, common)),
         profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
@@ -183,6 +194,7 @@ def rigid_options(gs: Any, case: ContactCase) -> dict[str, Any]:
         "friction_cone": gs.friction_cone[case.cone],
         "contact_resolution": resolution,
         "impratio": case.impratio,
+        "noslip_iterations": case.noslip,
         **seconds,
     }
 

@@ -109,7 +109,7 @@ def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
         room = np.where(untouched, 0.0, ROLL if case.shape == "ball" else np.inf)
         what = "link_ang without torque [rad/s]"
         yield from apart("motion", what, trace.link_ang[:, 0], ZERO, room)
-        fall = np.outer(trace.t, [0, 0, -case.gravity]) + np.array([case.speed, 0, 0])
+        fall = np.outer(trace.t, case.fall) + np.array([case.speed, 0, 0])
         room = np.where(untouched, FALL, np.inf)
         what = "link_vel before any contact [m/s]"
         yield from apart("motion", what, trace.link_vel[:, 0], fall, room)
@@ -118,9 +118,13 @@ def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
 
 
 def sliding(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
-    """Yield a state of a cube that does not slide along x by Coulomb's law on its four corners."""
+    """Yield a state of a cube that does not slide along x by Coulomb's law on its four corners.
+
+    On a tilted surface it slides down, or it rests.
+    """
     velocity, position = (a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_pos))
-    lost = max(case.friction, case.surface_friction) * case.gravity * case.dt
+    slope, _, normal = case.dt * case.fall
+    lost = -max(case.friction, case.surface_friction) * normal - slope
     along = np.maximum(velocity[:-1, 0] - lost, 0)
     yield from apart("motion", "link_vel along x [m/s]", velocity[1:, 0], along, SLIDING)
     across = velocity[:, 1:]
@@ -226,7 +230,7 @@ def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     position, velocity = (a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
     yield from mean_speed(position, velocity, case.dt, 2 * case.gravity * case.dt)
     expected = mujoco_contacts.each_step(trace, case)
-    impulse = expected["link_vel"] - velocity[:-1] - np.array([0, 0, -case.gravity * case.dt])
+    impulse = expected["link_vel"] - velocity[:-1] - case.dt * case.fall
     flight = (np.abs(impulse) < 1e-9).all(axis=1)
     errors = {name: np.abs(getattr(trace, name)[1:, 0] - of) for name, of in expected.items()}
     rooms = {name: np.where(flight, FLIGHT[name], NEXT[name]) for name in errors}
@@ -257,8 +261,7 @@ def impulses(trace: ContactTrace, case: ContactCase, steps: np.ndarray) -> Itera
         steps: (n,) which steps are judged.
     """
     velocity, spin = (a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_ang))
-    fallen = np.array([0, 0, case.gravity * case.dt])
-    gained = (np.diff(velocity, axis=0) + fallen)[steps]
+    gained = (np.diff(velocity, axis=0) - case.dt * case.fall)[steps]
     friction = max(case.friction, case.surface_friction)
     across = np.linalg.norm(gained[:, :2], axis=1)
     beyond = np.maximum(across - friction * gained[:, 2], -gained[:, 2])

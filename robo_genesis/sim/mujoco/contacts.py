@@ -46,9 +46,10 @@ def load(case: ContactCase, own_defaults: bool = False) -> Any:
 
     spec = mujoco.MjSpec()
     spec.option.timestep = case.h
-    spec.option.gravity = (0, 0, -case.gravity)
+    spec.option.gravity = case.fall
     spec.option.cone = getattr(mujoco.mjtCone, f"mjCONE_{case.cone.upper()}")
     spec.option.impratio = case.impratio or 1.0
+    spec.option.noslip_iterations = case.noslip
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h, case.time_constant)
     contact = {"solref": case.spring or (seconds, 1.0), "solimp": IMPEDANCE}

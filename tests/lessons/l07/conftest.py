@@ -27,7 +27,7 @@ def trace_of(name: str, case: run.SceneCase) -> Trace:
     lifts = isinstance(case, run.LiftCase)
     command = case.q_start
     if lifts:
-        points = lifting.waypoints((*case.stand, 0.0), case.size[2])
+        points = lifting.waypoints((*case.spot, 0.0), case.size[2])
         answers = [answer(point, case.q_start, 50) for point in points]
         command = lifting.lift_command(case.q_start, answers)
     arm = driven(case.commanding(command), LINKS)

@@ -1,0 +1,113 @@
+"""What L07's lab says about its scenes: the good one and the student's own."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from robo_genesis.core.exercises import refused
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.text import SCALES, bullets, listed, scaled_value, with_unit
+from robo_genesis.lessons.l07 import rungs, spec
+from robo_genesis.lessons.l07.study import Facts
+
+MEASURES = False
+
+Results = dict[str, tuple[float, float, float]]
+"""By quantity: its value, and the least and the largest one that passes."""
+
+UNITS = dict.fromkeys(("margin", "depth", "ball", "pregrasp", "grasp", "width"), "mm") | {
+    "support": "µm", "drift": "µm", "moved": "µm", "mass": "%", "share": "%", "rise": "%"
+}  # fmt: skip
+"""Units in which quantities are printed; the others are counts, or true and false."""
+
+
+def given(facts: Facts, *names: str) -> Results:
+    """Return quantities that the course measured, with their limits."""
+    found = {name: value for of in facts.values.values() for name, value in of.items()}
+    return {name: (found[name], *spec.LIMITS[name]) for name in names}
+
+
+def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results | None:
+    """Return what a rung measures and print it, or print which function is not written yet."""
+    found: list[Results] = []
+    missing = refused(lambda: found.append(rung(facts)))
+    if isinstance(missing, NotImplementedError):
+        print(missing)
+        return None
+    if missing:
+        raise missing
+    for name, (value, least, most) in found[0].items():
+        verdict = "passes" if least <= value <= most else "FAILS"
+        print(f"{name:10} {number(name, value):>10}   {verdict}")
+    return found[0]
+
+
+def number(name: str, value: Any) -> str:
+    """Return the value of a quantity with its unit."""
+    unit = UNITS.get(name)
+    if unit:
+        return with_unit(SCALES[unit] * value, unit, 2)
+    return f"{value:.0f}" if isinstance(value, float) else f"{value}"
+
+
+def compared(
+    ladder: Callable[..., Any], results: Mapping[str, Results | None], facts: Facts
+) -> str:
+    """Return the verdicts of the student's functions and of the course, and what they mean.
+
+    Args:
+        ladder: the student's.
+        results: by rung what the student's functions found, None where one is missing.
+        facts: of the same scene.
+    """
+    course = {rung: rungs.passed(of) for rung, of in facts.values.items()}
+    written = not isinstance(refused(lambda: ladder({})), NotImplementedError)
+    mine = {
+        rung: ladder({rung: of}) is None if written and of is not None else None
+        for rung, of in results.items()
+    }
+    words = {True: "passes", False: "FAILS", None: "-"}
+    lines = [f"{'rung':10} {'yours':8} course"]
+    lines += [f"{rung:10} {words[mine[rung]]:8} {words[course[rung]]}" for rung in course]
+    other = [rung for rung in course if mine[rung] not in (None, course[rung])]
+    missing = [rung for rung in course if mine[rung] is None]
+    if missing:
+        lines.append(f"Your functions do not judge {listed(missing)} yet.")
+    else:
+        lines.append(f"The first rung that fails by your ladder: {ladder(results) or 'none'}.")
+    if other:
+        lines.append(f"Yours and the course's verdict differ: {listed(other)}. Compare the values.")
+    return "\n".join([*lines, outcome([rung for rung, good in course.items() if not good])])
+
+
+def outcome(failed: list[str]) -> str:
+    """Return what the failed rungs of a scene mean for the task."""
+    if not failed:
+        return "The scene passes all five rungs. Change one more setting."
+    if len(failed) == 1:
+        return f"The scene passes four rungs and fails one: {failed[0]}."
+    return f"The scene fails {listed(failed)}. Change less, so that one rung fails alone."
+
+
+def conclusions(run: Experiment) -> str:
+    """Return the sentences about the good scene."""
+    found = rungs.measured(run, "baseline")
+    values = {name: value for of in found.values() for name, value in of.items()}
+    t = {name: number(name, value) for name, value in values.items()}
+    failed = rungs.failed(run, "baseline")
+    picture = f"One camera shows {values['pixels']:.0f} pixels of it, {t['share']} of its outline."
+    outline = f"This run has no camera. The outline would cover {values['pixels']:.0f} pixels."
+    m = run.metrics["baseline"]
+    return bullets([
+        f"The scene fails {listed(failed)}." if failed else "The scene passes all five rungs.",
+        f"Built: the object's footprint has a margin of {t['margin']}, and its mass differs from "
+        f"density × volume by {t['mass']}.",
+        f"Stable: at the end the object is {t['support']} from its exact height, and in the last "
+        f"0.2 s no coordinate changed by more than {t['moved']}.",
+        f"Seen: {picture if run.rendered else outline}",
+        f"Reachable: {values['accepted']:.0f} of 2 answers are accepted, with the fingertips "
+        f"{t['pregrasp']} and {t['grasp']} above the table. The robot touches something in "
+        f"{values['touches']:.0f} postures of its way.",
+        f"Graspable: the open hand touches the object in {values['descending']:.0f} steps. The "
+        f"object rises by {scaled_value(m.rise, 'mm')}, the hand by "
+        f"{scaled_value(m.hand_rise, 'mm')}.",
+    ])  # fmt: skip

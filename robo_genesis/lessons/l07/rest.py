@@ -1,0 +1,171 @@
+"""Boxes at rest on a level and on a tilted table: cases, formulas, and the criterion of rest."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.experiment import inputs
+from robo_genesis.core.metrics import CaseMetrics, metric
+from robo_genesis.core.trace import ContactTrace
+from robo_genesis.sim.bodies.contacts import TOP, ContactCase
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+
+WINDOW, BOUND = 0.2, 2e-4
+"""A body is at rest if it moves less than this [m] in a window of this length [s]."""
+
+SPEED = ("link_vel_m_s", "link_ang_rad_s", "t_s")
+SLOW = 1e-3  # The criterion of a speed that the page examines [m/s]
+
+BOX = ContactCase(
+    start=(0.0, 0.0, TOP + 0.025), size=0.05, duration=0.5, friction=0.5, surface_friction=0.1,
+    substeps=4,
+)  # fmt: skip
+"""The box of all runs. Its friction counts, because that of the table is smaller."""
+
+FALLING = replace(BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2)  # By 5 mm, on a level table
+
+ROW: Mapping[str, Mapping[str, float]] = {
+    "slick": {"friction": 0.3}, "box": {}, "firm": {"friction": 1.0}, "rough": {"friction": 2.0},
+    "small": {"size": 0.02}, "heavy": {"density": 8000.0},
+}  # fmt: skip
+"""Six boxes side by side across the slope, and what distinguishes each from `BOX`."""
+
+STEEP = {"mu_150": {"friction": 1.5}} | {name: ROW[name] for name in [*ROW][1:]}
+FRICTIONS = {f"mu_{mu}": {"friction": mu / 100} for mu in (300, 200, 150, 120, 100, 50)}
+DIAGONAL = {"yaw": np.pi / 4, "duration": 0.3}
+
+
+def rows(of: Mapping[str, Mapping[str, float]] = ROW, /, **scenes: Any) -> dict[str, Any]:
+    """Return scenes with boxes side by side by name, from their tilt [°] and other settings."""
+    found: dict[str, dict[str, ContactCase]] = {scene: {} for scene in scenes}
+    for scene, (tilt, settings) in scenes.items():
+        for k, (name, own) in enumerate(of.items()):
+            case = replace(BOX, **{"tilt": np.radians(tilt), **settings, **own})
+            place = (0.0, round(0.1 * k - 0.3, 1), case.rest_height)
+            found[scene][f"{scene}_{name}"] = replace(case, start=place)
+    return found
+
+
+PYRAMIDS = rows(
+    **{f"tilt_{tilt}": (tilt, {}) for tilt in (0, 5, 10)},
+    h_5ms=(10, {"substeps": 2}), h_1ms=(10, {"substeps": 10}),
+    T_5ms=(10, {"time_constant": 0.005}), T_20ms=(10, {"time_constant": 0.02}),
+) | rows(STEEP, tilt_15=(15, {}), tilt_20=(20, {}))  # fmt: skip
+ROUND = {"cone": "elliptic", "impratio": 100.0, "settle": 0.3}  # the engine's impratio for it
+ELLIPTIC = rows(elliptic_10=(10, ROUND)) | rows(STEEP, elliptic_20=(20, ROUND))
+IMPRATIO = rows(
+    elliptic_alone=(10, ROUND | {"impratio": 1.0}), impratio_100=(10, {"impratio": 100.0}),
+    elliptic_0=(0, ROUND),
+)  # fmt: skip
+NOSLIP = rows(FRICTIONS, **{f"noslip_{tilt}": (tilt, {"noslip": 5}) for tilt in (5, 15, 20)})
+FREE = rows(STEEP, axis_24=(24, {"duration": 0.3})) | rows(
+    FRICTIONS, diagonal_18=(18, DIAGONAL), diagonal_20=(20, DIAGONAL)
+)  # fmt: skip
+COMPARED = PYRAMIDS | ELLIPTIC | NOSLIP  # Some of their boxes run in MuJoCo as well
+ALONE = {"alone": {"alone_box": replace(BOX, tilt=np.radians(10))}, "fall": {"fall_box": FALLING}}
+SCENES = ALONE | COMPARED | IMPRATIO | FREE
+"""The runs in Genesis, by scene."""
+
+CASES = {name: case for scene in SCENES.values() for name, case in scene.items()}
+TWINS = {
+    f"mujoco_{name}": case for scene in COMPARED.values() for name, case in scene.items()
+    if name.endswith(("_box", "_firm", "_rough", "_50"))
+}  # fmt: skip
+"""Runs in MuJoCo with equal settings, in float64."""
+
+LABELS = {
+    "tilt_10_box": "μ = 0.5", "tilt_10_slick": "μ = 0.3", "tilt_10_firm": "μ = 1",
+    "tilt_10_rough": "μ = 2", "tilt_10_heavy": "16 times the density",
+    "tilt_10_small": "edge 20 mm", "h_5ms_box": "h = 5 ms", "h_1ms_box": "h = 1 ms",
+    "T_5ms_box": "T = 5 ms", "T_20ms_box": "T = 20 ms", "impratio_100_box": "pyramid, impratio 100",
+    "elliptic_10_box": "elliptic cone, impratio 100", "elliptic_alone_box": "elliptic cone alone",
+}  # fmt: skip
+"""Words of a reader for runs."""
+
+# Sliding and falling boxes are free: their contact points decide. All others differ by rounding.
+TOLERANCES: dict[str, tuple[float, float]] = {
+    "creep": (2e-5, 0.2), "sunk": (1e-3, 0.05), "moved": (1e-5, 0.2),
+    **dict.fromkeys([*CASES, *TWINS], (5e-3, 0.0)),
+    **{name: (np.inf, 0.0) for of in (FREE | NOSLIP).values() for name in of},
+}  # fmt: skip
+"""By metric or case, (atol, rtol) of a value between engines, backends or processors."""
+
+RESOLUTION = {"m": 1e-5, "m/s": 5e-6, "%": 1.0}
+"""By unit, the difference below which two values are equal. float32 changes a creep by up to
+3e-6 m/s at a solver step of 1 ms."""
+
+
+def impedance(depth: float) -> float:
+    """Return the impedance d of a contact at a depth [m]."""
+    least, most, width, middle, power = mujoco_contacts.IMPEDANCE
+    x = min(depth / width, 1.0)
+    low, high = x**power / middle ** (power - 1), (1 - x) ** power / (1 - middle) ** (power - 1)
+    return float(least + (most - least) * (low if x < middle else 1 - high))
+
+
+def formulas(case: ContactCase) -> tuple[float, float]:
+    """Return the depth [m] and the creep [m/s] of a box on four contacts, which grow with (1−d)/d.
+
+    The impedance d depends on the depth, so both are found by iteration.
+    """
+    d, most, four = mujoco_contacts.IMPEDANCE[0], mujoco_contacts.IMPEDANCE[1], 4
+    seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
+    pyramid, stiffer, square = case.cone == "pyramidal", case.impratio or 1.0, case.friction**2
+    sinking = square * (1 + square) / 2 / stiffer if pyramid else 1.0
+    sliding = (1 + square if pyramid else 1.0) / stiffer
+    for _ in range(30):
+        share = (1 - d) / d * case.gravity / four
+        depth = share * np.cos(case.tilt) * seconds**2 / d * sinking
+        d = impedance(depth)
+    return float(depth), float(share * np.sin(case.tilt) * seconds / 2 * sliding)
+
+
+def in_scope(case: ContactCase) -> bool:
+    """Return whether all edges of a box with the pyramid press, as the formula of creep assumes."""
+    return bool(np.tan(case.tilt) <= case.friction / (2 + case.friction))
+
+
+def moved(trace: ContactTrace) -> np.ndarray:
+    """Return how far the centre goes from each place in the window that follows, (m,) [m]."""
+    place, n = trace.link_pos[:, 0].astype(np.float64), round(WINDOW / trace.dt)
+    later = np.stack([place[k : len(place) - n + k] for k in range(1, n + 1)])
+    return np.asarray(np.linalg.norm(later - place[:-n], axis=2).max(axis=0))
+
+
+def fastest_corner(trace: ContactTrace, case: ContactCase) -> np.ndarray:
+    """Return |v| + |ω| r, the largest speed that a corner can have, (n+1,) [m/s]."""
+    v, w = (np.linalg.norm(a[:, 0], axis=1) for a in (trace.link_vel, trace.link_ang))
+    return np.asarray(v + w * case.size * np.sqrt(3) / 2)
+
+
+@dataclass(frozen=True, slots=True)
+class RestMetrics(CaseMetrics):
+    """How a box rests on the table."""
+
+    creep: float = metric("m/s", "creep along the table", "link_pos_m")
+    sunk: float = metric("m", "support error", "link_pos_m")
+    moved: float = metric("m", "displacement in the last window", "link_pos_m")
+    fastest: float = metric("m/s", "highest speed of a corner there", *SPEED)
+    slow: float = metric("%", "slow samples there", *SPEED)
+    slow_at: float | None = metric("s", "first slow sample after the start", *SPEED)
+    fast_until: float | None = metric("s", "last fast sample", *SPEED)
+
+
+def rest_metrics(trace: ContactTrace, case: ContactCase) -> RestMetrics:
+    """Measure one run."""
+    n, place = round(WINDOW / case.dt), trace.link_pos[:, 0].astype(np.float64)
+    speeds, path = fastest_corner(trace, case), np.linalg.norm((place[-1] - place[-1 - n])[:2])
+    slow, fast = np.flatnonzero(speeds[1:] < SLOW) + 1, np.flatnonzero(speeds >= SLOW)
+    return RestMetrics(
+        float(path) / WINDOW, case.rest_height - float(place[-1, 2]), float(moved(trace)[-1]),
+        float(speeds[-n:].max()), 100 * float((slow > len(speeds) - 1 - n).sum()) / n,
+        float(trace.t[slow[0]]) if len(slow) else None,
+        float(trace.t[fast[-1]]) if len(fast) else None,
+    )  # fmt: skip
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input as JSON values, for the evidence key."""
+    return inputs(CASES, twins=list(TWINS), window=[WINDOW, BOUND], slow=SLOW)

@@ -1,0 +1,51 @@
+"""What the lab says about a scene is complete for each outcome."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from robo_genesis.lessons.l07 import own, rungs, spec
+
+GOOD = {"margin": (0.1, 0.005, 1)}
+
+
+def not_written(results):
+    raise NotImplementedError("write ladder")
+
+
+def by_margin(results):
+    return next((rung for rung, of in results.items() if of["margin"] != GOOD["margin"]), None)
+
+
+@pytest.mark.parametrize(
+    ("failed", "mine", "ladder", "said"),
+    [
+        ([], {}, by_margin, ["ladder: none", "passes all five"]),
+        (["seen"], {"seen": {"margin": 0}}, by_margin, ["ladder: seen", "fails one: seen"]),
+        (["seen", "built"], {}, by_margin, ["differ: built and seen", "fails built and seen"]),
+        ([], {"stable": None}, by_margin, ["do not judge stable yet", "passes all five"]),
+        (["stable"], {}, not_written, ["graspable yet", "fails one: stable"]),
+    ],
+)
+def test_each_outcome_has_words(failed, mine, ladder, said):
+    values = {rung: {"margin": 0.0 if rung in failed else 0.1} for rung in spec.RUNGS}
+    results = dict.fromkeys(spec.RUNGS, GOOD) | mine
+    found = own.compared(ladder, results, SimpleNamespace(values=values))
+    assert all(words in found for words in said), found
+    assert ("differ" in found) == ("differ" in said[0])
+
+
+def test_a_missing_function_is_named_and_another_error_is_raised(capsys):
+    assert own.attempt(not_written, None) is None
+    assert own.attempt(lambda facts: {"drift": (2e-3, 0, 1e-3)}, None)
+    printed = capsys.readouterr().out
+    assert "write ladder" in printed
+    assert "2000.00 µm   FAILS" in printed
+    with pytest.raises(KeyError):
+        own.attempt(lambda facts: {}["drift"], None)
+
+
+def test_the_generated_text_names_a_failed_rung(scenes, monkeypatch):
+    assert "passes all five rungs" in own.conclusions(scenes)
+    monkeypatch.setattr(rungs, "failed", lambda run, scene: ["seen"])
+    assert "The scene fails seen." in own.conclusions(scenes)
