@@ -14,7 +14,7 @@ from robo_genesis.lessons.l07.metrics import OBJECT
 from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
-from robo_genesis.sim.arm.laws import commanded, driven_run, model_joints
+from robo_genesis.sim.arm.laws import assigned_postures, commanded, driven_run, model_joints
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept, unit_quaternions
 
@@ -82,10 +82,15 @@ def robot_of(trace: Trace) -> Trace:
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """At each sample links and control forces are those of the driven robot, and in a scene at rest
     all forces and velocities. Bodies begin where their case puts them.
+    Answers of a map are assigned.
     """
     yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
         trace, robot = run.traces[name], robot_of(run.traces[name])
+        if not isinstance(case, runs.SceneCase):
+            found = assigned_postures(robot, case.start, run.links[:OBJECT], run.traces.values())
+            yield from kept(name, found)
+            continue
         command = case.commanding(robot.target)
         lifts = isinstance(case, LiftCase)
         law = commanded if lifts else driven_run

@@ -9,11 +9,13 @@ from robo_genesis.lessons.l07 import (
     bowl_checks,
     bowls,
     checks,
+    mistakes,
     rest,
     rest_checks,
     rungs,
     spec,
     study,
+    table_map,
 )
 from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
@@ -40,14 +42,20 @@ def of_scenes(*scenes: str) -> MeasuringPage:
     )
 
 
-LECTURE = of_scenes(*spec.SCENES_OF_LECTURE).with_more(
-    lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
-    runs_of(spec.FURTHER),
-    study.forced_readings(),
-    checks.LECTURE,
+LECTURE = (
+    of_scenes(*spec.SCENES_OF_LECTURE)
+    .with_more(
+        lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
+        runs_of(spec.FURTHER),
+        study.forced_readings(),
+        checks.LECTURE,
+    )
+    .with_more(table_map.parameters, table_map.RUNS, table_map.READINGS, (table_map.map_follows,))
 )
 LAB = with_functions(of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder")
-MISTAKES = of_scenes(*spec.SCENES)
+MISTAKES = of_scenes(*spec.SCENES).with_more(
+    dict, checks=(checks.hovering_is_at_rest, mistakes.symptoms)
+)
 
 LESSON = Lesson(
     spec=spec,

@@ -4,20 +4,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from robot_runs import LINKS, answer, driven
+from robot_runs import LINKS, answer, assigned, driven
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import run, spec, study
+from robo_genesis.lessons.l07 import run, spec, study, table_map
 from robo_genesis.lessons.l07.pages import LECTURE
-from robo_genesis.sim.arm import lifting
+from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.kinematics import HAND
+from robo_genesis.sim.camera import geometry, record
+from robo_genesis.sim.camera.views import View
 
 UNTURNED = np.float32([1, 0, 0, 0])
 
 
 def trace_of(name: str, case: run.SceneCase) -> Trace:
     """Return a run whose object keeps its place, sinks in a little, or follows the closed hand."""
+    if isinstance(case, table_map.MapCase):
+        answers = [answer(target, spec.GOOD.q_start, 60).q for target in case.targets]
+        before = driven(spec.GOOD.commanding(spec.GOOD.q_start), LINKS)
+        return table_map.with_bodies(assigned(case.start, LINKS, before, np.stack(answers)))
     lifts = isinstance(case, run.LiftCase)
     command = case.q_start
     if lifts:
@@ -43,6 +49,14 @@ def trace_of(name: str, case: run.SceneCase) -> Trace:
     )
 
 
+def wrist_pose() -> np.ndarray:
+    """Return the pose of the camera on the hand at home."""
+    hand, pose = kinematics.hand_pose(spec.GOOD.q_start), np.eye(4)
+    pose[:3, :3] = np.stack([kinematics.rotate(hand.quat, axis) for axis in np.eye(3)], axis=1)
+    pose[:3, 3] = hand.position
+    return pose @ np.array(run.ON_HAND)
+
+
 def readings() -> dict[str, dict[str, float]]:
     """Return what the engine would report of the lecture's scenes."""
     scenes = [spec.SCENES[name] for name in spec.SCENES_OF_LECTURE]
@@ -56,6 +70,13 @@ def readings() -> dict[str, dict[str, float]]:
         found["object"][f"{name}_mass"] = case.density * case.volume
     found["contacts"]["wide_descending"] = 50
     found["forced_lifts"] = dict.fromkeys(found["forced_lifts"], 3)
+    for name, field, pose in (
+        ("world", 42.0, geometry.looking(spec.VIEW["pos"], spec.VIEW["lookat"])),
+        ("wrist", 60.0, wrist_pose()),
+    ):
+        size = spec.VIEW["res"]
+        view = View(geometry.intrinsics(field, size), pose, size, (0.01, 20.0))
+        found[f"view_{name}"] = record.numbers(view)
     found["fails"] = {"hovering": 2, "filled": 1, "wide": 5}
     return found | {"model": spec.EXPECTED_MODEL}
 
@@ -64,11 +85,16 @@ def readings() -> dict[str, dict[str, float]]:
 def scenes(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
     runs = {name: of.case for name, of in LECTURE.runs.items()}
+    traces, found = {name: trace_of(name, case) for name, case in runs.items()}, readings()
+    apart, angle, _ = table_map.residuals(traces["table"])
+    good = ((apart <= 5e-4) & (angle <= 5e-3)).reshape(-1, 2).sum(axis=1).tolist()
+    for name in table_map.COUNTED:
+        found[f"table_{name}"] = {str(cell): count for cell, count in enumerate(good)}
     return Experiment(
         page=LECTURE,
-        traces={name: trace_of(name, case) for name, case in runs.items()},
+        traces=traces,
         links=[*LINKS, "object", "ball"],
-        readings=readings(),
+        readings=found,
         frames={},
         rendered=False,
         joints=joints,

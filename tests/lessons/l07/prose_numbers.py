@@ -1,6 +1,6 @@
 """The decimal numbers that prose of L07 may hold: configured inputs and calculations by hand."""
 
-from robo_genesis.lessons.l07 import spec
+from robo_genesis.lessons.l07 import mistakes, spec
 
 GOOD, OUTSIDE = spec.SCENES["baseline"], spec.SCENES["outside"]
 
@@ -18,4 +18,7 @@ CONFIGURED = {
     "cos ψ + sin ψ, by hand": 1.4,
     "speed after half a metre, by hand [m/s]": 3.1,
     "depth of a contact by it, by hand [mm]": 11.5,
+    "mass of a cylinder of steel [kg]": mistakes.HEAVY,
+    "its weight, by hand [N]": 10.6,
+    "weight that two pads carry with little friction, by hand [N]": 7.2,
 }

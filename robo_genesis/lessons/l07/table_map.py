@@ -1,0 +1,192 @@
+"""A map of the table: what the object of scene A would pass at each of its cells.
+
+The solver's answers for pregrasp and grasp are assigned, not commanded. What the cameras see is
+computed from the recorded views, without a picture for each cell.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.checks import Finding, at_most, equal
+from robo_genesis.core.experiment import Experiment, Run, case_inputs, counts
+from robo_genesis.core.scene import DT, FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l07 import run, rungs, spec
+from robo_genesis.sim.arm import kinematics, lifting, reaching
+from robo_genesis.sim.arm.engine_kinematics import IkSettings
+from robo_genesis.sim.arm.joint_control import ControlCase, assign_postures
+from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.camera.geometry import outline_area, project
+from robo_genesis.sim.camera.record import view_of
+
+X, Y = np.arange(2, 11) / 10, np.arange(-3, 4) * 0.12
+"""Centres of the cells [m]."""
+
+WORKSPACE = (0.40, 0.60), (-0.22, 0.28)
+"""Least and largest x and y of the places where objects begin [m]."""
+
+COUNTED = ("reached", "free")
+"""Counts of each cell: of its two postures those that the solver accepts, without contact of the
+robot with table, legs or itself, and of these those without contact with the bowl."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapCase:
+    """Two questions to the solver for each of m places (x, y) of an object [m]."""
+
+    places: FloatArray
+    settings: IkSettings
+    dt: float = DT
+
+    @property
+    def steps(self) -> int:
+        """Number of questions, 2 m."""
+        return 2 * len(self.places)
+
+    @property
+    def targets(self) -> FloatArray:
+        """Positions of the hand (2 m, 3), by turns for pregrasp and grasp [m]."""
+        ends = [lifting.waypoints((*at, 0.0), spec.GOOD.size[2])[:2] for at in self.places]
+        return np.concatenate(ends)
+
+    @property
+    def start(self) -> ControlCase:
+        """The settings from which the answers are assigned."""
+        return replace(spec.GOOD.commanding(spec.GOOD.q_start), steps=self.steps)
+
+
+CASE = MapCase(places=np.array([(x, y) for y in Y for x in X]), settings=reaching.ONE_START)
+CELLS = range(len(CASE.places))
+NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal, and the "
+NOTE += "object is where its cell is"
+RUNS = {"table": Run(CASE, False, NOTE)}
+READINGS = {f"table_{name}": counts(map(str, CELLS)) for name in COUNTED}
+
+
+def parameters() -> dict[str, Any]:
+    """Return the inputs of the map."""
+    return {"table_map": case_inputs({"table": CASE})}
+
+
+def record(page: Any, world: run.World, joints: JointMap) -> None:
+    """Give a page the answers for all cells and their counts, in the world of scene A."""
+    page.readings |= {f"table_{name}": {} for name in COUNTED}
+    postures: list[FloatArray] = []
+    *table, _ = world.fixed
+    for cell in CELLS:
+        points = CASE.targets[2 * cell : 2 * cell + 2]
+        answers = lifting.ask(world.robot, joints, spec.GOOD.q_start, CASE.settings, points)
+        postures += [answer.q for answer in answers]
+        within = CASE.settings.tolerances
+        left = [a.q for a in answers if kinematics.accepted(a.q, a.error, *within)]
+        for name, fixed in zip(COUNTED, (table, world.fixed), strict=True):
+            left = [q for q in left if not lifting.touches(world.robot, joints, fixed, q)]
+            page.readings[f"table_{name}"][str(cell)] = len(left)
+    trace = assign_postures(world.scene, world.robot, joints, CASE.start, np.stack(postures))
+    page.traces["table"] = with_bodies(trace)
+
+
+def with_bodies(trace: Trace) -> Trace:
+    """Return a run with the object in each answer's cell, and the ball at its start."""
+    states = trace.steps + 1
+    bodies = np.tile([spec.GOOD.centre, (*spec.GOOD.bowl_at, run.BALL_HEIGHT)], (states, 1, 1))
+    bodies[1:, 0, :2] = np.repeat(CASE.places, 2, axis=0)
+    quat = np.tile(np.array([1, 0, 0, 0], np.float32), (states, 2, 1))
+    pos = np.concatenate([trace.link_pos, bodies.astype(np.float32)], axis=1)
+    return replace(trace, link_pos=pos, link_quat=np.concatenate([trace.link_quat, quat], axis=1))
+
+
+def residuals(trace: Trace) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return of each answer the residuals [m] and [rad] and the height of the fingertips [m]."""
+    hand = kinematics.measured_hand(trace, slice(1, None))
+    error = kinematics.pose_error(kinematics.Pose(CASE.targets, reaching.DOWN), hand)
+    return *kinematics.distances(error), kinematics.fingertip(hand)[:, 2]
+
+
+def outline(found: Experiment, camera: str, cell: int) -> float:
+    """Return the area of the object's outline in a view at home [pixel], 0 if not all is inside."""
+    view = view_of(replace(found, rendered=False), camera)  # without its pictures
+    pose = view.intrinsics, view.transform
+    points = rungs.corners(spec.GOOD, np.array([*CASE.places[cell], spec.GOOD.centre[2]]))
+    pixels = project(points, *pose)
+    inside = ((pixels > 0) & (pixels < view.size)).all()  # not where a point has no pixel
+    return outline_area(points, *pose) if inside else 0.0
+
+
+WORDS = {
+    "reachable": "the hand reaches it",
+    "world": "in the picture of the camera beside the table",
+    "wrist": "in the picture of the camera on the hand",
+    "graspable": "free of the bowl and the edge",
+}
+"""What each verdict says."""
+
+
+def verdicts(found: Experiment, cell: int) -> dict[str, bool]:
+    """Return which tests the object passes in a cell, by the names of `WORDS`."""
+    reached, free = (found.readings[f"table_{name}"][str(cell)] == 2 for name in COUNTED)
+    tips = residuals(found.traces["table"])[2][2 * cell : 2 * cell + 2]
+    reached &= bool((tips >= [spec.LIMITS[name][0] for name in ("pregrasp", "grasp")]).all())
+    margin = rungs.margin(replace(spec.GOOD, place=(*CASE.places[cell], 0.0)))
+    seen = {name: outline(found, name, cell) >= spec.LIMITS["pixels"][0] for name in rungs.CAMERAS}
+    free &= reached and margin >= spec.LIMITS["margin"][0]
+    return {"reachable": reached, **seen, "graspable": free}
+
+
+def map_follows(found: Experiment) -> Iterator[Finding]:
+    """Where the map says that the hand reaches a place, both recorded poses of the hand are within
+    the solver's tolerances, up to 2 µm and 2 µrad. All cells of the workspace are such places.
+    """
+    reached = np.array([verdicts(found, cell)["reachable"] for cell in CELLS])
+    left = residuals(found.traces["table"])[:2]
+    for name, of, most in zip(("m", "rad"), left, CASE.settings.tolerances, strict=True):
+        yield at_most(f"residual_{name}", float(of[np.repeat(reached, 2)].max()), most + 2e-6)
+    (x0, x1), (y0, y1) = WORKSPACE
+    x, y = CASE.places.T
+    inside = (x0 <= x) & (x <= x1) & (y0 <= y) & (y <= y1)
+    yield equal("workspace", int((inside & reached).sum()), int(inside.sum()))
+
+
+def explored(found: Experiment) -> dict[str, Any]:
+    """Return the data of the map, as `site/figures/explorer.py` shows them."""
+    cells = [_cell(found, number) for number in CELLS]
+    rows = [
+        {"label": f"{y:.2f}".replace("-", "−"), "cells": cells[k * len(X) :][: len(X)]}
+        for k, y in enumerate(Y)
+    ]
+    caption = "Table from above. x [m] to the right, y [m] upwards. An outline cut off counts 0."
+    columns = ["place x, y [m]", *WORDS.values()]
+    cameras = "beside the table", "on the hand"
+    return {
+        "choices": ("Map", "Cells show"),
+        "maps": [{"run": "table", "label": "Table", "caption": caption, "rows": rows[::-1],
+                  "columns": [f"{x:g}" for x in X]}],
+        "measures": [{"label": f"pixels, camera {place}"} for place in cameras],
+        "columns": columns,
+        "notes": {"×": "×: out of reach.", "○": "○: the bowl or the edge is in the way."},
+        "dt": CASE.dt,
+        "postures": {"table": CASE.targets},
+        "tables": {caption: [dict(zip(columns, of["values"], strict=True)) for of in cells]},
+    }  # fmt: skip
+
+
+def _cell(found: Experiment, cell: int) -> dict[str, Any]:
+    """Return a cell of the map, which shows the answer for the grasp."""
+    good, (x, y) = verdicts(found, cell), CASE.places[cell]
+    numbers = [round(outline(found, name, cell)) for name in rungs.CAMERAS]
+    failed = ", ".join(WORDS[name] for name, one in good.items() if not one)
+    place = f"{x:g}, {y:.2f}".replace("-", "−")
+    return {
+        "answer": 2 * cell + 2,
+        "name": place,
+        "tag": "×" if not good["reachable"] else "" if good["graspable"] else "○",
+        "state": "accepted" if good["reachable"] else "refused",
+        "opens": cell == len(CELLS) // 2,
+        "sentence": f"Not passed: {failed}." if failed else "Passes all four tests.",
+        "values": [place, *("yes" if one else "no" for one in good.values())],
+        "numbers": numbers,
+        "texts": [str(number) for number in numbers],
+    }
