@@ -195,9 +195,9 @@ def fits(run: Experiment) -> list[Model]:
     return [fit(of, [found[size] for size in of]) for of in combinations(FITTED, 3)]
 
 
-def span(values: Sequence[float], digits: int = 2) -> str:
-    """Return the least and the largest value with so many digits each."""
-    least, most = (three(float(f"{of(values):.{digits}g}")) for of in (min, max))
+def span(values: Sequence[float]) -> str:
+    """Return the least and the largest value with two digits each."""
+    least, most = (three(float(f"{of(values):.2g}")) for of in (min, max))
     return f"{least} to {most}"
 
 
@@ -207,8 +207,8 @@ def model_table(run: Experiment) -> str:
     for size, step in steps(run).items():
         expected = [float(model.step_time(size)) for model in models]
         name = f"{size}{', fitted' * (size in FITTED)}"
-        times, shares = [1e3 * of for of in expected], [step / of for of in expected]
-        rows[name] = ms(step), span(times), span(shares, 3)
+        shares = f"{step / max(expected):.2f} to {step / min(expected):.2f}"
+        rows[name] = ms(step), span([1e3 * of for of in expected]), shares
     heads = {"measured [ms]": 0, "models [ms]": 0, "measured / model": 0}
     return tables.timed_table("B", heads, rows)
 
