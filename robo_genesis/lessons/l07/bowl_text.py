@@ -1,46 +1,44 @@
 """Tables and figure of the page on meshes."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import BAND, LINE, look
-from robo_genesis.core.tables import markdown, number_table, timed_table
+from robo_genesis.core.tables import as_table, number_table, timed_table
+from robo_genesis.core.text import decimal
 from robo_genesis.lessons.l07 import bowls
-from robo_genesis.lessons.l07.bowl_checks import sunk
-from robo_genesis.lessons.l07.bowls import BALLS, CHOICES, DENSITY
+from robo_genesis.sim.bodies import bowl
+from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
 
 MEASURES = False
 
 
-def millimetres(value: float | None) -> str:
-    """Write a length: `4.9`."""
-    return "–" if value is None else f"{1000 * value:.1f}".replace("-", "−")
+def ends(found: bowls.BowlMetrics) -> tuple[str, str]:
+    """Write how many balls are inside, and the height of the lowest: `12 of 12`, `4.9`."""
+    balls = len(bowls.BALLS)
+    lowest = "–" if found.lowest is None else decimal(1000 * found.lowest, 1)
+    return f"{found.inside / 100 * balls:.0f} of {balls}", lowest
 
 
-def counted(found: bowls.BowlMetrics) -> str:
-    """Write how many balls are inside: `12 of 12`."""
-    return f"{found.inside / 100 * len(BALLS):.0f} of {len(BALLS)}"
-
-
-def choices(run: Experiment) -> str:
+@as_table
+def choices(run: Experiment) -> Iterator[dict[str, str]]:
     """Return geoms, volume, balls and mass by choice."""
-    rows = []
+    volume = run.readings["bowl_volume"]
     for choice, words in CHOICES.items():
-        seen, found = run.readings["visual_volume"][choice], run.metrics[f"in_{choice}"]
-        rows.append(
-            {
-                "collision geometry": words,
-                "geoms": f"{run.readings['bowl_geoms'][choice]:.0f}",
-                "volume / visual": f"{run.readings['collision_volume'][choice] / seen:.2f}",
-                "balls inside": counted(found),
-                "lowest ball [mm]": millimetres(found.lowest),
-                "free bowl [g]": f"{1000 * run.readings['bowl_mass'][choice]:.1f}",
-                "density × visual volume [g]": f"{1e-3 * DENSITY * seen:.1f}",
-            }
-        )
-    return markdown(rows)
+        inside, lowest = ends(run.metrics[f"in_{choice}"])
+        yield {
+            "collision geometry": words,
+            "geoms": f"{run.readings['bowl_geoms'][choice]:.0f}",
+            "volume / visual": f"{volume[choice] / volume['visual']:.2f}",
+            "balls inside": inside,
+            "lowest ball [mm]": lowest,
+            "free bowl [g]": f"{1000 * run.readings['bowl_mass'][choice]:.1f}",
+            "density × visual volume [g]": f"{1e-3 * DENSITY * volume['visual']:.1f}",
+        }
 
 
 def price(run: Experiment) -> str:
@@ -58,17 +56,17 @@ def tried(run: Experiment, group: str) -> str:
         words += f", seed {case.seed}" * (case.seed > 0) + ", from inside" * (case.drop < 0)
         words += f", start {1000 * case.shift:g} mm aside" * (case.shift > 0)
         found = run.metrics[name]
-        by_hand, lowest = millimetres(case.depth), millimetres(found.lowest)
-        rows[words] = by_hand, counted(found), sunk(run, name), lowest
+        inside, lowest = ends(found)
+        rows[words] = decimal(1000 * case.depth, 1), inside, f"{found.sunk:.0f}", lowest
     heads = ("v T / e [mm]", "inside", "sunk in", "lowest ball [mm]")
     return number_table("run", dict.fromkeys(heads, 0), rows)
 
 
 def section(run: Experiment) -> Figure:
     """Draw the top of the collision geometry over the bowl's wall, cut at y = 0, by choice."""
-    figure = plotting.figure(5.4)
+    figure = plotting.figure(3.8)
     axes = figure.subplots(len(bowls.CUT), 1, sharex=True, sharey=True)
-    outer, inner = (1000 * of * (np.cos(np.pi / bowls.SECTIONS), 1) for of in bowls.profiles())
+    outer, inner = (1000 * of * (np.cos(np.pi / bowl.SECTIONS), 1) for of in bowl.profiles())
     half = np.vstack([outer, inner[::-1]])
     wall = np.vstack([half, half[::-1] * (-1, 1)])
     for ax, choice in zip(axes, bowls.CUT, strict=True):

@@ -1,4 +1,4 @@
-"""A bowl as a mesh, and what the engine makes of it for contacts: balls fall into it."""
+"""Balls that fall into a bowl, and what the engine makes of its mesh for contacts."""
 
 import time
 from dataclasses import dataclass
@@ -11,28 +11,10 @@ from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies import bowl
+from robo_genesis.sim.bodies.bowl import CHOICES, HEIGHT, WALL
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
-
-RIM, FOOT, HEIGHT, WALL = 0.075, 0.035, 0.05, 0.004
-"""Outer radii at the rim and at the foot, height, and thickness of the wall [m]."""
-
-SECTIONS, LEVELS = 24, 5  # Of the mesh: facets around the axis, points of a profile
-
-WALLS, PLATE = 8, 0.006  # Of the bowl of boxes: number of walls, thickness of all boxes [m]
-
-DENSITY = 400.0  # Of the bowl [kg/m³]
-
-CHOICES = {
-    "one_hull": "one convex hull",
-    "default": "default decomposition",
-    "fine": "finer decomposition",
-    "pieces": "convex pieces",
-    "boxes": "boxes",
-}
-"""Ways to make collision geometry, with words for them."""
-
-FINE = 0.05  # CoACD's threshold for the finer decomposition; the engine's default is 0.1
 
 T = 0.01  # Time constant of the engine's contacts at solver steps of up to 5 ms [s]
 
@@ -70,14 +52,9 @@ class BowlCase:
         return np.stack([0.022 * np.cos(angle) + self.shift, 0.022 * np.sin(angle), z], axis=1)
 
     @property
-    def floor(self) -> float:
-        """Height of the upper face of the bowl's foot [m]."""
-        return PLATE if self.choice == "boxes" else WALL
-
-    @property
     def depth(self) -> float:
-        """How deep the lowest balls sink into this face at fine steps, v T / e [m]."""
-        speed = float(np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - self.floor)))
+        """How deep the lowest balls sink into the bowl's floor at fine steps, v T / e [m]."""
+        speed = float(np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - WALL)))
         return speed * max(T, 2 * self.h) / np.e
 
 
@@ -101,17 +78,16 @@ SMALL = {
 
 CASES = BIG | ATTACKS | SMALL
 
-DECOMPOSED, CUT = ("default", "fine"), ("one_hull", "default", "fine")
+CUT = ("one_hull", "default")
 
 ACROSS, UP = np.arange(-72, 73, 3) / 1000, np.arange(101) / 2000
 """Places x on the line y = 0, and heights, where `CUT` collision geometry is sampled [m]."""
 
 READINGS = {
     "bowl_geoms": Readings(dict.fromkeys(CHOICES, "1")),
-    "collision_volume": Readings(dict.fromkeys(CHOICES, "cm³")),
-    "visual_volume": Readings(dict.fromkeys(CHOICES, "cm³")),
-    "bowl_mass": Readings(dict.fromkeys([*CHOICES, "corrected"], "kg")),
-    "uncovered": Readings(dict.fromkeys(DECOMPOSED, "m")),
+    "bowl_volume": Readings(dict.fromkeys([*CHOICES, "visual"], "cm³")),
+    "bowl_mass": Readings(dict.fromkeys(CHOICES, "kg")),
+    "uncovered": Readings({"default": "m"}),
     **{f"top_{of}": Readings({f"x_{1e3 * x:+.0f}mm": "m" for x in ACROSS}) for of in CUT},
     **{
         what: Readings(dict.fromkeys(CHOICES, "s"), "performance", dict.fromkeys(CHOICES, limits))
@@ -125,7 +101,7 @@ READINGS = {
 TOLERANCES = {
     "bowl_geoms": (12.0, 0.0), "cm³": (0.05, 0.15), "bowl_mass": (1e-6, 0.15),
     "uncovered": (1e-4, 0.0),
-    "lowest": (HEIGHT, 0.0), "inside": (0.0, 0.0),
+    "lowest": (HEIGHT, 0.0), "inside": (0.0, 0.0), "sunk": (12.0, 0.0),
     **dict.fromkeys([f"top_{of}" for of in CUT], (HEIGHT, 0.0)),
     **dict.fromkeys(CASES, (10.0, 0.0)),
 }  # fmt: skip
@@ -133,113 +109,28 @@ TOLERANCES = {
 
 @dataclass(frozen=True, slots=True)
 class BowlMetrics(CaseMetrics):
-    """Where the balls are at the end: inside, if below the rim and within its outer radius."""
+    """Where the balls are at the end: inside, if below the rim and within its outer radius.
+
+    A ball has sunk in if its centre is below the upper face of the bowl's foot.
+    """
 
     inside: float = metric("%", "balls inside", "link_pos_m")
     lowest: float | None = metric("m", "lowest bottom of a ball inside", "link_pos_m")
+    sunk: float = metric("1", "balls inside that sank in", "link_pos_m")
 
 
 def bowl_metrics(trace: BodyTrace, case: BowlCase) -> BowlMetrics:
     """Measure the end of a run."""
-    z = heights_inside(trace)
-    lowest = float(z.min()) - case.radius if len(z) else None
-    return BowlMetrics(100 * len(z) / len(BALLS), lowest)
-
-
-def heights_inside(trace: BodyTrace) -> FloatArray:
-    """Return the heights of the centres of the balls that end inside the bowl, (k,) [m]."""
     x, y, z = trace.link_pos[-1].astype(np.float64).T
-    return z[(np.hypot(x, y) < RIM) & (z < HEIGHT)]
+    z = z[(np.hypot(x, y) < bowl.RIM) & (z < HEIGHT)]
+    lowest = float(z.min()) - case.radius if len(z) else None
+    return BowlMetrics(100 * len(z) / len(BALLS), lowest, float((z < WALL).sum()))
 
 
 def parameters() -> dict[str, Any]:
     """Return every configured input as JSON values, for the evidence key."""
-    given = {"profiles_m": profiles(), "sections": SECTIONS, "boxes": (WALLS, PLATE)}
-    read = {"density": DENSITY, "fine": FINE, "x_m": ACROSS, "z_m": UP}
-    return inputs(CASES) | json_value(given | read)
-
-
-def profiles() -> tuple[FloatArray, FloatArray]:
-    """Return the outer and the inner half profile, each (`LEVELS`, 2), as radius and height [m]."""
-    share = np.linspace(0, 1, LEVELS)
-    radius = FOOT + (RIM - FOOT) * np.sqrt(share)
-    inner = np.stack([radius - WALL, WALL + (HEIGHT - WALL) * share], axis=1)
-    return np.stack([radius, HEIGHT * share], axis=1), inner
-
-
-def mesh() -> Any:
-    """Return the bowl as a closed `trimesh.Trimesh`: its axis is z, its foot is at z = 0.
-
-    The plane y = 0 cuts two facets in the middle.
-    """
-    import trimesh  # loads slowly
-
-    outer, inner = profiles()
-    line = np.vstack([[0, 0], outer, inner[::-1], [0, WALL]])
-    bowl = trimesh.creation.revolve(line, sections=SECTIONS)
-    bowl.merge_vertices()
-    bowl.apply_transform(trimesh.transformations.rotation_matrix(np.pi / SECTIONS, (0, 0, 1)))
-    return bowl
-
-
-def pieces() -> list[Any]:
-    """Return convex meshes that fill the bowl without overlap: its foot, and parts of its wall."""
-    import trimesh  # loads slowly
-
-    angles = np.pi / SECTIONS * (1 + 2 * np.arange(SECTIONS + 1))
-    around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    rings = [
-        [np.column_stack([r * around, np.full(len(around), z)]) for r, z in of] for of in profiles()
-    ]
-    parts = [[side[0] for side in rings]]
-    for j in range(LEVELS - 1):
-        wall = [*rings[0][j : j + 2], *rings[1][j : j + 2]]
-        parts += [[ring[k : k + 2] for ring in wall] for k in range(SECTIONS)]
-    return [trimesh.convex.convex_hull(np.vstack(part)) for part in parts]
-
-
-def box_model(fixed: bool) -> str:
-    """Return an MJCF model of a bowl of boxes: a plate, and upright walls around it."""
-    half, plate, wide = PLATE / 2, RIM * np.cos(np.pi / WALLS), RIM * np.tan(np.pi / WALLS)
-    boxes = f'<geom size="{plate} {plate} {half}" pos="0 0 {half}"/>'
-    for angle in 2 * np.pi * np.arange(WALLS) / WALLS:
-        place = f"{(RIM - half) * np.cos(angle)} {(RIM - half) * np.sin(angle)} {HEIGHT / 2}"
-        size = f"{half} {wide} {HEIGHT / 2}"
-        boxes += f'<geom size="{size}" pos="{place}" euler="0 0 {angle}"/>'
-    given = f'<default><geom type="box" density="{DENSITY}"/></default>'
-    body = f'<body name="bowl">{"" if fixed else "<freejoint/>"}{boxes}</body>'
-    units = '<compiler angle="radian"/>'
-    return f'<mujoco model="bowl">{units}{given}<worldbody>{body}</worldbody></mujoco>'
-
-
-def add(
-    gs: Any, scene: Any, choice: str = "default", pos: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    fixed: bool = True, surface: Any = None, seed: int = 0, **material: float,
-) -> Any:  # fmt: skip
-    """Add a bowl to a scene and return its entity.
-
-    Args:
-        gs: the engine after `gs.init`.
-        scene: before it is built.
-        choice: a key of `CHOICES`.
-        pos: of the centre of its foot [m].
-        fixed: whether it cannot move.
-        surface: its look, None for the engine's.
-        seed: of CoACD, which decomposes the mesh.
-        material: arguments of `gs.materials.Rigid`; `rho` is by default `DENSITY`.
-    """
-    if choice == "boxes":
-        morph = gs.morphs.MJCF(file=box_model(fixed), pos=pos)
-    else:
-        files = tuple(pieces() if choice == "pieces" else [mesh()])
-        options: dict[str, Any] = dict.fromkeys(("poss", "eulers"), ((0.0, 0.0, 0.0),) * len(files))
-        if choice == "one_hull":
-            options["decompose_object_error_threshold"] = np.inf
-        threshold = {"threshold": FINE} if choice == "fine" else {}
-        options["coacd_options"] = gs.options.CoacdOptions(seed=seed, **threshold)
-        morph = gs.morphs.MeshSet(files=files, pos=pos, fixed=fixed, **options)
-    made_of = gs.materials.Rigid(**{"rho": DENSITY} | material)
-    return scene.add_entity(morph, material=made_of, surface=surface)
+    of_bowl = {"profiles_m": bowl.profiles(), "sections": bowl.SECTIONS, "density": bowl.DENSITY}
+    return inputs(CASES) | json_value(of_bowl | {"x_m": ACROSS, "z_m": UP})
 
 
 def new_scene(gs: Any, case: BowlCase) -> Any:
@@ -256,7 +147,7 @@ def new_scene(gs: Any, case: BowlCase) -> Any:
 def run_case(gs: Any, case: BowlCase) -> tuple[BodyTrace, float, float]:
     """Let balls fall into a bowl; return trace, time of the build and median time of a step [s]."""
     begin, scene = time.perf_counter(), new_scene(gs, case)
-    add(gs, scene, case.choice, seed=case.seed)
+    bowl.add(gs, scene, case.choice, seed=case.seed)
     balls = [gs.morphs.Sphere(radius=case.radius, pos=tuple(start)) for start in case.starts]
     links = [scene.add_entity(ball).link_start for ball in balls]
     scene.build()
@@ -274,22 +165,20 @@ def run_case(gs: Any, case: BowlCase) -> tuple[BodyTrace, float, float]:
 
 def read_geometry(gs: Any) -> dict[str, dict[str, float]]:
     """Return `READINGS` without the times, from free bowls side by side."""
-    scene, bowls = new_scene(gs, BIG["in_default"]), {}
-    for place, of in enumerate(CHOICES):
-        bowls[of] = add(gs, scene, of, (0.0, 0.3 * place, 0.0), fixed=False)
-    shapes = {of: [geom.get_trimesh() for geom in bowl.geoms] for of, bowl in bowls.items()}
-    seen = {of: volume([geom.get_trimesh() for geom in bowls[of].vgeoms]) for of in CHOICES}
-    solid = {of: volume(meshes) for of, meshes in shapes.items()}
-    right = DENSITY * seen["default"] / solid["default"]
-    bowls["corrected"] = add(gs, scene, "default", (0.3, 0.0, 0.0), fixed=False, rho=right)
+    scene = new_scene(gs, BIG["in_default"])
+    bowls = {
+        of: bowl.add(gs, scene, of, (0.0, 0.3 * place, 0.0), fixed=False)
+        for place, of in enumerate(CHOICES)
+    }
+    shapes = {of: [geom.get_trimesh() for geom in one.geoms] for of, one in bowls.items()}
+    seen = {"visual": [geom.get_trimesh() for geom in bowls["default"].vgeoms]}
     scene.build()
-    points = np.vstack([[*one.vertices, one.vertices.mean(axis=0)] for one in pieces()])
+    points = np.vstack([[*one.vertices, one.vertices.mean(axis=0)] for one in bowl.pieces()])
     found = {
         "bowl_geoms": {of: float(len(meshes)) for of, meshes in shapes.items()},
-        "collision_volume": solid,
-        "visual_volume": seen,
-        "bowl_mass": {of: float(bowl.get_mass()) for of, bowl in bowls.items()},
-        "uncovered": {of: float(max(outside(shapes[of], points).max(), 0)) for of in DECOMPOSED},
+        "bowl_volume": {of: volume(meshes) for of, meshes in (shapes | seen).items()},
+        "bowl_mass": {of: float(one.get_mass()) for of, one in bowls.items()},
+        "uncovered": {"default": float(max(outside(shapes["default"], points).max(), 0))},
     }
     grid = np.stack(np.broadcast_arrays(ACROSS[:, None], 0.0, UP), axis=-1)
     for of in CUT:

@@ -8,13 +8,13 @@ import numpy as np
 from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import run as runs
 from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.lessons.l07.metrics import OBJECT
 from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
 from robo_genesis.sim.arm.laws import assigned_postures, commanded, driven_run, model_joints
+from robo_genesis.sim.bodies import table
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept, unit_quaternions
 
@@ -87,7 +87,7 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
         trace, robot = run.traces[name], robot_of(run.traces[name])
-        if not isinstance(case, runs.SceneCase):
+        if not isinstance(case, table.SceneCase):
             found = assigned_postures(robot, case.start, run.links[:OBJECT], run.traces.values())
             yield from kept(name, found)
             continue
@@ -98,11 +98,11 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
         yield from kept(f"{name}, bodies", bodies(trace, case))
 
 
-def bodies(trace: Trace, case: runs.SceneCase) -> Iterator[Finding]:
+def bodies(trace: Trace, case: table.SceneCase) -> Iterator[Finding]:
     """Yield a body that does not begin at its place, or has no orientation."""
     yield from unit_quaternions(trace.link_quat)
     start = trace.link_pos[0, OBJECT:]
-    expected = np.array([case.centre, (*case.bowl_at, runs.BALL_HEIGHT)])
+    expected = np.array([case.centre, (*case.bowl_at, table.BALL_HEIGHT)])
     yield from apart("start", "link_pos of the bodies [m]", start, expected, 1e-6)
 
 

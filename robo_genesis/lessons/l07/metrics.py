@@ -6,9 +6,10 @@ import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07.run import LiftCase, SceneCase
+from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm.kinematics import HAND
 from robo_genesis.sim.arm.lifting import ENDS
+from robo_genesis.sim.bodies.table import SceneCase
 
 OBJECT, BALL = 11, 12
 """Indices of both bodies among the links of the arrays, after those of the robot."""

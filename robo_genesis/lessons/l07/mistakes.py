@@ -14,6 +14,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l07 import run, spec
 from robo_genesis.lessons.l07.metrics import scene_metrics
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera.views import look, segment_number
 
 MEASURES = False
@@ -23,7 +24,7 @@ NEAR = (0.1001, 0.0999)  # Distances beyond a near limit and within it [m]
 SLIPPERY, HEAVY = 0.3, 1.08  # Friction coefficient; the cylinder of scene A in steel [kg]
 
 
-def near_limit(world: run.World, render: bool) -> Mistake:
+def near_limit(world: table.World, render: bool) -> Mistake:
     """Look down on the object of scene A from both distances."""
     if not render:
         return Mistake("near_limit", True, "SKIP: this run has no camera.")
@@ -60,7 +61,7 @@ def list_of_bools(scene: Any, ball: Any, torch: Any) -> Mistake:
     return Mistake("list_of_bools", found == [[0, 1], [2, 3]], text)
 
 
-def one_sided_friction(world: run.World, joints: JointMap) -> Mistake:
+def one_sided_friction(world: table.World, joints: JointMap) -> Mistake:
     """Lift a heavy object as it is, with less friction of its own, and with that of both.
 
     This changes the world.

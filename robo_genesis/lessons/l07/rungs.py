@@ -7,9 +7,10 @@ import numpy as np
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l07 import bowls, spec
+from robo_genesis.lessons.l07 import spec
 from robo_genesis.lessons.l07.metrics import BALL
-from robo_genesis.lessons.l07.run import TABLE, SceneCase
+from robo_genesis.sim.bodies import bowl
+from robo_genesis.sim.bodies.table import TABLE, SceneCase
 
 MEASURES = False
 
@@ -36,12 +37,12 @@ def neighbours(case: SceneCase) -> list[Footprint]:
     The outside of an edge is a rectangle of 10 m. A shelf has no edges here.
     """
     (length, width, _), (x, y) = TABLE
-    bowl = (*case.bowl_at, 2 * bowls.RIM, 2 * bowls.RIM)
+    round_bowl = (*case.bowl_at, 2 * bowl.RIM, 2 * bowl.RIM)
     if case.place[2]:
-        return [bowl]
+        return [round_bowl]
     along, across = 5 + length / 2, 5 + width / 2
     ends = [(x + side * along, y, 10.0, 10.0) for side in (-1, 1)]
-    return [bowl, *ends, *((x, y + side * across, 10.0, 10.0) for side in (-1, 1))]
+    return [round_bowl, *ends, *((x, y + side * across, 10.0, 10.0) for side in (-1, 1))]
 
 
 def margin(case: SceneCase) -> float:
@@ -91,7 +92,7 @@ def values(
         found: readings by group and name.
     """
     rest, lift = metrics
-    inside = np.hypot(*(ball[:2] - case.bowl_at)) + case.ball_radius < bowls.RIM
+    inside = np.hypot(*(ball[:2] - case.bowl_at)) + case.ball_radius < bowl.RIM
     shown = found.get("pixels", found["outline"])
     best = max(CAMERAS, key=lambda name: shown[name])
     contacts, mass = found["contacts"], case.density * case.volume

@@ -13,9 +13,11 @@ import numpy as np
 from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs, json_value
 from robo_genesis.core.scene import CAMERA
-from robo_genesis.lessons.l07 import bowls, rest, run
-from robo_genesis.lessons.l07.run import LiftCase, SceneCase
+from robo_genesis.lessons.l07 import bowls, rest
+from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm import franka, lifting, reaching
+from robo_genesis.sim.bodies import table
+from robo_genesis.sim.bodies.table import SceneCase
 
 MEASURES = False
 
@@ -130,8 +132,8 @@ def parameters() -> dict[str, Any]:
 
 def parameters_of(cases: dict[str, Any]) -> dict[str, Any]:
     """Return the inputs of a page with these runs."""
-    table = {name: getattr(run, name) for name in ("TABLE", "FLOOR", "ON_HAND", "BALL_HEIGHT")}
-    names = ("PHASES", "PAD", "HAND_TO_PAD", "ABOVE", "RISE")
-    table |= {name: getattr(lifting, name) for name in names}
+    of_scene = ("TABLE", "FLOOR", "ON_HAND", "BALL_HEIGHT")
+    of_lift = ("PHASES", "PAD", "HAND_TO_PAD", "ABOVE", "RISE")
+    further = {n: getattr(of, n) for of, ns in ((table, of_scene), (lifting, of_lift)) for n in ns}
     wrist = {name: value for name, value in WRIST.items() if name != "GUI"}
-    return inputs(cases, VIEW, table=json_value(table), wrist=wrist, counted=list(EXPECTED_MODEL))
+    return inputs(cases, VIEW, table=json_value(further), wrist=wrist, counted=list(EXPECTED_MODEL))

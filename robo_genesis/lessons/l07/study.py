@@ -14,6 +14,7 @@ from robo_genesis.sim.arm import kinematics, lifting, reaching
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import MODEL_COUNTS
 from robo_genesis.sim.arm.joints import describe
+from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera import record
 from robo_genesis.sim.camera.geometry import outline_area, project
 from robo_genesis.sim.camera.views import View, look, segment_number
@@ -75,8 +76,8 @@ class Facts:
     | `contacts` | counts of the lift |
     """
 
-    case: run.SceneCase
-    world: run.World
+    case: table.SceneCase
+    world: table.World
     rest: Trace
     lift: Trace
     depth: float
@@ -133,9 +134,9 @@ class Facts:
         return rungs.values(self.case, metrics, self.rest.link_pos[-1, BALL], self.readings)
 
 
-def facts(page: Any, gs: Any, case: run.SceneCase) -> Facts:
+def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     """Build a scene, give a page its robot, and return what the scene shows."""
-    world = run.build(gs, case, spec.VIEW, spec.WRIST)
+    world = table.build(gs, case, spec.VIEW, spec.WRIST)
     joints = describe(page, world.robot)
     page.links = [*page.links, "object", "ball"]
     rest, depth = run.rest(world, joints, case)
@@ -154,7 +155,7 @@ def facts(page: Any, gs: Any, case: run.SceneCase) -> Facts:
                  contacts=contacts)  # fmt: skip
 
 
-def see(world: run.World, pictures: bool) -> dict[str, View]:
+def see(world: table.World, pictures: bool) -> dict[str, View]:
     """Return the view of each camera."""
     world.cameras["wrist"].move_to_attach()
     return {name: look(camera, pictures) for name, camera in world.cameras.items()}
@@ -177,7 +178,7 @@ def keep(page: Any, scene: str, found: Facts) -> None:
             page.frames |= record.frames(name, view)
 
 
-def examine(page: Any, gs: Any, scene: str) -> run.World:
+def examine(page: Any, gs: Any, scene: str) -> table.World:
     """Build a scene and give a page everything that its rungs measure; return the scene."""
     found = facts(page, gs, spec.SCENES[scene])
     keep(page, scene, found)
@@ -188,7 +189,7 @@ def record_forced(page: Any, gs: Any) -> None:
     """Give a page the lifts of the wide box with little friction, at two solver steps."""
     found: dict[str, float] = {}
     for name, case in spec.FURTHER.items():
-        world = run.build(gs, case, spec.VIEW, spec.WRIST)
+        world = table.build(gs, case, spec.VIEW, spec.WRIST)
         page.traces[name], contacts = run.lift(world, page.joints, case)
         found |= {f"{name}_{what}": count for what, count in contacts.items()}
     page.readings["forced_lifts"] = found

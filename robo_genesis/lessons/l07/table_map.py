@@ -14,11 +14,12 @@ from robo_genesis.core.checks import Finding, at_most, equal
 from robo_genesis.core.experiment import Experiment, Run, case_inputs, counts
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import run, rungs, spec
+from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.sim.arm import kinematics, lifting, reaching
 from robo_genesis.sim.arm.engine_kinematics import IkSettings
 from robo_genesis.sim.arm.joint_control import ControlCase, assign_postures
 from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera.geometry import outline_area, project
 from robo_genesis.sim.camera.record import view_of
 
@@ -71,18 +72,18 @@ def parameters() -> dict[str, Any]:
     return {"table_map": case_inputs({"table": CASE})}
 
 
-def record(page: Any, world: run.World, joints: JointMap) -> None:
+def record(page: Any, world: table.World, joints: JointMap) -> None:
     """Give a page the answers for all cells and their counts, in the world of scene A."""
     page.readings |= {f"table_{name}": {} for name in COUNTED}
     postures: list[FloatArray] = []
-    *table, _ = world.fixed
+    *others, _ = world.fixed
     for cell in CELLS:
         points = CASE.targets[2 * cell : 2 * cell + 2]
         answers = lifting.ask(world.robot, joints, spec.GOOD.q_start, CASE.settings, points)
         postures += [answer.q for answer in answers]
         within = CASE.settings.tolerances
         left = [a.q for a in answers if kinematics.accepted(a.q, a.error, *within)]
-        for name, fixed in zip(COUNTED, (table, world.fixed), strict=True):
+        for name, fixed in zip(COUNTED, (others, world.fixed), strict=True):
             left = [q for q in left if not lifting.touches(world.robot, joints, fixed, q)]
             page.readings[f"table_{name}"][str(cell)] = len(left)
     trace = assign_postures(world.scene, world.robot, joints, CASE.start, np.stack(postures))
@@ -92,7 +93,7 @@ def record(page: Any, world: run.World, joints: JointMap) -> None:
 def with_bodies(trace: Trace) -> Trace:
     """Return a run with the object in each answer's cell, and the ball at its start."""
     states = trace.steps + 1
-    bodies = np.tile([spec.GOOD.centre, (*spec.GOOD.bowl_at, run.BALL_HEIGHT)], (states, 1, 1))
+    bodies = np.tile([spec.GOOD.centre, (*spec.GOOD.bowl_at, table.BALL_HEIGHT)], (states, 1, 1))
     bodies[1:, 0, :2] = np.repeat(CASE.places, 2, axis=0)
     quat = np.tile(np.array([1, 0, 0, 0], np.float32), (states, 2, 1))
     pos = np.concatenate([trace.link_pos, bodies.astype(np.float32)], axis=1)

@@ -12,13 +12,14 @@ from robo_genesis.lessons.l07 import run, spec, study, table_map
 from robo_genesis.lessons.l07.pages import LECTURE
 from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.kinematics import HAND
+from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera import geometry, record
 from robo_genesis.sim.camera.views import View
 
 UNTURNED = np.float32([1, 0, 0, 0])
 
 
-def trace_of(name: str, case: run.SceneCase) -> Trace:
+def trace_of(name: str, case: table.SceneCase) -> Trace:
     """Return a run whose object keeps its place, sinks in a little, or follows the closed hand."""
     if isinstance(case, table_map.MapCase):
         answers = [answer(target, spec.GOOD.q_start, 60).q for target in case.targets]
@@ -38,7 +39,7 @@ def trace_of(name: str, case: run.SceneCase) -> Trace:
         body[held, 2] += arm.link_pos[held, HAND, 2] - arm.link_pos[held, HAND, 2][0]
     if not lifts and not case.weightless:
         body[1:, 2] -= 14e-6
-    ball = np.tile([*case.bowl_at, run.BALL_HEIGHT], (case.steps + 1, 1))
+    ball = np.tile([*case.bowl_at, table.BALL_HEIGHT], (case.steps + 1, 1))
     ball[1:, 2] = 0.06 if case.bowl == "one_hull" else 0.013
     bodies = np.stack([body, ball], axis=1)
     quat = np.tile(UNTURNED, (case.steps + 1, 2, 1))
@@ -54,7 +55,7 @@ def wrist_pose() -> np.ndarray:
     hand, pose = kinematics.hand_pose(spec.GOOD.q_start), np.eye(4)
     pose[:3, :3] = np.stack([kinematics.rotate(hand.quat, axis) for axis in np.eye(3)], axis=1)
     pose[:3, 3] = hand.position
-    return pose @ np.array(run.ON_HAND)
+    return pose @ np.array(table.ON_HAND)
 
 
 def readings() -> dict[str, dict[str, float]]:

@@ -10,7 +10,8 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l07 import bowl_text, bowls
 from robo_genesis.lessons.l07.bowl_checks import MESHES, falling_balls
-from robo_genesis.lessons.l07.bowls import BALLS, DENSITY
+from robo_genesis.lessons.l07.bowls import BALLS
+from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.free_fall import GRAVITY, summed_drop
 from robo_genesis.sim.bodies.rigid_bodies import times
 
@@ -34,17 +35,15 @@ def fallen(case, end):
 def end_of(name, case):
     """Return the distance from the axis and the height at which the balls of a run end [m]."""
     beside, sunk = name == "in_one_hull", name in SUNK
-    return 0.3 * beside, case.radius + case.floor * (not beside) - 0.003 * sunk
+    return 0.3 * beside, case.radius + bowl.WALL * (not beside) - 0.003 * sunk
 
 
 @pytest.fixture(scope="module")
 def run():
-    volume = {"one_hull": 590.0, "default": 190.0, "fine": 150.0, "pieces": 114.0, "boxes": 264.0}
-    seen = dict.fromkeys(volume, 114.0) | {"boxes": 264.0}
-    mass = {of: 1e-6 * DENSITY * v for of, v in (volume | {"corrected": 114.0}).items()}
-    known = {"collision_volume": volume, "visual_volume": seen, "bowl_mass": mass}
-    flat = {of: dict.fromkeys(MESHES.readings[of].units, bowls.HEIGHT) for of in MESHES.readings}
-    known = flat | known | {"uncovered": dict.fromkeys(bowls.DECOMPOSED, 0.0)}
+    volume = {"one_hull": 590.0, "default": 190.0, "pieces": 114.0, "visual": 114.0}
+    mass = {of: 1e-6 * bowl.DENSITY * volume[of] for of in bowl.CHOICES}
+    flat = {of: dict.fromkeys(MESHES.readings[of].units, bowl.HEIGHT) for of in MESHES.readings}
+    known = flat | {"bowl_volume": volume, "bowl_mass": mass, "uncovered": {"default": 0.0}}
     traces = {name: fallen(case, end_of(name, case)) for name, case in bowls.CASES.items()}
     return Experiment(MESHES, traces, BALLS, known, {}, False)
 
@@ -53,33 +52,33 @@ def test_volume_of_the_mesh_is_that_of_its_facets_and_of_the_pieces():
     def solid(profile):
         (r, z) = profile.T
         cones = np.diff(z) * (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2) / 3
-        return bowls.SECTIONS / 2 * np.sin(2 * np.pi / bowls.SECTIONS) * cones.sum()
+        return bowl.SECTIONS / 2 * np.sin(2 * np.pi / bowl.SECTIONS) * cones.sum()
 
-    outer, inner = map(solid, bowls.profiles())
-    mesh, pieces = bowls.mesh(), bowls.pieces()
+    outer, inner = map(solid, bowl.profiles())
+    mesh, pieces = bowl.mesh(), bowl.pieces()
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx(outer - inner, rel=1e-9)
     assert sum(piece.volume for piece in pieces) == pytest.approx(mesh.volume, rel=1e-6)
-    assert mesh.bounds[:, 2].tolist() == [0, bowls.HEIGHT]
+    assert mesh.bounds[:, 2].tolist() == [0, bowl.HEIGHT]
     assert bowls.outside(pieces, mesh.triangles_center).max() < 1e-9
     assert bowls.outside([mesh.convex_hull], np.array([[0, 0, 0.06]]))[0] == pytest.approx(0.01)
 
 
 def test_balls_inside_are_counted_and_the_lowest_is_found(run):
     inside = run.metrics["in_default"]
-    assert (inside.inside, inside.lowest) == (100, pytest.approx(bowls.WALL))
+    assert (inside.inside, inside.lowest) == (100, pytest.approx(bowl.WALL))
     assert (run.metrics["in_one_hull"].inside, run.metrics["in_one_hull"].lowest) == (0, None)
 
 
 SPOILED = {
     "one_hull_holds_none": reading("top_one_hull", "x_+0mm", 0.049),
-    "others_hold_all": trace("in_boxes", link_pos=shift((..., 0), 0.2)),
-    "hulls_cover": reading("uncovered", "fine", 1e-3),
-    "finer_is_closer": reading("collision_volume", "one_hull", 300.0),
-    "mass_is_of_collision": reading("bowl_mass", "corrected", 0.076),
+    "others_hold_all": trace("in_pieces", link_pos=shift((..., 0), 0.2)),
+    "hulls_cover": reading("uncovered", "default", 1e-3),
+    "default_is_closer": reading("bowl_volume", "one_hull", 300.0),
+    "mass_is_of_collision": reading("bowl_mass", "default", 0.046),
     "small_balls_count_as_inside": trace("small_in_pieces", link_pos=shift((..., 0), 0.2)),
     "fast_small_balls_sink": trace("small_from_inside_h1000us", link_pos=lambda p: p - 0.003),
-    "stamps": trace("in_fine", t=lambda t: 2 * t),
+    "stamps": trace("in_pieces", t=lambda t: 2 * t),
 }
 
 
