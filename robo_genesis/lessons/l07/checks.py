@@ -69,7 +69,7 @@ def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
     yield above("forced.rise_m", coarse.rise, 0.04)
     yield below("forced_fine.rise_m", fine.rise, 5e-3)
     for name in spec.FURTHER:
-        yield above(f"{name}.descending", run.readings["forced_lifts"][f"{name}_descending"], 0)
+        yield above(f"{name}.descending", run.readings["contacts"][f"{name}_descending"], 0)
 
 
 def robot_of(trace: Trace) -> Trace:

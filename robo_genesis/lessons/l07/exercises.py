@@ -8,12 +8,12 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, equal, within
 from robo_genesis.core.exercises import as_test, compared
-from robo_genesis.lessons.l07 import rungs
 from robo_genesis.sim.arm.reaching import ANSWERS, ONE_START
+from robo_genesis.sim.bodies.table import Footprint, gap
 
 MEASURES = False
 
-PAIRS: dict[str, tuple[rungs.Footprint, rungs.Footprint]] = {
+PAIRS: dict[str, tuple[Footprint, Footprint]] = {
     "apart_along_x": ((0.0, 0.0, 0.2, 0.4), (0.5, 0.1, 0.1, 0.3)),
     "only_corners_near": ((0.1, 0.1, 0.1, 0.1), (0.21, 0.24, 0.1, 0.1)),
     "overlap_of_corners": ((0.0, 0.0, 0.2, 0.4), (0.18, -0.15, 0.2, 0.4)),
@@ -26,7 +26,7 @@ def footprints(margin: Callable[..., Any]) -> Iterator[Finding]:
     """Check `margin(one, other)`: the distance of two upright rectangles [m]."""
     for name, pair in PAIRS.items():
         for label, given in (("margin_m", pair), ("swapped_m", pair[::-1])):
-            yield within(f"{name}.{label}", float(margin(*given)), rungs.gap(*given), 1e-9)
+            yield within(f"{name}.{label}", float(margin(*given)), gap(*given), 1e-9)
 
 
 # Positions of one coordinate [m], window, bound [m], and whether the object is at rest

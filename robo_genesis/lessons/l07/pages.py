@@ -34,7 +34,7 @@ def of_scenes(*scenes: str) -> MeasuringPage:
         kind=Trace,
         joints=JOINT_NAMES,
         readings=study.readings(*scenes) | views,
-        with_camera=study.pixels(*scenes),
+        with_camera={"pixels": study.group("outline", *scenes)},
         measure=scene_metrics,
         checks=checks.CHECKS,
         parameters=lambda: spec.parameters_of(runs),
@@ -47,7 +47,7 @@ LECTURE = (
     .with_more(
         lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
         runs_of(spec.FURTHER),
-        study.forced_readings(),
+        {"contacts": study.group("contacts", *spec.SCENES_OF_LECTURE, *spec.FURTHER)},
         checks.LECTURE,
     )
     .with_more(table_map.parameters, table_map.RUNS, table_map.READINGS, (table_map.map_follows,))

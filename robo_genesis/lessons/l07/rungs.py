@@ -10,55 +10,14 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l07 import spec
 from robo_genesis.lessons.l07.metrics import BALL
 from robo_genesis.sim.bodies import bowl
-from robo_genesis.sim.bodies.table import TABLE, SceneCase
+from robo_genesis.sim.bodies.table import SceneCase
 
 MEASURES = False
 
 CAMERAS = ("world", "wrist")
 
-Footprint = tuple[float, float, float, float]
-"""Centre x and y, length and width of an upright rectangle [m]."""
-
-
-def gap(one: Footprint, other: Footprint) -> float:
-    """Return the distance of two footprints [m], negative where they overlap."""
-    apart = np.abs(np.subtract(one[:2], other[:2])) - np.add(one[2:], other[2:]) / 2
-    return float(np.hypot(*apart) if (apart > 0).all() else apart.max())
-
-
-def footprint(case: SceneCase) -> Footprint:
-    """Return the footprint of the object."""
-    return (*case.place[:2], *case.size[:2])
-
-
-def neighbours(case: SceneCase) -> list[Footprint]:
-    """Return what the object must not overlap: the bowl, and the outside of the table's edges.
-
-    The outside of an edge is a rectangle of 10 m. A shelf has no edges here.
-    """
-    (length, width, _), (x, y) = TABLE
-    round_bowl = (*case.bowl_at, 2 * bowl.RIM, 2 * bowl.RIM)
-    if case.place[2]:
-        return [round_bowl]
-    along, across = 5 + length / 2, 5 + width / 2
-    ends = [(x + side * along, y, 10.0, 10.0) for side in (-1, 1)]
-    return [round_bowl, *ends, *((x, y + side * across, 10.0, 10.0) for side in (-1, 1))]
-
-
-def margin(case: SceneCase) -> float:
-    """Return the distance of the object from the bowl, or from an edge of its support [m]."""
-    return min(gap(footprint(case), other) for other in neighbours(case))
-
-
-def corners(case: SceneCase, centre: FloatArray) -> FloatArray:
-    """Return the corners (n, 3) of an upright object, those of a cylinder as 64 in each circle."""
-    around = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-    square = [(-1, -1), (-1, 1), (1, -1), (1, 1)]
-    plan = np.array(
-        square if case.shape == "box" else np.column_stack([np.cos(around), np.sin(around)])
-    )
-    levels = [np.column_stack([plan, np.full(len(plan), side)]) for side in (-1.0, 1.0)]
-    return np.asarray(centre) + np.vstack(levels) * np.array(case.size) / 2
+FINGERS = ("closed_left", "closed_right", "held_left", "held_right")
+"""Names of the contact points of each finger in the counts of a lift."""
 
 
 def measured(run: Experiment, scene: str) -> dict[str, dict[str, float]]:
@@ -93,14 +52,13 @@ def values(
     """
     rest, lift = metrics
     inside = np.hypot(*(ball[:2] - case.bowl_at)) + case.ball_radius < bowl.RIM
-    shown = found.get("pixels", found["outline"])
+    shown, contacts = found.get("pixels", found["outline"]), found["contacts"]
     best = max(CAMERAS, key=lambda name: shown[name])
-    contacts, mass = found["contacts"], case.density * case.volume
     return {
         "built": {
-            "margin": margin(case),
+            "margin": case.margin,
             "depth": found["object"]["depth"],
-            "mass": abs(found["object"]["mass"] / mass - 1),
+            "mass": abs(found["object"]["mass"] / (case.density * case.volume) - 1),
             "ball": rest.ball if inside else np.inf,
         },
         "stable": {"support": abs(rest.support), "drift": rest.drift, "moved": rest.moved},
@@ -108,20 +66,11 @@ def values(
             "pixels": shown[best],
             "share": shown[best] / max(found["outline"][best], 1.0),
         },
-        "reachable": {
-            "accepted": found["reach"]["accepted"],
-            "pregrasp": found["reach"]["pregrasp"],
-            "grasp": found["reach"]["grasp"],
-            "touches": found["reach"]["touches"],
-        },
+        "reachable": dict(found["reach"]),
         "graspable": {
             "width": case.size[1],
             "descending": contacts["descending"],
-            "fingers": min(
-                contacts[f"{when}_{side}"]
-                for when in ("closed", "held")
-                for side in ("left", "right")
-            ),
+            "fingers": min(contacts[name] for name in FINGERS),
             "rise": lift.rise / lift.hand_rise,
         },
     }

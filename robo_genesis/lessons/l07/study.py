@@ -19,39 +19,26 @@ from robo_genesis.sim.camera import record
 from robo_genesis.sim.camera.geometry import outline_area, project
 from robo_genesis.sim.camera.views import View, look, segment_number
 
-COUNTED = ("descending", "closed_left", "closed_right", "held_left", "held_right")
+GROUPS = {
+    "object": {"mass": "kg", "depth": "m"},
+    "outline": dict.fromkeys(rungs.CAMERAS, "pixel"),
+    "reach": {"accepted": "poses", "pregrasp": "m", "grasp": "m", "touches": "postures"},
+    "contacts": {"descending": "steps"} | dict.fromkeys(rungs.FINGERS, "points"),
+}
+"""Units of the readings of a scene, by group and name."""
+
+
+def group(name: str, *scenes: str) -> Readings:
+    """Return a group of readings of scenes, named by scene and reading."""
+    units = GROUPS[name].items()
+    return Readings({f"{scene}_{what}": unit for scene in scenes for what, unit in units})
 
 
 def readings(*scenes: str) -> dict[str, Readings]:
-    """Return the groups of readings of a page with these scenes; `pixels` needs a camera."""
-
-    def group(units: dict[str, str]) -> Readings:
-        return Readings(
-            {f"{scene}_{name}": unit for scene in scenes for name, unit in units.items()}
-        )
-
+    """Return the groups of readings of a page with these scenes."""
+    found = {name: group(name, *scenes) for name in GROUPS}
     others = [scene for scene in scenes if scene != "baseline"]
-    return {
-        "model": counts(MODEL_COUNTS),
-        "object": group({"mass": "kg", "depth": "m"}),
-        "outline": group(dict.fromkeys(rungs.CAMERAS, "pixel")),
-        "reach": group({"accepted": "poses", "pregrasp": "m", "grasp": "m", "touches": "postures"}),
-        "contacts": group(
-            {name: "steps" if name == "descending" else "points" for name in COUNTED}
-        ),
-    } | ({"fails": counts(others)} if others else {})
-
-
-def forced_readings() -> dict[str, Readings]:
-    """Return the group of readings of the lifts of the wide box with little friction."""
-    units = {f"{name}_{what}": "points" for name in spec.FURTHER for what in COUNTED}
-    return {"forced_lifts": Readings(units)}
-
-
-def pixels(*scenes: str) -> dict[str, Readings]:
-    """Return the group of readings that needs a camera."""
-    units = {f"{scene}_{camera}": "pixel" for scene in scenes for camera in rungs.CAMERAS}
-    return {"pixels": Readings(units)}
+    return found | {"model": counts(MODEL_COUNTS)} | ({"fails": counts(others)} if others else {})
 
 
 def note(page: Any, group: str, scene: str, **values: float) -> None:
@@ -142,7 +129,7 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     rest, depth = run.rest(world, joints, case)
     mass = float(world.body.get_mass())
     views = see(world, page.render)
-    corners = rungs.corners(case, rest.link_pos[-1, OBJECT])
+    corners = case.corners(rest.link_pos[-1, OBJECT])
     outlines = {name: outline(corners, view) for name, view in views.items()}
     points = lifting.waypoints(case.place, case.size[2])[:2]
     answers = lifting.ask(world.robot, joints, case.q_start, reaching.ONE_START, points)
@@ -187,12 +174,10 @@ def examine(page: Any, gs: Any, scene: str) -> table.World:
 
 def record_forced(page: Any, gs: Any) -> None:
     """Give a page the lifts of the wide box with little friction, at two solver steps."""
-    found: dict[str, float] = {}
     for name, case in spec.FURTHER.items():
         world = table.build(gs, case, spec.VIEW, spec.WRIST)
         page.traces[name], contacts = run.lift(world, page.joints, case)
-        found |= {f"{name}_{what}": count for what, count in contacts.items()}
-    page.readings["forced_lifts"] = found
+        note(page, "contacts", name, **contacts)
 
 
 def conclude(page: Any) -> None:

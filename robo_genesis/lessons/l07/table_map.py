@@ -111,7 +111,7 @@ def outline(found: Experiment, camera: str, cell: int) -> float:
     """Return the area of the object's outline in a view at home [pixel], 0 if not all is inside."""
     view = view_of(replace(found, rendered=False), camera)  # without its pictures
     pose = view.intrinsics, view.transform
-    points = rungs.corners(spec.GOOD, np.array([*CASE.places[cell], spec.GOOD.centre[2]]))
+    points = spec.GOOD.corners(np.array([*CASE.places[cell], spec.GOOD.centre[2]]))
     pixels = project(points, *pose)
     inside = ((pixels > 0) & (pixels < view.size)).all()  # not where a point has no pixel
     return outline_area(points, *pose) if inside else 0.0
@@ -131,7 +131,7 @@ def verdicts(found: Experiment, cell: int) -> dict[str, bool]:
     reached, free = (found.readings[f"table_{name}"][str(cell)] == 2 for name in COUNTED)
     tips = residuals(found.traces["table"])[2][2 * cell : 2 * cell + 2]
     reached &= bool((tips >= [spec.LIMITS[name][0] for name in ("pregrasp", "grasp")]).all())
-    margin = rungs.margin(replace(spec.GOOD, place=(*CASE.places[cell], 0.0)))
+    margin = replace(spec.GOOD, place=(*CASE.places[cell], 0.0)).margin
     seen = {name: outline(found, name, cell) >= spec.LIMITS["pixels"][0] for name in rungs.CAMERAS}
     free &= reached and margin >= spec.LIMITS["margin"][0]
     return {"reachable": reached, **seen, "graspable": free}

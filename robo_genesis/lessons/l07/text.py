@@ -45,10 +45,9 @@ def value_table(run: Experiment) -> Iterator[dict[str, str]]:
 @tables.as_table
 def grip_table(run: Experiment) -> Iterator[dict[str, str]]:
     """Return what the lifts of the page's objects measured."""
-    groups = {"forced": "forced_lifts", "forced_fine": "forced_lifts"}
     for name in (*rungs.scenes(run), *spec.FURTHER):
         if name in spec.SHOWN_LIFTS:
-            m, contacts = run.metrics[name], run.readings[groups.get(name, "contacts")]
+            m, contacts = run.metrics[name], run.readings["contacts"]
             yield {
                 "object": spec.SHOWN_LIFTS[name],
                 "steps in contact before closing": f"{contacts[f'{name}_descending']:g}",

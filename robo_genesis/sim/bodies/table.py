@@ -24,6 +24,15 @@ ON_HAND = ((0.0, -1, 0, 0.05), (-1, 0, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
 
 BALL_HEIGHT = 0.07  # Centre of the ball at its start [m]
 
+Footprint = tuple[float, float, float, float]
+"""Centre x and y, length and width of an upright rectangle [m]."""
+
+
+def gap(one: Footprint, other: Footprint) -> float:
+    """Return the distance of two footprints [m], negative where they overlap."""
+    apart = np.abs(np.subtract(one[:2], other[:2])) - np.add(one[2:], other[2:]) / 2
+    return float(np.hypot(*apart) if (apart > 0).all() else apart.max())
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneCase(Controlled):
@@ -60,6 +69,38 @@ class SceneCase(Controlled):
         """Centre (3,) of the object at its start [m]."""
         x, y, z = self.place
         return np.array([x, y, z + self.gap + self.size[2] / 2])
+
+    @property
+    def footprint(self) -> Footprint:
+        """Footprint of the object."""
+        return (*self.place[:2], *self.size[:2])
+
+    @property
+    def neighbours(self) -> list[Footprint]:
+        """What the object must not overlap: the bowl, and the outside of the table's edges.
+
+        The outside of an edge is a rectangle of 10 m. A shelf has no edges here.
+        """
+        (length, width, _), (x, y) = TABLE
+        near = (*self.bowl_at, 2 * bowl.RIM, 2 * bowl.RIM)
+        if self.place[2]:
+            return [near]
+        along, across = 5 + length / 2, 5 + width / 2
+        ends = [(x + side * along, y, 10.0, 10.0) for side in (-1, 1)]
+        return [near, *ends, *((x, y + side * across, 10.0, 10.0) for side in (-1, 1))]
+
+    @property
+    def margin(self) -> float:
+        """Distance of the object from the bowl, or from an edge of its support [m]."""
+        return min(gap(self.footprint, other) for other in self.neighbours)
+
+    def corners(self, centre: FloatArray) -> FloatArray:
+        """Return corners (n, 3) of the upright object, 64 for each circle of a cylinder [m]."""
+        around = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+        square, circle = [(-1, -1), (-1, 1), (1, -1), (1, 1)], [np.cos(around), np.sin(around)]
+        plan = np.array(square) if self.shape == "box" else np.stack(circle, axis=1)
+        levels = [np.column_stack([plan, np.full(len(plan), side)]) for side in (-1.0, 1.0)]
+        return np.asarray(centre) + np.vstack(levels) * np.array(self.size) / 2
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from robot_runs import LINKS, answer, assigned, driven
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import run, spec, study, table_map
+from robo_genesis.lessons.l07 import run, rungs, spec, table_map
 from robo_genesis.lessons.l07.pages import LECTURE
 from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.kinematics import HAND
@@ -62,7 +62,7 @@ def readings() -> dict[str, dict[str, float]]:
     """Return what the engine would report of the lecture's scenes."""
     scenes = [spec.SCENES[name] for name in spec.SCENES_OF_LECTURE]
     usual = {"depth": 2e-4, "accepted": 2, "pregrasp": 0.136, "grasp": 0.036, "touches": 0}
-    usual |= dict.fromkeys(study.COUNTED, 2) | {"descending": 0, "world": 1300.0, "wrist": 1700.0}
+    usual |= dict.fromkeys(rungs.FINGERS, 2) | {"descending": 0, "world": 1300.0, "wrist": 1700.0}
     found = {
         group: {name: usual.get(name.split("_", 1)[-1], 0) for name in of.units}
         for group, of in LECTURE.groups(rendered=True).items()
@@ -70,7 +70,7 @@ def readings() -> dict[str, dict[str, float]]:
     for name, case in zip(spec.SCENES_OF_LECTURE, scenes, strict=True):
         found["object"][f"{name}_mass"] = case.density * case.volume
     found["contacts"]["wide_descending"] = 50
-    found["forced_lifts"] = dict.fromkeys(found["forced_lifts"], 3)
+    found["contacts"] |= dict.fromkeys(("forced_descending", "forced_fine_descending"), 3)
     for name, field, pose in (
         ("world", 42.0, geometry.looking(spec.VIEW["pos"], spec.VIEW["lookat"])),
         ("wrist", 60.0, wrist_pose()),

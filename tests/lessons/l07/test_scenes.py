@@ -6,6 +6,7 @@ from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l07 import plots, rungs, spec, text
 from robo_genesis.lessons.l07.metrics import BALL, OBJECT
+from robo_genesis.sim.bodies import table
 
 
 @pytest.mark.parametrize(
@@ -20,8 +21,8 @@ from robo_genesis.lessons.l07.metrics import BALL, OBJECT
 )
 def test_the_gap_of_two_footprints(other, gap):
     one = (0.0, 0.0, 0.1, 0.1)
-    assert rungs.gap(one, other) == pytest.approx(gap)
-    assert rungs.gap(one, other) == rungs.gap(other, one)
+    assert table.gap(one, other) == pytest.approx(gap)
+    assert table.gap(one, other) == table.gap(other, one)
 
 
 def test_an_object_that_both_cameras_lose_is_not_seen(scenes):
@@ -31,16 +32,16 @@ def test_an_object_that_both_cameras_lose_is_not_seen(scenes):
 
 
 def test_margins_of_the_scenes():
-    assert rungs.margin(spec.SCENES["baseline"]) == pytest.approx(0.17)
-    assert rungs.margin(spec.SCENES["outside"]) == pytest.approx(0.045)  # to the table's edge
+    assert spec.SCENES["baseline"].margin == pytest.approx(0.17)
+    assert spec.SCENES["outside"].margin == pytest.approx(0.045)  # to the table's edge
 
 
 def test_the_corners_of_both_shapes():
     box, cylinder = (spec.SCENES[name] for name in ("wide", "baseline"))
     at = np.array([0.1, 0.2, 0.3])
-    assert np.ptp(rungs.corners(box, at), axis=0) == pytest.approx(box.size)
-    assert np.ptp(rungs.corners(cylinder, at), axis=0) == pytest.approx(cylinder.size)
-    assert rungs.corners(box, at).mean(axis=0) == pytest.approx(at)
+    assert np.ptp(box.corners(at), axis=0) == pytest.approx(box.size)
+    assert np.ptp(cylinder.corners(at), axis=0) == pytest.approx(cylinder.size)
+    assert box.corners(at).mean(axis=0) == pytest.approx(at)
 
 
 def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
