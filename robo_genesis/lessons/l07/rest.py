@@ -53,11 +53,12 @@ PYRAMIDS = rows(
     T_5ms=(10, {"time_constant": 0.005}), T_20ms=(10, {"time_constant": 0.02}),
 ) | rows(STEEP, tilt_15=(15, {}), tilt_20=(20, {}))  # fmt: skip
 ROUND = {"cone": "elliptic", "impratio": 100.0, "settle": 0.3}  # the engine's impratio for it
+LEVEL = rows(elliptic_0=(0, ROUND))
 ELLIPTIC = rows(elliptic_10=(10, ROUND)) | rows(STEEP, elliptic_20=(20, ROUND))
-IMPRATIO = rows(
-    elliptic_alone=(10, ROUND | {"impratio": 1.0}), impratio_100=(10, {"impratio": 100.0}),
-    elliptic_0=(0, ROUND),
-)  # fmt: skip
+PARTS = {
+    "elliptic_alone": (10, ROUND | {"impratio": 1.0}),
+    "impratio_100": (10, {"impratio": 100.0}),
+}
 NOSLIP = rows(FRICTIONS, **{f"noslip_{tilt}": (tilt, {"noslip": 5}) for tilt in (5, 15, 20)})
 SLIDING = {
     f"mujoco_{name}": replace(BOX, tilt=np.radians(tilt), duration=0.3, yaw=yaw)
@@ -68,7 +69,7 @@ SLIDING = {
 """In MuJoCo alone: versions of Genesis differ in the contact points of a sliding box."""
 COMPARED = PYRAMIDS | ELLIPTIC | NOSLIP  # Some of their boxes run in MuJoCo as well
 ALONE = {"alone": {"alone_box": replace(BOX, tilt=np.radians(10))}, "fall": {"fall_box": FALLING}}
-SCENES = ALONE | COMPARED | IMPRATIO
+SCENES = ALONE | COMPARED | LEVEL | rows(**PARTS)
 """The runs in Genesis, by scene."""
 
 CASES = {name: case for scene in SCENES.values() for name, case in scene.items()}
@@ -137,12 +138,6 @@ def moved(trace: ContactTrace) -> np.ndarray:
     return np.asarray(np.linalg.norm(later - place[:-n], axis=2).max(axis=0))
 
 
-def fastest_corner(trace: ContactTrace, case: ContactCase) -> np.ndarray:
-    """Return |v| + |ω| r, the largest speed that a corner can have, (n+1,) [m/s]."""
-    v, w = (np.linalg.norm(a[:, 0], axis=1) for a in (trace.link_vel, trace.link_ang))
-    return np.asarray(v + w * case.size * np.sqrt(3) / 2)
-
-
 @dataclass(frozen=True, slots=True)
 class RestMetrics(CaseMetrics):
     """How a box rests on the table."""
@@ -159,7 +154,9 @@ class RestMetrics(CaseMetrics):
 def rest_metrics(trace: ContactTrace, case: ContactCase) -> RestMetrics:
     """Measure one run."""
     n, place = round(WINDOW / case.dt), trace.link_pos[:, 0].astype(np.float64)
-    speeds, path = fastest_corner(trace, case), np.linalg.norm((place[-1] - place[-1 - n])[:2])
+    path = np.linalg.norm((place[-1] - place[-1 - n])[:2])
+    v, w = (np.linalg.norm(of[:, 0], axis=1) for of in (trace.link_vel, trace.link_ang))
+    speeds = v + w * case.size * np.sqrt(3) / 2  # the largest that a corner can have
     slow, fast = np.flatnonzero(speeds[1:] < SLOW) + 1, np.flatnonzero(speeds >= SLOW)
     return RestMetrics(
         float(path) / WINDOW, case.rest_height - float(place[-1, 2]), float(moved(trace)[-1]),

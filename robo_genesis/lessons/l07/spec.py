@@ -87,8 +87,6 @@ def runs(*scenes: str) -> dict[str, SceneCase]:
     return lifts | {f"{name}_at_rest": SCENES[name] for name in scenes}
 
 
-CASES = runs("baseline")
-ALL = runs(*SCENES)
 FURTHER = {"forced": lift_of(FORCED), "forced_fine": lift_of(FORCED, substeps=4)}
 """The wide box with little friction, at two solver steps."""
 

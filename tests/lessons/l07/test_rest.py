@@ -60,29 +60,30 @@ def test_each_check_accepts_the_runs_of_mujoco(run):
     assert failed(run) == set()
 
 
-SPOILERS = {
-    "settings": reading("friction", "tilt_10_box", 0.4),
-    "stamps": case("tilt_10_box", duration=0.6),
-    "creeps_as_computed": metric("tilt_5_firm", creep=2.4e-4),
-    "faster_where_an_edge_is_free": metric("tilt_15_box", creep=4.2e-4),
-    "sinks_as_computed": metric("elliptic_0_box", sunk=4.3e-6),
-    "friction_lets_creep": copied("tilt_10_firm", "tilt_10_box"),
-    "what_counts": copied("h_1ms_box", "tilt_10_firm"),
-    "round_cone_holds": metric("elliptic_20_firm", creep=5e-5),
-    "noslip_is_no_cure": metric("noslip_15_mu_50", creep=4e-4),
-    "engines_agree": metric("mujoco_tilt_5_box", creep=2e-4),
-    "diagonal_slides_first": metric("mujoco_diagonal_20", creep=1e-3),
-    "slow_is_not_at_rest": metric("fall_box", slow_at=0.3),
-    "speed_jitters": metric("noslip_15_mu_50", slow=100.0),
-    "window_has_an_edge": metric("tilt_10_rough", moved=1e-4),
-}
+SPOILERS = [
+    ("settings", reading("friction", "tilt_10_box", 0.4)),
+    ("stamps", case("tilt_10_box", duration=0.6)),
+    ("creeps_as_computed", metric("tilt_5_firm", creep=2.4e-4)),
+    ("creeps_as_computed", metric("tilt_15_box", creep=4.2e-4)),  # where an edge is free
+    ("sinks_as_computed", metric("elliptic_0_box", sunk=4.3e-6)),
+    ("friction_lets_creep", copied("tilt_10_firm", "tilt_10_box")),
+    ("what_counts", copied("h_1ms_box", "tilt_10_firm")),
+    ("round_cone_holds", metric("elliptic_20_firm", creep=5e-5)),
+    ("noslip_is_no_cure", metric("noslip_15_mu_50", creep=4e-4)),
+    ("engines_agree", metric("mujoco_tilt_5_box", creep=2e-4)),
+    ("diagonal_slides_first", metric("mujoco_diagonal_20", creep=1e-3)),
+    ("speed_misleads", metric("fall_box", slow_at=0.3)),
+    ("speed_misleads", metric("noslip_15_mu_50", slow=100.0)),
+    ("window_has_an_edge", metric("tilt_10_rough", moved=1e-4)),
+]
 
 
 def test_there_is_a_spoiled_run_for_each_check():
-    assert {*SPOILERS, "laws_of_motion"} == {check.__name__ for check in REST.checks}
+    spoiled = {check for check, _ in SPOILERS}
+    assert spoiled | {"laws_of_motion"} == {check.__name__ for check in REST.checks}
 
 
-@pytest.mark.parametrize(("check", "spoil"), SPOILERS.items(), ids=SPOILERS)
+@pytest.mark.parametrize(("check", "spoil"), SPOILERS)
 def test_a_check_fails_for_a_spoiled_run(run, check, spoil):
     alone = [one for one in REST.checks if one.__name__ == check]
     assert failed(spoil(replace(run, page=replace(REST, checks=alone)))) == {check}
