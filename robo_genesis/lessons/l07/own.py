@@ -69,24 +69,22 @@ def compared(
     words = {True: "passes", False: "FAILS", None: "-"}
     lines = [f"{'rung':10} {'yours':8} course"]
     lines += [f"{rung:10} {words[mine[rung]]:8} {words[course[rung]]}" for rung in course]
-    other = [rung for rung in course if mine[rung] not in (None, course[rung])]
-    missing = [rung for rung in course if mine[rung] is None]
-    if missing:
+    if missing := [rung for rung in course if mine[rung] is None]:
         lines.append(f"Your functions do not judge {listed(missing)} yet.")
     else:
         lines.append(f"The first rung that fails by your ladder: {ladder(results) or 'none'}.")
-    if other:
+    if other := [rung for rung in course if mine[rung] not in (None, course[rung])]:
         lines.append(f"Yours and the course's verdict differ: {listed(other)}. Compare the values.")
-    return "\n".join([*lines, outcome([rung for rung, good in course.items() if not good])])
+    failed = [rung for rung, good in course.items() if not good]
+    lines.append(f"The scene {outcome(failed)}")
+    if len(failed) > 1:
+        lines.append("Change less, so that one rung fails alone.")
+    return "\n".join(lines)
 
 
 def outcome(failed: list[str]) -> str:
-    """Return what the failed rungs of a scene mean for the task."""
-    if not failed:
-        return "The scene passes all five rungs. Change one more setting."
-    if len(failed) == 1:
-        return f"The scene passes four rungs and fails one: {failed[0]}."
-    return f"The scene fails {listed(failed)}. Change less, so that one rung fails alone."
+    """Return which rungs a scene fails, as the end of a sentence."""
+    return f"fails {listed(failed)}." if failed else "passes all five rungs."
 
 
 def conclusions(run: Experiment) -> str:
@@ -94,12 +92,11 @@ def conclusions(run: Experiment) -> str:
     found = rungs.measured(run, "baseline")
     values = {name: value for of in found.values() for name, value in of.items()}
     t = {name: number(name, value) for name, value in values.items()}
-    failed = rungs.failed(run, "baseline")
     picture = f"one camera shows {values['pixels']:.0f} pixels of it, {t['share']} of its outline."
     outline = f"this run has no camera; the outline would cover {values['pixels']:.0f} pixels."
     m = run.metrics["baseline"]
     return bullets([
-        f"The scene fails {listed(failed)}." if failed else "The scene passes all five rungs.",
+        f"The scene {outcome(rungs.failed(run, 'baseline'))}",
         f"Built: the object's footprint has a margin of {t['margin']}, and its mass differs from "
         f"density × volume by {t['mass']}.",
         f"Stable: at the end the object is {t['support']} from its exact height, and in the last "

@@ -21,10 +21,10 @@ def by_margin(results):
     ("failed", "mine", "ladder", "said"),
     [
         ([], {}, by_margin, ["ladder: none", "passes all five"]),
-        (["seen"], {"seen": {"margin": 0}}, by_margin, ["ladder: seen", "fails one: seen"]),
-        (["seen", "built"], {}, by_margin, ["differ: built and seen", "fails built and seen"]),
+        (["seen"], {"seen": {"margin": 0}}, by_margin, ["ladder: seen", "fails seen."]),
+        (["seen", "built"], {}, by_margin, ["differ: built and seen", "fails built and seen."]),
         ([], {"stable": None}, by_margin, ["do not judge stable yet", "passes all five"]),
-        (["stable"], {}, not_written, ["graspable yet", "fails one: stable"]),
+        (["stable"], {}, not_written, ["graspable yet", "fails stable."]),
     ],
 )
 def test_each_outcome_has_words(failed, mine, ladder, said):
