@@ -5,19 +5,12 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import (
-    bowl_checks,
-    bowls,
-    checks,
-    mistakes,
-    rest,
-    rest_checks,
-    rungs,
-    spec,
-    study,
-    table_map,
-)
+from robo_genesis.lessons.l07 import checks, mistakes, rungs, spec, study, table_map
+from robo_genesis.lessons.l07.bowl_checks import MESHES
+from robo_genesis.lessons.l07.bowls import BowlMetrics
 from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
+from robo_genesis.lessons.l07.rest import RestMetrics
+from robo_genesis.lessons.l07.rest_checks import REST
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record
 
@@ -60,14 +53,14 @@ MISTAKES = of_scenes(*spec.SCENES).with_more(
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, SceneMetrics)
-    | dict.fromkeys(bowls.CASES, bowls.BowlMetrics)
-    | dict.fromkeys(rest.CASES, rest.RestMetrics),
+    | dict.fromkeys(MESHES.runs, BowlMetrics)
+    | dict.fromkeys(REST.cases, RestMetrics),
     pages={
         "lecture": LECTURE,
         "lab": LAB,
         "mistakes": MISTAKES,
-        "meshes": bowl_checks.MESHES,
-        "rest": rest_checks.REST,
+        "meshes": MESHES,
+        "rest": REST,
     },
     replays={
         "scenes": Replay(

@@ -62,10 +62,7 @@ def values(
             "ball": rest.ball if inside else np.inf,
         },
         "stable": {"support": abs(rest.support), "drift": rest.drift, "moved": rest.moved},
-        "seen": {
-            "pixels": shown[best],
-            "share": shown[best] / max(found["outline"][best], 1.0),
-        },
+        "seen": {"pixels": shown[best], "share": shown[best] / max(found["outline"][best], 1.0)},
         "reachable": dict(found["reach"]),
         "graspable": {
             "width": case.size[1],

@@ -13,6 +13,7 @@ import numpy as np
 from robo_genesis.core.checks import Finding, at_most, equal
 from robo_genesis.core.experiment import Experiment, Run, case_inputs, counts
 from robo_genesis.core.scene import DT, FloatArray
+from robo_genesis.core.text import decimal
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.sim.arm import kinematics, lifting, reaching
@@ -107,14 +108,18 @@ def residuals(trace: Trace) -> tuple[FloatArray, FloatArray, FloatArray]:
     return *kinematics.distances(error), kinematics.fingertip(hand)[:, 2]
 
 
-def outline(found: Experiment, camera: str, cell: int) -> float:
-    """Return the area of the object's outline in a view at home [pixel], 0 if not all is inside."""
-    view = view_of(replace(found, rendered=False), camera)  # without its pictures
-    pose = view.intrinsics, view.transform
-    points = spec.GOOD.corners(np.array([*CASE.places[cell], spec.GOOD.centre[2]]))
-    pixels = project(points, *pose)
-    inside = ((pixels > 0) & (pixels < view.size)).all()  # not where a point has no pixel
-    return outline_area(points, *pose) if inside else 0.0
+def outlines(found: Experiment, camera: str) -> FloatArray:
+    """Return the area of the object's outline in each cell, in a view at home (m,) [pixel].
+
+    It is 0 where not all of the outline is inside the picture.
+    """
+    view, areas = view_of(replace(found, rendered=False), camera), []  # without its pictures
+    for x, y in CASE.places:
+        corners = spec.GOOD.corners(np.array([x, y, spec.GOOD.centre[2]]))
+        pixels = project(corners, view.intrinsics, view.transform)
+        inside = ((pixels > 0) & (pixels < view.size)).all()  # not where a point has no pixel
+        areas.append(outline_area(corners, view.intrinsics, view.transform) if inside else 0.0)
+    return np.array(areas)
 
 
 WORDS = {
@@ -126,14 +131,15 @@ WORDS = {
 """What each verdict says."""
 
 
-def verdicts(found: Experiment, cell: int) -> dict[str, bool]:
-    """Return which tests the object passes in a cell, by the names of `WORDS`."""
-    reached, free = (found.readings[f"table_{name}"][str(cell)] == 2 for name in COUNTED)
-    tips = residuals(found.traces["table"])[2][2 * cell : 2 * cell + 2]
-    reached &= bool((tips >= [spec.LIMITS[name][0] for name in ("pregrasp", "grasp")]).all())
-    margin = replace(spec.GOOD, place=(*CASE.places[cell], 0.0)).margin
-    seen = {name: outline(found, name, cell) >= spec.LIMITS["pixels"][0] for name in rungs.CAMERAS}
-    free &= reached and margin >= spec.LIMITS["margin"][0]
+def verdicts(found: Experiment) -> dict[str, np.ndarray]:
+    """Return which cells (m,) pass which test, by the names of `WORDS`."""
+    answers = ([found.readings[f"table_{name}"][str(k)] for k in CELLS] for name in COUNTED)
+    reached, free = (np.array(good) == 2 for good in answers)
+    least = [spec.LIMITS[name][0] for name in ("pregrasp", "grasp")]
+    reached &= (residuals(found.traces["table"])[2].reshape(-1, 2) >= least).all(axis=1)
+    margins = [replace(spec.GOOD, place=(x, y, 0.0)).margin for x, y in CASE.places]
+    free &= reached & (np.array(margins) >= spec.LIMITS["margin"][0])
+    seen = {name: outlines(found, name) >= spec.LIMITS["pixels"][0] for name in rungs.CAMERAS}
     return {"reachable": reached, **seen, "graspable": free}
 
 
@@ -141,31 +147,31 @@ def map_follows(found: Experiment) -> Iterator[Finding]:
     """Where the map says that the hand reaches a place, both recorded poses of the hand are within
     the solver's tolerances, up to 2 µm and 2 µrad. All cells of the workspace are such places.
     """
-    reached = np.array([verdicts(found, cell)["reachable"] for cell in CELLS])
+    reached = verdicts(found)["reachable"]
     left = residuals(found.traces["table"])[:2]
     for name, of, most in zip(("m", "rad"), left, CASE.settings.tolerances, strict=True):
         yield at_most(f"residual_{name}", float(of[np.repeat(reached, 2)].max()), most + 2e-6)
-    (x0, x1), (y0, y1) = WORKSPACE
-    x, y = CASE.places.T
-    inside = (x0 <= x) & (x <= x1) & (y0 <= y) & (y <= y1)
+    least, most = np.transpose(WORKSPACE)
+    inside = ((CASE.places >= least) & (CASE.places <= most)).all(axis=1)
     yield equal("workspace", int((inside & reached).sum()), int(inside.sum()))
 
 
 def explored(found: Experiment) -> dict[str, Any]:
     """Return the data of the map, as `site/figures/explorer.py` shows them."""
-    cells = [_cell(found, number) for number in CELLS]
+    good = verdicts(found)
+    areas = np.transpose([outlines(found, name) for name in rungs.CAMERAS])
+    cells = [cell(k, {name: of[k] for name, of in good.items()}, areas[k]) for k in CELLS]
     rows = [
-        {"label": f"{y:.2f}".replace("-", "−"), "cells": cells[k * len(X) :][: len(X)]}
-        for k, y in enumerate(Y)
+        {"label": decimal(y, 2), "cells": cells[k * len(X) :][: len(X)]} for k, y in enumerate(Y)
     ]
     caption = "Table from above. x [m] to the right, y [m] upwards. An outline cut off counts 0."
+    places = "beside the table", "on the hand"
     columns = ["place x, y [m]", *WORDS.values()]
-    cameras = "beside the table", "on the hand"
     return {
         "choices": ("Map", "Cells show"),
         "maps": [{"run": "table", "label": "Table", "caption": caption, "rows": rows[::-1],
                   "columns": [f"{x:g}" for x in X]}],
-        "measures": [{"label": f"pixels, camera {place}"} for place in cameras],
+        "measures": [{"label": f"pixels, camera {at}"} for at in places],
         "columns": columns,
         "notes": {"×": "×: out of reach.", "○": "○: the bowl or the edge is in the way."},
         "dt": CASE.dt,
@@ -174,20 +180,18 @@ def explored(found: Experiment) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _cell(found: Experiment, cell: int) -> dict[str, Any]:
+def cell(number: int, good: dict[str, bool], pixels: FloatArray) -> dict[str, Any]:
     """Return a cell of the map, which shows the answer for the grasp."""
-    good, (x, y) = verdicts(found, cell), CASE.places[cell]
-    numbers = [round(outline(found, name, cell)) for name in rungs.CAMERAS]
-    failed = ", ".join(WORDS[name] for name, one in good.items() if not one)
-    place = f"{x:g}, {y:.2f}".replace("-", "−")
+    (x, y), failed = CASE.places[number], [WORDS[name] for name, one in good.items() if not one]
+    place = f"{x:g}, {decimal(y, 2)}"
     return {
-        "answer": 2 * cell + 2,
+        "answer": 2 * number + 2,
         "name": place,
         "tag": "×" if not good["reachable"] else "" if good["graspable"] else "○",
         "state": "accepted" if good["reachable"] else "refused",
-        "opens": cell == len(CELLS) // 2,
-        "sentence": f"Not passed: {failed}." if failed else "Passes all four tests.",
+        "opens": number == len(CELLS) // 2,
+        "sentence": f"Not passed: {', '.join(failed)}." if failed else "Passes all four tests.",
         "values": [place, *("yes" if one else "no" for one in good.values())],
-        "numbers": numbers,
-        "texts": [str(number) for number in numbers],
+        "numbers": [round(area) for area in pixels],
+        "texts": [f"{area:.0f}" for area in pixels],
     }

@@ -35,4 +35,4 @@ def test_a_verdict_and_the_check_of_the_map(scenes, name):
     spoil, verdict, expected = SPOILED[name]
     run = spoil(scenes)
     assert failed(run) == expected
-    assert table_map.verdicts(run, MIDDLE).get(verdict, False) is False
+    assert not verdict or not table_map.verdicts(run)[verdict][MIDDLE]
