@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import decimal
-from robo_genesis.lessons.l07 import rungs, spec
+from robo_genesis.core.text import decimal, scaled_value
+from robo_genesis.lessons.l07 import bowls, rest, rungs, spec
+from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
 
 MEASURES = False
 
@@ -55,3 +56,70 @@ def grip_table(run: Experiment) -> Iterator[dict[str, str]]:
                 "rise [mm]": decimal(1000 * m.rise, 1),
                 "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
             }
+
+
+def ends(found: bowls.BowlMetrics) -> tuple[str, str]:
+    """Write how many balls are inside, and the height of the lowest: `12 of 12`, `4.9`."""
+    balls = len(bowls.BALLS)
+    lowest = "–" if found.lowest is None else decimal(1000 * found.lowest, 1)
+    return f"{found.inside / 100 * balls:.0f} of {balls}", lowest
+
+
+@tables.as_table
+def bowl_table(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return geoms, volume, balls and mass by choice."""
+    volume = run.readings["bowl_volume"]
+    for choice, words in CHOICES.items():
+        inside, lowest = ends(run.metrics[f"in_{choice}"])
+        yield {
+            "collision geometry": words,
+            "geoms": f"{run.readings['bowl_geoms'][choice]:.0f}",
+            "volume / visual": f"{volume[choice] / volume['visual']:.2f}",
+            "balls inside": inside,
+            "lowest ball [mm]": lowest,
+            "free bowl [g]": f"{1000 * run.readings['bowl_mass'][choice]:.1f}",
+            "density × visual volume [g]": f"{1e-3 * DENSITY * volume['visual']:.1f}",
+        }
+
+
+def bowl_price(run: Experiment) -> str:
+    """Return the time of build and step by choice."""
+    build, step = run.readings["build"], run.readings["step"]
+    rows = {words: (build[choice], 1000 * step[choice]) for choice, words in CHOICES.items()}
+    return tables.timed_table("collision geometry", {"build [s]": 1, "step [ms]": 2}, rows)
+
+
+def bowl_runs(run: Experiment, group: str) -> str:
+    """Return the runs of a group: `ATTACKS` or `SMALL`."""
+    rows = {}
+    for name, case in getattr(bowls, group).items():
+        words = f"{CHOICES[case.choice]}, h = {1000 * case.h:g} ms"
+        words += f", seed {case.seed}" * (case.seed > 0) + ", from inside" * (case.drop < 0)
+        words += f", start {1000 * case.shift:g} mm aside" * (case.shift > 0)
+        found = run.metrics[name]
+        inside, lowest = ends(found)
+        rows[words] = decimal(1000 * case.depth, 1), inside, f"{found.sunk:.0f}", lowest
+    heads = ("v T / e [mm]", "inside", "sunk in", "lowest ball [mm]")
+    return tables.number_table("run", dict.fromkeys(heads, 0), rows)
+
+
+CREEPS = {
+    "changes": [*rest.LABELS][:10],
+    "cures": ["tilt_10_box", "T_5ms_box", *[*rest.LABELS][10:]],
+}
+"""The runs of both tables of creep."""
+
+
+def creep_table(run: Experiment, which: str) -> str:
+    """Return creep and depth of the boxes of `CREEPS` in both engines, beside the formulas."""
+    rows = []
+    for name in CREEPS[which]:
+        of, twin = run.metrics[name], run.metrics.get(f"mujoco_{name}")
+        depth, creep = rest.formulas(run.cases[name])
+        found = {"creep": of.creep, "formula": creep, "MuJoCo": twin.creep if twin else None}
+        speeds = {
+            head: scaled_value(v, "mm/s") if v is not None else "–" for head, v in found.items()
+        }
+        depths = {"sinks in": scaled_value(of.sunk, "µm"), "its formula": scaled_value(depth, "µm")}
+        rows.append({"box": rest.LABELS[name]} | speeds | depths)
+    return tables.markdown(rows)

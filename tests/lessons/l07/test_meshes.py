@@ -8,7 +8,7 @@ from lessons.changed_runs import failed, reading, shift, trace
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l07 import bowl_text, bowls
+from robo_genesis.lessons.l07 import bowls, plots, text
 from robo_genesis.lessons.l07.bowl_checks import MESHES, falling_balls
 from robo_genesis.lessons.l07.bowls import BALLS
 from robo_genesis.sim.bodies import bowl
@@ -98,7 +98,7 @@ def test_no_ball_moves_otherwise_in_the_air_or_gains_energy(run, array, state):
 
 
 def test_tables_and_figure_show_the_runs(run):
-    assert "12 of 12" in bowl_text.choices(run)
-    assert "from inside" in bowl_text.tried(run, "SMALL")
-    assert "step" in bowl_text.price(run)
-    assert len(bowl_text.section(run).axes) == len(bowls.CUT)
+    assert "12 of 12" in text.bowl_table(run)
+    assert "from inside" in text.bowl_runs(run, "SMALL")
+    assert "step" in text.bowl_price(run)
+    assert len(plots.bowl_section(run).axes) == len(bowls.CUT)
