@@ -11,6 +11,8 @@ from robo_genesis.lessons.l07 import spec
 from robo_genesis.lessons.l07.metrics import BALL
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.table import SceneCase
+from robo_genesis.sim.camera.geometry import outline_area, project
+from robo_genesis.sim.camera.views import View
 
 MEASURES = False
 
@@ -18,6 +20,20 @@ CAMERAS = ("world", "wrist")
 
 FINGERS = ("closed_left", "closed_right", "held_left", "held_right")
 """Names of the contact points of each finger in the counts of a lift."""
+
+
+def outline(corners: FloatArray, view: View, inside: bool = False) -> float:
+    """Return the area of the picture of a convex body in a view, whole and not hidden [pixel].
+
+    Args:
+        corners: (n, 3) of the body [m].
+        view: of a camera.
+        inside: whether the area counts as 0 if the border of the picture cuts it. It always does if
+            a corner is not before the camera.
+    """
+    pixels = project(corners, view.intrinsics, view.transform)
+    good = (pixels > 0) & (pixels < view.size) if inside else np.isfinite(pixels)
+    return outline_area(corners, view.intrinsics, view.transform) if good.all() else 0.0
 
 
 def measured(run: Experiment, scene: str) -> dict[str, dict[str, float]]:

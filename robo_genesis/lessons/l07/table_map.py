@@ -21,7 +21,6 @@ from robo_genesis.sim.arm.engine_kinematics import IkSettings
 from robo_genesis.sim.arm.joint_control import ControlCase, assign_postures
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.bodies import table
-from robo_genesis.sim.camera.geometry import outline_area, project
 from robo_genesis.sim.camera.record import view_of
 
 X, Y = np.arange(2, 11) / 10, np.arange(-3, 4) * 0.12
@@ -113,13 +112,9 @@ def outlines(found: Experiment, camera: str) -> FloatArray:
 
     It is 0 where not all of the outline is inside the picture.
     """
-    view, areas = view_of(replace(found, rendered=False), camera), []  # without its pictures
-    for x, y in CASE.places:
-        corners = spec.GOOD.corners(np.array([x, y, spec.GOOD.centre[2]]))
-        pixels = project(corners, view.intrinsics, view.transform)
-        inside = ((pixels > 0) & (pixels < view.size)).all()  # not where a point has no pixel
-        areas.append(outline_area(corners, view.intrinsics, view.transform) if inside else 0.0)
-    return np.array(areas)
+    view = view_of(replace(found, rendered=False), camera)  # without its pictures
+    centres = np.column_stack([CASE.places, np.full(len(CELLS), spec.GOOD.centre[2])])
+    return np.array([rungs.outline(spec.GOOD.corners(at), view, inside=True) for at in centres])
 
 
 WORDS = {
