@@ -68,13 +68,11 @@ ATTACKS = {
 """The same with other steps, another start, and the hulls of another seed."""
 
 SMALL = {
-    "small_in_default": BowlCase("default", 0.002, steps=150),
-    "small_in_pieces": BowlCase("pieces", 0.002, steps=150),
     "small_in_default_h1000us": BowlCase("default", 0.002, 10, steps=150),
     "small_in_pieces_h1000us": BowlCase("pieces", 0.002, 10, steps=150),
     "small_from_inside_h1000us": BowlCase("default", 0.002, 10, drop=-0.036, steps=150),
 }
-"""Balls as thick as the wall, with two solver steps, and from a start inside the bowl."""
+"""Balls as thick as the wall, from above the rim, and from a start inside the bowl."""
 
 CASES = BIG | ATTACKS | SMALL
 

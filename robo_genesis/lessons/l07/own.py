@@ -5,7 +5,7 @@ from typing import Any
 
 from robo_genesis.core.exercises import refused
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import SCALES, bullets, listed, scaled_value, with_unit
+from robo_genesis.core.text import SCALES, bullets, listed, with_unit
 from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.lessons.l07.study import Facts
 
@@ -88,22 +88,18 @@ def outcome(failed: list[str]) -> str:
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the good scene."""
     found = rungs.measured(run, "baseline")
-    values = {name: value for of in found.values() for name, value in of.items()}
-    t = {name: number(name, value) for name, value in values.items()}
-    picture = f"one camera shows {values['pixels']:.0f} pixels of it, {t['share']} of its outline."
-    outline = f"this run has no camera; the outline would cover {values['pixels']:.0f} pixels."
-    m = run.metrics["baseline"]
+    t = {name: number(name, value) for of in found.values() for name, value in of.items()}
+    seen = "one camera shows" if run.rendered else "without a camera, its outline would have"
     return bullets([
         f"The scene {outcome(rungs.failed(run, 'baseline'))}",
         f"Built: the object's footprint has a margin of {t['margin']}, and its mass differs from "
         f"density × volume by {t['mass']}.",
         f"Stable: at the end the object is {t['support']} from its exact height, and in the last "
         f"0.2 s no coordinate changed by more than {t['moved']}.",
-        f"Seen: {picture if run.rendered else outline}",
-        f"Reachable: {values['accepted']:.0f} of 2 answers are accepted, with the fingertips "
+        f"Seen: {seen} {t['pixels']} pixels, {t['share']} of the whole outline.",
+        f"Reachable: {t['accepted']} of 2 answers are accepted, with the fingertips "
         f"{t['pregrasp']} and {t['grasp']} above the table. The robot touches something in "
-        f"{values['touches']:.0f} postures of its way.",
-        f"Graspable: the open hand touches the object in {values['descending']:.0f} steps. The "
-        f"object rises by {scaled_value(m.rise, 'mm')}, the hand by "
-        f"{scaled_value(m.hand_rise, 'mm')}.",
+        f"{t['touches']} postures of its way.",
+        f"Graspable: the open hand touches the object in {t['descending']} steps. The object's "
+        f"rise is {t['rise']} of the hand's.",
     ])  # fmt: skip

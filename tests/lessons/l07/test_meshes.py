@@ -76,7 +76,7 @@ SPOILED = {
     "hulls_cover": reading("uncovered", "default", 1e-3),
     "default_is_closer": reading("bowl_volume", "one_hull", 300.0),
     "mass_is_of_collision": reading("bowl_mass", "default", 0.046),
-    "small_balls_count_as_inside": trace("small_in_pieces", link_pos=shift((..., 0), 0.2)),
+    "small_balls_count_as_inside": trace("small_in_pieces_h1000us", link_pos=shift((..., 0), 0.2)),
     "fast_small_balls_sink": trace("small_from_inside_h1000us", link_pos=lambda p: p - 0.003),
     "stamps": trace("in_pieces", t=lambda t: 2 * t),
 }
