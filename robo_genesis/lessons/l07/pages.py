@@ -18,20 +18,18 @@ MEASURES = False
 
 
 def of_scenes(*scenes: str) -> MeasuringPage:
-    """Return a page that examines these scenes."""
+    """Return a page that examines these scenes, scene A among them."""
     runs = spec.runs(*scenes)
-    views = record.groups(*rungs.CAMERAS) if "baseline" in scenes else {}
-    frames = record.frame_names(*rungs.CAMERAS) if "baseline" in scenes else ()
     return MeasuringPage(
         runs=runs_of(runs),
         kind=Trace,
         joints=JOINT_NAMES,
-        readings=study.readings(*scenes) | views,
+        readings=study.readings(*scenes) | record.groups(*rungs.CAMERAS),
         with_camera={"pixels": study.group("outline", *scenes)},
         measure=scene_metrics,
         checks=checks.CHECKS,
         parameters=lambda: spec.parameters_of(runs),
-        frames=("initial", "final", *frames),
+        frames=("initial", "final", *record.frame_names(*rungs.CAMERAS)),
     )
 
 

@@ -34,10 +34,10 @@ def views(run: Experiment) -> Figure:
 def settling(run: Experiment) -> Figure:
     """Draw the gap below the objects of scenes A and B."""
     figure, ax = plotting.axes(3.4)
-    for name, mark in (("baseline", "baseline"), ("hovering", "first")):
+    for name in ("baseline", "hovering"):
         trace, case = run.traces[f"{name}_at_rest"], spec.SCENES[name]
         gap = 1000 * (trace.link_pos[:, OBJECT, 2] - case.size[2] / 2 - case.place[2])
-        ax.plot(trace.t, gap, label=f"scene {spec.LETTERS[name]}", **look(mark))
+        ax.plot(trace.t, gap, label=spec.LABELS[name], **look(spec.CASE_MARKS[name]))
     ax.axvline(trace.t[-WINDOW - 1], **LINE)
     ax.set(xlabel="time [s]", ylabel="gap below [mm]")
     plotting.label_ends(ax, "Gap between object and table")
@@ -47,11 +47,10 @@ def settling(run: Experiment) -> Figure:
 def lifts(run: Experiment) -> Figure:
     """Draw the rise of the objects after the fingers have closed."""
     figure, ax = plotting.axes(3.6)
-    marks = ("baseline", "first", "second", "third")
-    for (name, label), mark in zip(spec.SHOWN_LIFTS.items(), marks, strict=True):
+    for name, label in spec.SHOWN_LIFTS.items():
         trace = run.traces[name]
-        heights = trace.link_pos[:, OBJECT, 2].astype(np.float64)
-        ax.plot(trace.t, 1000 * (heights - heights[0]), label=label, **look(mark))
+        rise = 1000 * (trace.link_pos[:, OBJECT, 2] - trace.link_pos[0, OBJECT, 2])
+        ax.plot(trace.t, rise, label=label, **look(spec.CASE_MARKS[name]))
     for phase in ("settle", "close", "lift"):
         ax.axvline(trace.t[ENDS[phase]], **LINE)
     ax.set(xlabel="time [s]", ylabel="rise [mm]")
