@@ -37,7 +37,7 @@ def others_hold_all(run: Experiment) -> Iterator[Finding]:
         found = run.metrics[name]
         yield equal(f"{name}.inside_percent", found.inside, 100.0)
         yield within(f"{name}.lowest_m", found.lowest, ENDS, NEAR)
-        yield equal(f"{name}.sunk", found.sunk, 0)
+        yield equal(f"{name}.sunk", found.in_foot, 0)
 
 
 def hulls_cover(run: Experiment) -> Iterator[Finding]:
@@ -75,7 +75,7 @@ def fast_small_balls_sink(run: Experiment) -> Iterator[Finding]:
     above the rim some do, in hulls and in pieces, and from a start inside the bowl none.
     """
     for name, case in bowls.SMALL.items():
-        label, found = f"{name}.sunk", run.metrics[name].sunk
+        label, found = f"{name}.sunk", run.metrics[name].in_foot
         yield above(label, found, 0) if case.depth > case.radius else equal(label, found, 0)
         yield noted(f"{name}.depth_m", case.depth)
 

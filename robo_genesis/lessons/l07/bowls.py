@@ -99,7 +99,7 @@ READINGS = {
 TOLERANCES = {
     "bowl_geoms": (12.0, 0.0), "cm³": (0.05, 0.15), "bowl_mass": (1e-6, 0.15),
     "uncovered": (1e-4, 0.0),
-    "lowest": (HEIGHT, 0.0), "inside": (0.0, 0.0), "sunk": (12.0, 0.0),
+    "lowest": (HEIGHT, 0.0), "inside": (0.0, 0.0), "in_foot": (12.0, 0.0),
     **dict.fromkeys([f"top_{of}" for of in CUT], (HEIGHT, 0.0)),
     **dict.fromkeys(CASES, (10.0, 0.0)),
 }  # fmt: skip
@@ -114,7 +114,7 @@ class BowlMetrics(CaseMetrics):
 
     inside: float = metric("%", "balls inside", "link_pos_m")
     lowest: float | None = metric("m", "lowest bottom of a ball inside", "link_pos_m")
-    sunk: float = metric("1", "balls inside that sank in", "link_pos_m")
+    in_foot: float = metric("1", "balls inside that sank in", "link_pos_m")
 
 
 def bowl_metrics(trace: BodyTrace, case: BowlCase) -> BowlMetrics:

@@ -98,7 +98,7 @@ def bowl_runs(run: Experiment, group: str) -> str:
         words += f", start {1000 * case.shift:g} mm aside" * (case.shift > 0)
         found = run.metrics[name]
         inside, lowest = ends(found)
-        rows[words] = decimal(1000 * case.depth, 1), inside, f"{found.sunk:.0f}", lowest
+        rows[words] = decimal(1000 * case.depth, 1), inside, f"{found.in_foot:.0f}", lowest
     heads = ("v T / e [mm]", "inside", "sunk in", "lowest ball [mm]")
     return tables.number_table("run", dict.fromkeys(heads, 0), rows)
 
