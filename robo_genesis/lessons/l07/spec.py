@@ -114,11 +114,11 @@ LIMITS: dict[str, tuple[float, float]] = {
 RESOLUTION = rest.RESOLUTION | {
     "s": DT / 2,
     "%": 1.0,
-    "m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5, "kg": 1e-6, "pixel": 3.0, "steps": 0.5,
+    "m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5, "kg": 1e-6, "pixels": 3.0, "steps": 0.5,
     "points": 0.5, "poses": 0.5, "postures": 0.5,
 }  # fmt: skip
 TOLERANCES = check_spec.TOLERANCES | bowls.TOLERANCES | rest.TOLERANCES | {
-    "pixel": (20.0, 0.01), "steps": (20.0, 0.0), "points": (4.0, 0.0), "poses": (0.0, 0.0),
+    "pixels": (20.0, 0.01), "steps": (20.0, 0.0), "points": (4.0, 0.0), "poses": (0.0, 0.0),
     "postures": (3.0, 0.0),
 } | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1)) | {"table": (np.inf, 0.0)}  # fmt: skip
 """Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of the table

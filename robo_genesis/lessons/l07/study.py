@@ -33,7 +33,7 @@ def readings(*scenes: str) -> dict[str, Readings]:
     return {
         "model": counts(MODEL_COUNTS),
         "object": group({"mass": "kg", "depth": "m"}),
-        "outline": group(dict.fromkeys(rungs.CAMERAS, "pixel")),
+        "outline": group(dict.fromkeys(rungs.CAMERAS, "pixels")),
         "reach": group({"accepted": "poses", "pregrasp": "m", "grasp": "m", "touches": "postures"}),
         "contacts": group(
             {name: "steps" if name == "descending" else "points" for name in COUNTED}
@@ -49,7 +49,7 @@ def forced_readings() -> dict[str, Readings]:
 
 def pixels(*scenes: str) -> dict[str, Readings]:
     """Return the group of readings that needs a camera."""
-    units = {f"{scene}_{camera}": "pixel" for scene in scenes for camera in rungs.CAMERAS}
+    units = {f"{scene}_{camera}": "pixels" for scene in scenes for camera in rungs.CAMERAS}
     return {"pixels": Readings(units)}
 
 
