@@ -18,7 +18,7 @@ BLANK = "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}"
 
 DIGITS = {
     "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
-    "pixel": 2, "iterations": 0,
+    "pixel": 2, "iterations": 0, "pixels": 0, "points": 0, "poses": 0, "postures": 0, "steps": 0,
 }  # fmt: skip
 """Digits after the point by unit, in texts for readers."""
 

@@ -10,13 +10,11 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l07 import bowls
 from robo_genesis.lessons.l07.bowls import BALLS, BowlCase
 from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY, HEIGHT, WALL
-from robo_genesis.sim.bodies.falling import FALLEN, FALLING
 from robo_genesis.sim.bodies.free_fall import GRAVITY, summed_drop
 from robo_genesis.sim.common_checks import stamps
 from robo_genesis.sim.laws import UNTURNED, ZERO, apart, kept, times, unit_quaternions
 
-MEASURES = False
-
+FALLEN, FALLING = 5e-6, 1e-4  # Tolerances of place [m] and velocity [m/s] in free fall
 ENDS, NEAR = WALL + 0.001, 0.002  # Where the lowest ball ends, and how near to this height [m]
 FLAT, GAP, SHARE = 1e-5, 2e-5, 1e-3  # Of a flat face [m], of points outside hulls [m], of masses
 GAIN = 0.05  # Share of energy that contacts return in one outer step: up to 0.018 in the runs

@@ -18,8 +18,6 @@ from robo_genesis.sim.bodies import table
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept, unit_quaternions
 
-MEASURES = False
-
 
 def structure(run: Experiment) -> Iterator[Finding]:
     """The robot has the links, joints and DOFs of its model file."""

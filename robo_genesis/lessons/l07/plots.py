@@ -50,7 +50,7 @@ def lifts(run: Experiment) -> Figure:
     for name, label in spec.SHOWN_LIFTS.items():
         trace = run.traces[name]
         rise = 1000 * (trace.link_pos[:, OBJECT, 2] - trace.link_pos[0, OBJECT, 2])
-        ax.plot(trace.t, rise, label=label, **look(spec.CASE_MARKS[name]))
+        ax.plot(trace.t, rise, label=label, **look(spec.CASE_MARKS.get(name, "other")))
     for phase in ("settle", "close", "lift"):
         ax.axvline(trace.t[ENDS[phase]], **LINE)
     ax.set(xlabel="time [s]", ylabel="rise [mm]")

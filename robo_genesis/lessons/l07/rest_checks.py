@@ -13,8 +13,6 @@ from robo_genesis.sim.bodies.laws import body_on_surface
 from robo_genesis.sim.common_checks import stamps
 from robo_genesis.sim.laws import copied, kept
 
-MEASURES = False
-
 SHARE, DEPTH = 0.02, 6e-7  # Of a value against its formula, and of a depth in float32 [m]
 SAME = 0.03  # Share by which creeps may differ that the formula makes equal
 STILL, ROUNDING = 2e-6, 8e-6  # Creep that float32 causes [m/s]: on a level table, with impratio 100

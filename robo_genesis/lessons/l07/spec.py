@@ -12,7 +12,7 @@ import numpy as np
 
 from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs, json_value
-from robo_genesis.core.scene import CAMERA
+from robo_genesis.core.scene import CAMERA, DT
 from robo_genesis.lessons.l07 import bowls, rest
 from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm import franka, lifting, reaching
@@ -53,8 +53,12 @@ LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETT
 LABELS |= rest.LABELS | {"forced": "two solver steps", "forced_fine": "four solver steps"}
 """Words of a reader for runs."""
 
-MARKS = ("baseline", "first", "second", "third", "other", "further")
-CASE_MARKS = dict(zip(SCENES, MARKS, strict=True)) | {"forced": "second", "forced_fine": "third"}
+CASE_MARKS = {
+    "baseline": "baseline",
+    "hovering": "first",
+    "forced": "second",
+    "forced_fine": "third",
+}
 """The mark of each case in the palette."""
 
 SHOWN_LIFTS = {
@@ -108,12 +112,13 @@ LIMITS: dict[str, tuple[float, float]] = {
 """Least and largest value that passes, by quantity: [m], shares, pixels or counts."""
 
 RESOLUTION = rest.RESOLUTION | {
+    "s": DT / 2,
     "%": 1.0,
-    "m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5, "kg": 1e-6, "pixel": 3.0, "steps": 0.5,
+    "m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5, "kg": 1e-6, "pixels": 3.0, "steps": 0.5,
     "points": 0.5, "poses": 0.5, "postures": 0.5,
 }  # fmt: skip
 TOLERANCES = check_spec.TOLERANCES | bowls.TOLERANCES | rest.TOLERANCES | {
-    "pixel": (20.0, 0.01), "steps": (20.0, 0.0), "points": (4.0, 0.0), "poses": (0.0, 0.0),
+    "pixels": (20.0, 0.01), "steps": (20.0, 0.0), "points": (4.0, 0.0), "poses": (0.0, 0.0),
     "postures": (3.0, 0.0),
 } | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1)) | {"table": (np.inf, 0.0)}  # fmt: skip
 """Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of the table

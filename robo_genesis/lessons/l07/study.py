@@ -20,7 +20,7 @@ from robo_genesis.sim.camera.views import View, look, segment_number
 
 GROUPS = {
     "object": {"mass": "kg", "depth": "m"},
-    "outline": dict.fromkeys(rungs.CAMERAS, "pixel"),
+    "outline": dict.fromkeys(rungs.CAMERAS, "pixels"),
     "reach": {"accepted": "poses", "pregrasp": "m", "grasp": "m", "touches": "postures"},
     "contacts": {"descending": "steps"} | dict.fromkeys(rungs.FINGERS, "points"),
 }

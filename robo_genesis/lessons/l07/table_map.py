@@ -13,7 +13,6 @@ import numpy as np
 from robo_genesis.core.checks import Finding, at_most, equal
 from robo_genesis.core.experiment import Experiment, Run, case_inputs, counts
 from robo_genesis.core.scene import DT, FloatArray
-from robo_genesis.core.text import decimal
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.sim.arm import kinematics, lifting, reaching
@@ -149,44 +148,3 @@ def map_follows(found: Experiment) -> Iterator[Finding]:
     least, most = np.transpose(WORKSPACE)
     inside = ((CASE.places >= least) & (CASE.places <= most)).all(axis=1)
     yield equal("workspace", int((inside & reached).sum()), int(inside.sum()))
-
-
-def explored(found: Experiment) -> dict[str, Any]:
-    """Return the data of the map, as `site/figures/explorer.py` shows them."""
-    good = verdicts(found)
-    areas = np.transpose([outlines(found, name) for name in rungs.CAMERAS])
-    cells = [cell(k, {name: of[k] for name, of in good.items()}, areas[k]) for k in CELLS]
-    rows = [
-        {"label": decimal(y, 2), "cells": cells[k * len(X) :][: len(X)]} for k, y in enumerate(Y)
-    ]
-    caption = "Table from above. x [m] to the right, y [m] upwards. An outline cut off counts 0."
-    places = "beside the table", "on the hand"
-    columns = ["place x, y [m]", *WORDS.values()]
-    return {
-        "choices": ("Map", "Cells show"),
-        "maps": [{"run": "table", "label": "Table", "caption": caption, "rows": rows[::-1],
-                  "columns": [f"{x:g}" for x in X]}],
-        "measures": [{"label": f"pixels, camera {at}"} for at in places],
-        "columns": columns,
-        "notes": {"×": "×: out of reach.", "○": "○: the bowl or the edge is in the way."},
-        "dt": CASE.dt,
-        "postures": {"table": CASE.targets},
-        "tables": {caption: [dict(zip(columns, of["values"], strict=True)) for of in cells]},
-    }  # fmt: skip
-
-
-def cell(number: int, good: dict[str, bool], pixels: FloatArray) -> dict[str, Any]:
-    """Return a cell of the map, which shows the answer for the grasp."""
-    (x, y), failed = CASE.places[number], [WORDS[name] for name, one in good.items() if not one]
-    place = f"{x:g}, {decimal(y, 2)}"
-    return {
-        "answer": 2 * number + 2,
-        "name": place,
-        "tag": "×" if not good["reachable"] else "" if good["graspable"] else "○",
-        "state": "accepted" if good["reachable"] else "refused",
-        "opens": number == len(CELLS) // 2,
-        "sentence": f"Not passed: {', '.join(failed)}." if failed else "Passes all four tests.",
-        "values": [place, *("yes" if one else "no" for one in good.values())],
-        "numbers": [round(area) for area in pixels],
-        "texts": [f"{area:.0f}" for area in pixels],
-    }

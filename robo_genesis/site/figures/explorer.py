@@ -13,6 +13,7 @@ can have curves of the chosen run, or the chosen posture in 3D. The data come fr
 | `notes` | the meaning of signs in the cells |
 | `curves` | what is drawn of a run; each map has the axes, each cell the packed values |
 | `postures` | by run the targets (m, 3) [m] of its answers; each map names its `run` |
+| `thing` | what the postures are of, by default the thing of the lesson's first replay |
 | `tables` | by caption the rows of a table below the fold |
 | `picture` | `name`, `alt` and `caption` of a recorded view; see `l05.explorer.picture` |
 | `without_script` | the sentence for a browser without scripts |
@@ -197,20 +198,21 @@ def postures(
 
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
     shape = replays.shape_file(recorded.lesson, replay.thing)
+    thing = data.get("thing", replay.thing)
     traces = {case: with_target(run.traces[case], of) for case, of in targets.items()}
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
     inputs = [name.encode(), shape.read_bytes(), *replays.bundle_inputs(recorded.folder)]
-    alt = f"The {replay.thing} at the start, drawn from the recorded poses."
+    alt = f"The {thing} at the start, drawn from the recorded poses."
     files, weight, still = replays.leave_model(
         env, name, inputs, lambda: glb(shape, run.links, traces, camera, replay.credit), camera, alt
     )
     words = files | {"orbit": camera.orbit, "target": camera.target}
-    words["alt"] = f"The {replay.thing} in 3D, in the chosen posture."
+    words["alt"] = f"The {thing} in 3D, in the chosen posture."
     yield opening("with-model", data, **words)
     over = controls.over_the_picture("Show in 3D")
-    caption = f"Recorded postures of the {replay.thing}. Yellow cross: the target."
+    caption = f"Recorded postures of the {thing}. Yellow cross: the target."
     yield replays.stage(still, over, caption, f"{name}-model")
-    yield panel(data, f"Show in 3D loads the {replay.thing}: {weight} kB.")
+    yield panel(data, f"Show in 3D loads the {thing}: {weight} kB.")
     yield from fold(directive, found)
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 

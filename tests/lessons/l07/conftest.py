@@ -22,7 +22,7 @@ UNTURNED = np.float32([1, 0, 0, 0])
 def trace_of(name: str, case: table.SceneCase) -> Trace:
     """Return a run whose object keeps its place, sinks in a little, or follows the closed hand."""
     if isinstance(case, table_map.MapCase):
-        answers = [answer(target, spec.GOOD.q_start, 60).q for target in case.targets]
+        answers = [answer(target, spec.GOOD.q_start, 20).q for target in case.targets]
         before = driven(spec.GOOD.commanding(spec.GOOD.q_start), LINKS)
         return table_map.with_bodies(assigned(case.start, LINKS, before, np.stack(answers)))
     lifts = isinstance(case, run.LiftCase)

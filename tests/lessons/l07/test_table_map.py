@@ -3,7 +3,7 @@
 import pytest
 from lessons.changed_runs import failed, reading, shift, trace
 
-from robo_genesis.lessons.l07 import table_map
+from robo_genesis.lessons.l07 import explorer, table_map
 from robo_genesis.sim.arm.kinematics import HAND
 
 MIDDLE = len(table_map.CELLS) // 2
@@ -11,7 +11,7 @@ GRASP = (2 * MIDDLE + 2, HAND, 2)
 
 
 def test_each_cell_shows_its_own_answer(scenes):
-    data = table_map.explored(scenes)
+    data = explorer.explored(scenes)
     cells = [cell for row in data["maps"][0]["rows"][::-1] for cell in row["cells"]]
     for number, (cell, place) in enumerate(zip(cells, table_map.CASE.places, strict=True)):
         assert cell["answer"] == 2 * number + 2
