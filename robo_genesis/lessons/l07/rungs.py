@@ -14,8 +14,6 @@ from robo_genesis.sim.bodies.table import SceneCase
 from robo_genesis.sim.camera.geometry import outline_area, project
 from robo_genesis.sim.camera.views import View
 
-MEASURES = False
-
 CAMERAS = ("world", "wrist")
 
 FINGERS = ("closed_left", "closed_right", "held_left", "held_right")
