@@ -25,6 +25,9 @@ MINIMUM_HARDWARE = "cpu"
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
 
+ONE_START, DOWN = reaching.ONE_START, lifting.DOWN
+"""Settings of the solver, and the orientation of the hand."""
+
 KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
 KP[7:], KV[7:] = 480.0, 20.0  # Fingers that close on 50 mm press with 12 N
 
@@ -53,12 +56,8 @@ LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETT
 LABELS |= rest.LABELS | {"forced": "two solver steps", "forced_fine": "four solver steps"}
 """Words of a reader for runs."""
 
-CASE_MARKS = {
-    "baseline": "baseline",
-    "hovering": "first",
-    "forced": "second",
-    "forced_fine": "third",
-}
+CASE_MARKS = {"baseline": "baseline", "hovering": "first"}
+CASE_MARKS |= {"forced": "second", "forced_fine": "third"}
 """The mark of each case in the palette."""
 
 SHOWN_LIFTS = {
@@ -82,7 +81,7 @@ SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 def lift_of(scene: SceneCase, **changed: Any) -> LiftCase:
     """Return the run that lifts the object of a scene from the spot."""
     fields = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
-    return LiftCase(**fields | {"steps": LIFTING, "settings": reaching.ONE_START} | changed)
+    return LiftCase(**fields | {"steps": LIFTING, "settings": ONE_START} | changed)
 
 
 def runs(*scenes: str) -> dict[str, SceneCase]:

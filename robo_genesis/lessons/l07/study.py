@@ -10,7 +10,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import run, rungs, spec
 from robo_genesis.lessons.l07.metrics import BALL, OBJECT, scene_metrics
-from robo_genesis.sim.arm import kinematics, lifting, reaching
+from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import MODEL_COUNTS
 from robo_genesis.sim.arm.joints import describe
@@ -100,7 +100,7 @@ class Facts:
     @property
     def readings(self) -> dict[str, dict[str, float]]:
         """The readings by group."""
-        limits = reaching.ONE_START.tolerances
+        limits = spec.ONE_START.tolerances
         good = (kinematics.accepted(a.q, a.error, *limits) for a in self.answers)
         tips = dict(zip(("pregrasp", "grasp"), self.tips.tolist(), strict=True))
         seen = {name: float((s == self.number).sum()) for name, s in self.segmentations.items()}
@@ -132,7 +132,7 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     corners = case.corners(rest.link_pos[-1, OBJECT])
     outlines = {name: rungs.outline(corners, view) for name, view in views.items()}
     points = lifting.waypoints(case.place, case.size[2])[:2]
-    answers = lifting.ask(world.robot, joints, case.q_start, reaching.ONE_START, points)
+    answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
     way = lifting.line([case.q_start, *(a.q for a in answers)])
     touches = np.array([lifting.touches(world.robot, joints, world.fixed, q) for q in way])
     lift, contacts = run.lift(world, joints, spec.lift_of(case))

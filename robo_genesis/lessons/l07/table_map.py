@@ -15,7 +15,7 @@ from robo_genesis.core.experiment import Experiment, Run, case_inputs, counts
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import rungs, spec
-from robo_genesis.sim.arm import kinematics, lifting, reaching
+from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.engine_kinematics import IkSettings
 from robo_genesis.sim.arm.joint_control import ControlCase, assign_postures
 from robo_genesis.sim.arm.joints import JointMap
@@ -58,7 +58,7 @@ class MapCase:
         return replace(spec.GOOD.commanding(spec.GOOD.q_start), steps=self.steps)
 
 
-CASE = MapCase(places=np.array([(x, y) for y in Y for x in X]), settings=reaching.ONE_START)
+CASE = MapCase(places=np.array([(x, y) for y in Y for x in X]), settings=spec.ONE_START)
 CELLS = range(len(CASE.places))
 NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal, and the "
 NOTE += "object is where its cell is"
@@ -102,7 +102,7 @@ def with_bodies(trace: Trace) -> Trace:
 def residuals(trace: Trace) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return of each answer the residuals [m] and [rad] and the height of the fingertips [m]."""
     hand = kinematics.measured_hand(trace, slice(1, None))
-    error = kinematics.pose_error(kinematics.Pose(CASE.targets, reaching.DOWN), hand)
+    error = kinematics.pose_error(kinematics.Pose(CASE.targets, spec.DOWN), hand)
     return *kinematics.distances(error), kinematics.fingertip(hand)[:, 2]
 
 

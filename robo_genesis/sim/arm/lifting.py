@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.scene import FloatArray, read_only
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
-from robo_genesis.sim.arm.reaching import DOWN
 
 PHASES = {"approach": 100, "descend": 100, "settle": 20, "close": 60, "lift": 100, "hold": 100}
 """Outer steps of the phases of a lift."""
@@ -26,6 +25,9 @@ PAD, HAND_TO_PAD = 0.025, 0.1034
 
 ABOVE, RISE = 0.10, 0.05
 """Heights of the pregrasp above the grasp, and of the lift [m]."""
+
+DOWN = read_only((0.0, 1.0, 0.0, 0.0))
+"""Orientation (w, x, y, z) of the hand, as in `reaching`: the fingers point down."""
 
 FINGERS = {"left": "left_finger", "right": "right_finger"}
 

@@ -232,9 +232,9 @@ CHANGES = [
     ("lessons/l02/checks", ('"""Named checks', '"""The checks'), NONE, NONE),
 ]
 CHANGES += [  # a lesson can be removed with the folder of its tests alone
-    (file, CONSTANT, ("l03",), ("l03",))
-    for file in ("sim/bodies/contacts", "lessons/l03/metrics")
-    if "l03" in LESSONS
+    (file, CONSTANT, using, using)
+    for file, using in (("sim/bodies/contacts", ("l03", "l07")), ("lessons/l03/metrics", ("l03",)))
+    if {*using} <= {*LESSONS}
 ]
 
 
@@ -262,6 +262,8 @@ def test_a_module_that_computes_uses_none_that_presents(lesson):
     """Except the specification, whose values are parameters of the bundle or judge it."""
     tree = Tree()
     for name in measuring_modules(lesson, []):
+        if "/" in name:  # a data file
+            continue
         file = PACKAGE.joinpath(*name.split(".")).with_suffix(".py")
         names = read_code([file.read_text("utf8")]).imports
         used = {each: path for each in names if (path := tree.module(each))}
