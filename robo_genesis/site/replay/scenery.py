@@ -176,17 +176,15 @@ def rod(link: str, hinge: Hinge) -> Part:
 
 
 def floor_of(shape: Sequence[Part]) -> list[Part]:
-    """Return the tiles on the still parts of a shape, with a floor at z = 0 if it has none.
+    """Return the tiles on the widest still part of a shape, with a floor at z = 0 if it has none.
 
     A still part that is smaller than a tile, such as a marker, has no tiles.
     """
-    grounds = [
-        part.vertices
-        for part in shape
-        if part.link == WORLD and np.ptp(part.vertices[:, :2], axis=0).min() > TILE
-    ]
-    added = [] if grounds else [floor(2.0)]
-    still = np.concatenate([*grounds, *(part.vertices for part in added)])
+    sizes = [np.ptp(part.vertices[:, :2], axis=0) for part in shape]
+    pairs = zip(shape, sizes, strict=True)
+    wide = {float(size.prod()): p for p, size in pairs if p.link == WORLD and size.min() > TILE}
+    added = [] if wide else [floor(2.0)]
+    still = (wide[max(wide)] if wide else added[0]).vertices
     low, high = still.min(axis=0), still.max(axis=0)
     columns, rows = (np.arange(low[k], high[k] - TILE / 2, TILE) for k in (0, 1))
     dark = [

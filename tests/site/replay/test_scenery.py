@@ -109,9 +109,10 @@ def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed)
     assert found.camera.centre == pytest.approx(middle, abs=0.05)
 
 
-def test_tiles_lie_on_the_highest_still_part_and_a_marker_in_the_air_is_no_ground():
+def test_tiles_lie_on_the_widest_still_part_and_a_marker_in_the_air_is_no_ground():
     table = slab((1.0, 0.4, 0.05), top=0.7)
-    (tiles,) = scenery.floor_of([table])
+    bowl = replace(table, vertices=0.3 * table.vertices + np.float32([0, 0, 0.5]))
+    (tiles,) = scenery.floor_of([bowl, table, bowl])
     assert (tiles.link, len(tiles.faces)) == (WORLD, 40)
     low, high = tiles.vertices.min(axis=0), tiles.vertices.max(axis=0)
     assert low == pytest.approx([-0.5, -0.2, 0.7005])
