@@ -31,7 +31,7 @@ def explored(found: Experiment) -> dict[str, Any]:
                   "columns": [f"{x:g}" for x in X]}],
         "measures": [{"label": f"pixels, camera {at}"} for at in places],
         "columns": columns,
-        "notes": {"×": "×: out of reach.", "○": "○: the bowl or the edge is in the way."},
+        "notes": {"×": "×: refused from one start.", "○": "○: the bowl or the edge is in the way."},
         "dt": CASE.dt,
         "postures": {"table": CASE.targets},
         "tables": {caption: [dict(zip(columns, of["values"], strict=True)) for of in cells]},
