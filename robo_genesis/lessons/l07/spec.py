@@ -53,7 +53,8 @@ LETTERS = dict(zip(SCENES, "ABCDEF", strict=True))
 
 LABELS = {name: f"scene {letter}" for name, letter in LETTERS.items()}
 LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETTERS.items()}
-LABELS |= rest.LABELS | {"forced": "two solver steps", "forced_fine": "four solver steps"}
+LABELS |= rest.LABELS | {"in_one_hull": "one hull", "in_default": "several hulls"}
+LABELS |= {"forced": "two solver steps", "forced_fine": "four solver steps"}
 """Words of a reader for runs."""
 
 CASE_MARKS = {"baseline": "baseline", "hovering": "first"}
