@@ -135,7 +135,7 @@ NOT_FINITE = (np.full(9, np.nan),) * 6
         ("target", diagnosis, "BASELINE", replace(BASELINE, q_target=UNREACHABLE),
          ("q_target[joint4] is 1 rad", "none is clipped")),
         ("reset", diagnosis, "BASELINE", replace(BASELINE, dt=0.02), ("dt=0.02", "Restart")),
-        ("stamps", joint_control, "read", lambda robot, dofs: NOT_FINITE,
+        ("stamps", joint_control, "read", lambda robot, *of: NOT_FINITE,
          ("q is not finite", "reset")),
         ("saturation", diagnosis, "BASELINE", replace(BASELINE, effort_limit=np.full(9, 0.5)),
          ("120 of 120 samples", "Check limit")),
