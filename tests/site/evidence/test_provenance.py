@@ -32,7 +32,7 @@ MD_TABLE = "\n```{glue:md} md table\n:format: gfm\n```\n"
 GLUED = paragraphs(
     "\n```{glue:figure} captioned\n:alt: A glued picture.\n\nIts caption.\n```",
     "```{glue} bare\n```",
-    "Here it stands in a sentence, {glue}`inline`.",
+    "Here it is in a sentence, {glue}`inline`.",
     "```{glue} any table\n```",
     MD_TABLE,
     "| typed |\n| --- |\n| 7 |",
