@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from robo_genesis.lessons.l07.metrics import OBJECT
 from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
-from robo_genesis.sim.arm.laws import assigned_postures, commanded, driven_run, model_joints
+from robo_genesis.sim.arm.laws import assigned_postures, commanded, dynamics, model_joints
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept, unit_quaternions
@@ -70,29 +71,33 @@ def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
         yield above(f"{name}.descending", run.readings["contacts"][f"{name}_descending"], 0)
 
 
-def robot_of(trace: Trace) -> Trace:
-    """Return a run without the links of the bodies."""
-    return replace(
-        trace, link_pos=trace.link_pos[:, :OBJECT], link_quat=trace.link_quat[:, :OBJECT]
-    )
+def robot_of(trace: Trace, steps: int) -> Trace:
+    """Return the first steps of a run, without the links of the bodies."""
+    lengths = {"state": steps + 1, "step": steps}
+    cut = {
+        name: getattr(trace, name)[: lengths.get(of.dims[0])] for name, of in trace.arrays().items()
+    }
+    links = {name: cut[name][:, :OBJECT] for name in ("link_pos", "link_quat")}
+    return replace(trace, **cut | links)
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """At each sample links and control forces are those of the driven robot, and in a scene at rest
-    all forces and velocities. Bodies begin where their case puts them.
-    Answers of a map are assigned.
+    """At each sample links and control forces are those of the driven robot, and until the hand is
+    above an object all forces and velocities. Bodies begin where their case puts them. Answers of
+    a map are assigned.
     """
     yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
-        trace, robot = run.traces[name], robot_of(run.traces[name])
+        trace, robot = run.traces[name], robot_of(run.traces[name], run.traces[name].steps)
         if not isinstance(case, table.SceneCase):
             found = assigned_postures(robot, case.start, run.links[:OBJECT], run.traces.values())
             yield from kept(name, found)
             continue
-        command = case.commanding(robot.target)
-        lifts = isinstance(case, LiftCase)
-        law = commanded if lifts else driven_run
-        yield from kept(name, law(robot, command, run.links[:OBJECT]))
+        free = lifting.ENDS["approach"] if isinstance(case, LiftCase) else trace.steps
+        alone = robot_of(trace, free)  # then the hand touches the object, which `dynamics` ignores
+        moves = dynamics(alone, case.commanding(alone.target))
+        driven = commanded(robot, case.commanding(robot.target), run.links[:OBJECT])
+        yield from kept(name, chain(driven, moves))
         yield from kept(f"{name}, bodies", bodies(trace, case))
 
 
