@@ -1,8 +1,7 @@
 """Checks of the functions that a student writes in L07's lab; see `core/exercises.py`."""
 
-import tomllib
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator, Sequence
+from math import inf, nan
 from typing import Any
 
 import numpy as np
@@ -10,26 +9,44 @@ import numpy as np
 from robo_genesis.core.checks import Finding, equal, within
 from robo_genesis.core.exercises import as_test, compared
 from robo_genesis.sim.arm.reaching import ANSWERS, ONE_START
-from robo_genesis.sim.bodies.table import gap
+from robo_genesis.sim.bodies.table import Footprint, gap
 
 MEASURES = False
 
-ASKED: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text())
-"""What each test asks: given values, and the right answer where no function computes it."""
+PAIRS: dict[str, tuple[Footprint, Footprint]] = {
+    "apart_along_x": ((0.0, 0.0, 0.2, 0.4), (0.5, 0.1, 0.1, 0.3)),
+    "only_corners_near": ((0.1, 0.1, 0.1, 0.1), (0.21, 0.24, 0.1, 0.1)),
+    "overlap_of_corners": ((0.0, 0.0, 0.2, 0.4), (0.18, -0.15, 0.2, 0.4)),
+    "one_inside": ((0.5, 0.0, 1.2, 0.8), (0.4, 0.3, 0.05, 0.1)),
+}
 
 
 @as_test
 def footprints(margin: Callable[..., Any]) -> Iterator[Finding]:
     """Check `margin(one, other)`: the distance of two upright rectangles [m]."""
-    for name, pair in ASKED["footprints"].items():
+    for name, pair in PAIRS.items():
         for label, given in (("margin_m", pair), ("swapped_m", pair[::-1])):
             yield within(f"{name}.{label}", float(margin(*given)), gap(*given), 1e-9)
+
+
+# Positions of one coordinate [m], window, bound [m], and whether the object is at rest
+MOTIONS: dict[str, tuple[Sequence[float], int, float, bool]] = {
+    "exactly_the_bound": ([0, 0, 0, 0.25, 0, 0.25], 4, 0.25, True),
+    "both_ways": ([0, 0, 0, 0.1875, -0.1875, 0, 0], 4, 0.25, False),
+    "creeps": ([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], 4, 0.25, False),
+    "moved_before": ([0, 3, 7, 9, 9, 9, 9, 9], 4, 0.25, True),
+    "first_step": ([0, 0, 0, 1, 1], 2, 0.25, False), "last_step": ([0, 0, -1], 2, 0.25, False),
+    "record_is_the_window": ([0, 0, 0], 2, 0.25, True), "no_states": ([], 2, 0.25, False),
+    "one_state_too_short": ([0, 0], 2, 0.25, False), "nan": ([0, 0, nan, 0], 2, 0.25, False),
+    "nan_at_the_end": ([0, 0, nan], 2, 0.25, False), "infinite": ([0, -inf, 0], 2, 0.25, False),
+    "five_steps": ([0, 1, 1, 1, 1, 1], 5, 0.25, False), "another_bound": ([0, 1, 0], 2, 1.0, True),
+}  # fmt: skip
 
 
 @as_test
 def rest(at_rest: Callable[..., Any]) -> Iterator[Finding]:
     """Check `at_rest(positions, window, bound)` on positions (n, 3), each along each axis."""
-    for name, (moves, window, bound, expected) in ASKED["rest"].items():
+    for name, (moves, window, bound, expected) in MOTIONS.items():
         for axis in range(3):
             positions = np.tile([0.5, -0.25, 0.035], (len(moves), 1))
             positions[:, axis] += moves
@@ -38,14 +55,32 @@ def rest(at_rest: Callable[..., Any]) -> Iterator[Finding]:
     yield equal("each_coordinate_for_itself", at_rest(turns, 2, 0.25), True)
 
 
+# Segmentations, number of the object, area of its outline [pixel]
+PICTURES: dict[str, tuple[list[list[int]], int, float]] = {
+    "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0), "absent": ([[0, 1], [2, 0]], 4, 12.5),
+    "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 2.0), "large": ([[200, 0], [200, 2]], 200, 8.0),
+    "more_than_its_outline": ([[3, 3], [3, 0]], 3, 2.5), "no_outline": ([[3, 3], [0, 0]], 3, 0.0),
+}  # fmt: skip
+
+
 @as_test
 def pixels(visible: Callable[..., Any]) -> Iterator[Finding]:
     """Check `visible(segmentation, number, outline)`: pixels and share of the outline."""
-    for name, (rows, number, outline) in ASKED["pixels"].items():
+    for name, (rows, number, outline) in PICTURES.items():
         count = sum(row.count(number) for row in rows)
         found = visible(np.array(rows, dtype=np.int32), number, outline)
         expected = count, count / outline if outline else 0.0
         yield from compared(name, ("pixels", "share"), found, expected, 1e-9)
+
+
+# Heights of the fingertips at two answers [m], contacts, and whether the object is reachable
+TIPS: dict[str, tuple[tuple[float, float], tuple[int, ...], bool]] = {
+    "all_good": ((0.136, 0.036), (0, 0, 0, 0), True), "at_limits": ((0.03, 0.02), (0, 0), True),
+    "first_too_low": ((0.025, 0.025), (0,), False), "second_too_low": ((0.2, 0.016), (0,), False),
+    "first_nan": ((nan, 0.036), (0, 0), False), "second_nan": ((0.136, nan), (0, 0), False),
+    "touches_first": ((0.1, 0.1), (3, 0, 0), False), "touches_last": ((1, 1), (0, 0, 2), False),
+    "touches_on_the_way": ((0.136, 0.036), (0, 1, 0, 0), False),
+}  # fmt: skip
 
 
 @as_test
@@ -59,7 +94,7 @@ def reach(reachable: Callable[..., Any]) -> Iterator[Finding]:
                 residuals = np.where([[row == 0], [row == 1]], residual, 0.0)
                 found = reachable(residuals, least, still, limits, least)
                 yield equal(f"{name}.answer_{row}", found, expected)
-    for name, (heights, touches, expected) in ASKED["reach"].items():
+    for name, (heights, touches, expected) in TIPS.items():
         given = zero, np.array(heights), np.array(touches)
         yield equal(name, reachable(*given, limits, least), expected)
     for last, expected in ((-0.1, True), (-0.3, False)):
@@ -68,8 +103,22 @@ def reach(reachable: Callable[..., Any]) -> Iterator[Finding]:
     yield equal("no_answers", reachable(zero[:0], least[:0], still, limits, least[:0]), False)
 
 
+GOOD = {"margin": (0.171, 0.005, inf), "mass": (0.0, 0.0, 0.01)}
+
+# Results by rung, and the first rung that fails
+RESULTS: dict[str, tuple[dict[str, dict[str, tuple[float, float, float]]], str | None]] = {
+    "at_limits": ({"b": {"x": (2, 2, 5)}, "a": {"y": (5, 2, 5), "z": (-1, -1, -1)}}, None),
+    "truth_values": ({"b": {"x": (True, 1, 1)}, "a": {"y": (False, 1, 1)}}, "a"),
+    "two_fail": ({"c": GOOD, "b": {"x": (4, 2, 3)}, "a": {"x": (1, 2, 3)}, "d": GOOD}, "b"),
+    "first_value": ({"a": {"x": (4, 2, 3), "y": (2, 2, 3)}, "b": GOOD}, "a"),
+    "negative": ({"b": {"x": (-1, 0.5, inf)}}, "b"), "infinite": ({"b": {"x": (inf, 0, 9)}}, "b"),
+    "nan": ({"c": {"x": (2, 1, 3), "y": (nan, 0, 1)}, "a": {}}, "c"),
+    "nothing_measured": ({"c": GOOD, "b": {}, "a": {"x": (5, 0, 1)}}, "b"),
+}  # fmt: skip
+
+
 @as_test
 def first_failure(ladder: Callable[..., Any]) -> Iterator[Finding]:
     """Check `ladder(results)`: the first rung that fails, or None."""
-    for name, (results, *expected) in ASKED["first_failure"].items():
-        yield equal(name, ladder(results), expected[0] if expected else None)
+    for name, (results, expected) in RESULTS.items():
+        yield equal(name, ladder(results), expected)
