@@ -26,10 +26,11 @@ def explored(found: Experiment) -> dict[str, Any]:
     columns = ["place x, y [m]", *WORDS.values()]
     return {
         "thing": "robot",
+        "around": True,
         "choices": ("Map", "Cells show"),
         "maps": [{"run": "table", "label": "Table", "caption": caption, "rows": rows[::-1],
                   "columns": [f"{x:g}" for x in X]}],
-        "measures": [{"label": f"pixels, camera {at}"} for at in places],
+        "measures": [{"label": f"thousand pixels, camera {at}"} for at in places],
         "columns": columns,
         "notes": {"×": "×: refused from one start.", "○": "○: the bowl or the edge is in the way."},
         "dt": CASE.dt,
@@ -40,8 +41,13 @@ def explored(found: Experiment) -> dict[str, Any]:
 
 def cell(number: int, good: dict[str, bool], pixels: FloatArray) -> dict[str, Any]:
     """Return a cell of the map, which shows the answer for the grasp."""
-    (x, y), failed = CASE.places[number], [WORDS[name] for name, one in good.items() if not one]
+    (x, y), said = CASE.places[number], {name: "yes" if one else "no" for name, one in good.items()}
+    for name, area in zip(rungs.CAMERAS, pixels, strict=True):
+        said[name] = f"{area:.0f} pixels"
+    if not good["reachable"]:
+        said["graspable"] = "not tested"
     place = f"{x:g}, {decimal(y, 2)}"
+    failed = [WORDS[name] for name, one in good.items() if not one and said[name] != "not tested"]
     return {
         "answer": 2 * number + 2,
         "name": place,
@@ -49,7 +55,7 @@ def cell(number: int, good: dict[str, bool], pixels: FloatArray) -> dict[str, An
         "state": "accepted" if good["reachable"] else "refused",
         "opens": number == len(CELLS) // 2,
         "sentence": f"Not passed: {', '.join(failed)}." if failed else "Passes all four tests.",
-        "values": [place, *("yes" if one else "no" for one in good.values())],
+        "values": [place, *said.values()],
         "numbers": [round(area) for area in pixels],
-        "texts": [f"{area:.0f}" for area in pixels],
+        "texts": [f"{area / 1000:.1f}" for area in pixels],
     }

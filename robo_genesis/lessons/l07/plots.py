@@ -28,7 +28,8 @@ def views(run: Experiment) -> Figure:
     """Show what both cameras see of scene A, without a camera its link origins."""
     if not run.rendered:
         return posture(run)
-    return plotting.stacked({name: run.frames[f"{name}_rgb"] for name in rungs.CAMERAS})
+    at = dict(zip(rungs.CAMERAS, ("beside the table", "on the hand"), strict=True))
+    return plotting.stacked({at[name]: run.frames[f"{name}_rgb"] for name in rungs.CAMERAS})
 
 
 def settling(run: Experiment) -> Figure:

@@ -63,7 +63,6 @@ CELLS = range(len(CASE.places))
 NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal, and the "
 NOTE += "object is where its cell is"
 RUNS = {"table": Run(CASE, False, NOTE)}
-READINGS = {f"table_{name}": counts(map(str, CELLS)) for name in COUNTED}
 
 
 def parameters() -> dict[str, Any]:
@@ -87,6 +86,7 @@ def record(page: Any, world: table.World, joints: JointMap) -> None:
             page.readings[f"table_{name}"][str(cell)] = len(left)
     trace = assign_postures(world.scene, world.robot, joints, CASE.start, np.stack(postures))
     page.traces["table"] = with_bodies(trace)
+    page.readings["map"] = totals(page.experiment)
 
 
 def with_bodies(trace: Trace) -> Trace:
@@ -124,6 +124,8 @@ WORDS = {
 }
 """What each verdict says."""
 
+READINGS = {f"table_{name}": counts(map(str, CELLS)) for name in COUNTED} | {"map": counts(WORDS)}
+
 
 def verdicts(found: Experiment) -> dict[str, np.ndarray]:
     """Return which cells (m,) pass which test, by the names of `WORDS`."""
@@ -137,10 +139,21 @@ def verdicts(found: Experiment) -> dict[str, np.ndarray]:
     return {"reachable": reached, **seen, "graspable": free}
 
 
+def totals(found: Experiment) -> dict[str, float]:
+    """Return how many of the cells that the hand reaches pass each test."""
+    good = verdicts(found)
+    return {name: float((of & good["reachable"]).sum()) for name, of in good.items()}
+
+
 def map_follows(found: Experiment) -> Iterator[Finding]:
     """Where the map says that the hand reaches a place, both recorded poses of the hand are within
-    the solver's tolerances, up to 2 µm and 2 µrad. All cells of the workspace are such places.
+    the solver's tolerances, up to 2 µm and 2 µrad. All cells of the workspace are such places. The
+    camera beside the table shows the object in each cell that the hand reaches.
     """
+    counted = totals(found)
+    for name, count in counted.items():
+        yield equal(f"map.{name}", found.readings["map"][name], count)
+    yield equal("seen", counted["world"], counted["reachable"])
     reached = verdicts(found)["reachable"]
     left = residuals(found.traces["table"])[:2]
     for name, of, most in zip(("m", "rad"), left, CASE.settings.tolerances, strict=True):

@@ -14,6 +14,7 @@ can have curves of the chosen run, or the chosen posture in 3D. The data come fr
 | `curves` | what is drawn of a run; each map has the axes, each cell the packed values |
 | `postures` | by run the targets (m, 3) [m] of its answers; each map names its `run` |
 | `thing` | what the postures are of, by default the thing of the lesson's first replay |
+| `around` | whether what does not move is drawn with the postures |
 | `tables` | by caption the rows of a table below the fold |
 | `picture` | `name`, `alt` and `caption` of a recorded view; see `l05.explorer.picture` |
 | `without_script` | the sentence for a browser without scripts |
@@ -203,8 +204,9 @@ def postures(
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
     inputs = [name.encode(), shape.read_bytes(), *replays.bundle_inputs(recorded.folder)]
     alt = f"The {thing} at the start, drawn from the recorded poses."
+    parts = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
     files, weight, still = replays.leave_model(
-        env, name, inputs, lambda: glb(shape, run.links, traces, camera, replay.credit), camera, alt
+        env, name, inputs, lambda: glb(parts, run.links, traces, camera, replay.credit), camera, alt
     )
     words = files | {"orbit": camera.orbit, "target": camera.target}
     words["alt"] = f"The {thing} in 3D, in the chosen posture."
@@ -234,7 +236,7 @@ def with_target(trace: Trace, targets: FloatArray) -> Trace:
 
 
 def glb(
-    shape: Path,
+    parts: Sequence[Part],
     links: Sequence[str],
     traces: Mapping[str, Trace],
     camera: "Camera",
@@ -243,7 +245,7 @@ def glb(
     """Return the model of all answers, one animation a map, with the cross and a floor.
 
     Args:
-        shape: file of the robot's shape.
+        parts: of the robot, and of what is drawn around it.
         links: of the record, without the cross.
         traces: with the cross, by map.
         camera: of the model.
@@ -254,7 +256,6 @@ def glb(
     from robo_genesis.site.replay import model
     from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
 
-    parts = [part for part in load_shape(shape) if part.link != WORLD]
     half = CROSS_LENGTH / 2 * np.eye(3)
     rods = [trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half]
     cross = [Part(CROSS, AXIS_RGB, rod.vertices, rod.faces) for rod in rods]

@@ -68,7 +68,7 @@ class question(between):  # noqa: N801 - docutils names nodes in lower case
     """A question; its text is between the parts that the build writes."""
 
 
-def choice(attributes: str = "", **shown: Any) -> question:
+def choice(*, attributes: str = "", **shown: Any) -> question:
     """Return a multiple choice, in which each option has its feedback, which choice.js announces.
 
     Args:
@@ -89,7 +89,8 @@ def number(value: float, tolerance: float, **shown: Any) -> question:
         shown: as of `choice`, without options; `unit` of the number, empty for none; `feedback`,
             (key, text) by the keys of the directive.
     """
-    return choice(f' data-value="{value!r}" data-tolerance="{tolerance!r}"', **shown)
+    right = f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
+    return choice(attributes=right, **shown)
 
 
 def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:

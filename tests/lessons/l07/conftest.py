@@ -91,7 +91,7 @@ def scenes(joints) -> Experiment:
     good = ((apart <= 5e-4) & (angle <= 5e-3)).reshape(-1, 2).sum(axis=1).tolist()
     for name in table_map.COUNTED:
         found[f"table_{name}"] = {str(cell): count for cell, count in enumerate(good)}
-    return Experiment(
+    made = Experiment(
         page=LECTURE,
         traces=traces,
         links=[*LINKS, "object", "ball"],
@@ -100,3 +100,5 @@ def scenes(joints) -> Experiment:
         rendered=False,
         joints=joints,
     )
+    found["map"] = table_map.totals(made)
+    return made

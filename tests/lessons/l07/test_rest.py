@@ -69,11 +69,11 @@ SPOILERS = [
     ("friction_lets_creep", copied("tilt_10_firm", "tilt_10_box")),
     ("what_counts", copied("h_1ms_box", "tilt_10_firm")),
     ("round_cone_holds", metric("elliptic_20_firm", creep=5e-5)),
-    ("noslip_is_no_cure", metric("noslip_15_mu_50", creep=4e-4)),
+    ("noslip_is_no_cure", metric("mujoco_noslip_15_box", creep=4e-4)),
     ("engines_agree", metric("mujoco_tilt_5_box", creep=2e-4)),
     ("diagonal_slides_first", metric("mujoco_diagonal_20", creep=1e-3)),
     ("speed_misleads", metric("fall_box", slow_at=0.3)),
-    ("speed_misleads", metric("noslip_15_mu_50", slow=100.0)),
+    ("speed_misleads", metric("mujoco_noslip_15_box", slow=100.0)),
     ("window_has_an_edge", metric("tilt_10_rough", moved=1e-4)),
 ]
 

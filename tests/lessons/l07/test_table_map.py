@@ -24,8 +24,8 @@ def test_each_cell_shows_its_own_answer(scenes):
 SPOILED = {
     "another count": (reading("table_reached", str(MIDDLE), 1), "reachable", {"map_follows"}),
     "low fingertips": (trace("table", link_pos=shift(GRASP, -0.05)), "reachable", {"map_follows"}),
-    "the bowl in the way": (reading("table_free", str(MIDDLE), 1), "graspable", set()),
-    "no picture": (reading("view_wrist", "intrinsics_02", -9e3), "wrist", set()),
+    "the bowl in the way": (reading("table_free", str(MIDDLE), 1), "graspable", {"map_follows"}),
+    "no picture": (reading("view_wrist", "intrinsics_02", -9e3), "wrist", {"map_follows"}),
     "a hand elsewhere": (trace("table", link_pos=shift(GRASP, 1e-3)), "", {"map_follows"}),
 }
 
