@@ -18,12 +18,14 @@ class Run:
     """One recorded run of a page.
 
     `case` holds its settings. `measured` is whether it has metrics. `note` says how its arrays
-    differ from an ordinary run of the engine.
+    differ from an ordinary run of the engine. `kind` is the class of its trace, None for
+    that of the page.
     """
 
     case: Any
     measured: bool = True
     note: str = ""
+    kind: type[TimeSeries] | None = None
 
 
 def runs_of(cases: Mapping[str, Any]) -> dict[str, Run]:

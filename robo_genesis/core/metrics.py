@@ -18,8 +18,8 @@ ENGINE = ["engine"]  # The source of a value that the engine reported and that i
 class Stored(NamedTuple):
     """How one array of a run is stored: the name ends with the unit.
 
-    `dims` are `state` (n+1), `step` (n), `dof`, `link`, `axis` (x, y, z) and `wxyz`. `unit` is None
-    if each DOF has its own. The engine computes in float32.
+    `dims` are `state` (n+1), `step` (n), `env`, `dof`, `link`, `axis` (x, y, z),
+    `wxyz` and `finger`. `unit` is None if each DOF has its own. The engine computes in float32.
     """
 
     name: str

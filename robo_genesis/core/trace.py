@@ -162,6 +162,35 @@ class ContactTrace(BodyTrace):
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Episodes(TimeSeries):
+    """Runs of e environments of one scene, in each of which a robot handles an object.
+
+    | field | shape | meaning |
+    |---|---|---|
+    | `t` | (n+1,) | time of each sample [s] |
+    | `phase` | (n+1, e) | number of the phase of the command that led to the sample |
+    | `q` | (n+1, e, d) | positions of the robot's joints [rad or m] |
+    | `object_pos` | (n+1, e, 3) | place of the object in the world [m] |
+    | `object_quat` | (n+1, e, 4) | its orientation, (w, x, y, z) |
+    | `force` | (n+1, e, 2) | normal force of the left and the right finger on the object [N] |
+    | `touches` | (n+1, e) | whether any part of the robot touches the object, 1 or 0 |
+    """
+
+    phase: np.ndarray = array("phase", "state env", "1", "phase of the last command", "int8")
+    q: FloatArray = array("q_rad_or_m", "state env dof", None, "position")
+    object_pos: FloatArray = array(
+        "object_pos_m", "state env axis", "m", "place of the object in the world"
+    )
+    object_quat: FloatArray = array("object_quat_wxyz", "state env wxyz", "1", "its orientation")
+    force: FloatArray = array(
+        "force_N", "state env finger", "N", "normal force of each finger on the object"
+    )
+    touches: np.ndarray = array(
+        "touches", "state env", "1", "whether the robot touches the object", "int8"
+    )
+
+
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:
     """Return the first t (n,) [s] at which `reached` (n,) is true, None if it never is."""
     return float(t[int(reached.argmax())]) if reached.any() else None

@@ -30,9 +30,10 @@ def from_bundle(
     arrays = read_arrays(folder)
     check_cases(folder, arrays, page)
     check_labels(arrays, page)
+    kinds = {name: run.kind or page.kind for name, run in page.runs.items()}
     return Experiment(
         page=page,
-        traces={name: trace_files.read_run(folder, arrays, name, page.kind) for name in page.runs},
+        traces={n: trace_files.read_run(folder, arrays, n, of) for n, of in kinds.items()},
         links=arrays.coords["link"],
         frames=read_frames(folder, predicate, page.frames),
         rendered=rendered,

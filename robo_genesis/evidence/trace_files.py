@@ -10,7 +10,14 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
+from robo_genesis.core.trace import (
+    BodyTrace,
+    ContactTrace,
+    Episodes,
+    TimeSeries,
+    Trace,
+    TraceError,
+)
 from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
 from robo_genesis.evidence.npz_archive import read_archive, write_archive
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
@@ -117,8 +124,9 @@ def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Any:
 
     Verification does not use it, because a bundle must not choose the kind of its own runs.
     """
-    has_contacts = "contacts" in arrays.cases[case].variables
-    kind = Trace if arrays.joints else ContactTrace if has_contacts else BodyTrace
+    names = {*arrays.cases[case].variables}
+    kinds = (Episodes, Trace, ContactTrace, BodyTrace)
+    kind = next((of for of in kinds if {one.name for one in of.arrays().values()} <= names), Trace)
     return read_run(folder, arrays, case, kind)
 
 
@@ -129,7 +137,7 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
         folder: of the bundle.
         arrays: its description.
         case: the name of the run.
-        kind: `Trace`, `BodyTrace` or `ContactTrace`.
+        kind: `Trace`, `Episodes`, `BodyTrace` or `ContactTrace`.
 
     Raises:
         BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the arrays do not
@@ -137,7 +145,7 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     """
     described, fields, place = arrays.cases[case], kind.arrays(), f"arrays.json {case}"
     expect("path", place, "file", described.file, f"arrays/{case}.npz")
-    if kind is not Trace:
+    if kind not in (Trace, Episodes):
         expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
     types = read_joints(arrays).types if arrays.joints else ()
     dtypes = {of.name: of.dtype for of in fields.values()}
@@ -150,7 +158,7 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     expected = _description(case, trace, types, described.note)
     axes = [zip(of.dims, of.shape, strict=True) for of in expected.variables.values()]
     lengths = {dim: n for pairs in axes for dim, n in pairs if dim in ("dof", "link")}
-    labels = {axis: len(names) for axis, names in arrays.coords.items()}
+    labels = {axis: len(names) for axis, names in arrays.coords.items() if axis in lengths}
     expect("labels", place, "number of labels", labels, lengths)
     expect_equal("labels", place, "{}", described.model_dump(), expected.model_dump())
     return trace

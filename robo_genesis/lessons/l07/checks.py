@@ -60,7 +60,7 @@ def hovering_is_at_rest(run: Experiment) -> Iterator[Finding]:
 
 
 def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
-    """With friction 0.5, a box that is 82 mm wide is lifted by more than 40 mm with two solver
+    """With friction 0.3, a box that is 82 mm wide is lifted by more than 40 mm with two solver
     steps in an outer step, and by less than 5 mm with four. Both times the open hand touches it on
     its way down.
     """

@@ -64,8 +64,8 @@ CASE_MARKS |= {"forced": "second", "forced_fine": "third"}
 SHOWN_LIFTS = {
     "baseline": "50 mm",
     "wide": "82 mm",
-    "forced": "82 mm, µ 0.5",
-    "forced_fine": "82 mm, µ 0.5, half the step",
+    "forced": "82 mm, µ 0.3",
+    "forced_fine": "82 mm, µ 0.3, half the step",
 }
 """The lifts that are compared, with words for their objects."""
 
@@ -75,7 +75,7 @@ FAILS = dict(zip(SCENES, (None, "stable", "built", "seen", "reachable", "graspab
 """The one rung that each scene fails; not fitted to a run."""
 
 
-FORCED = replace(SCENES["wide"], friction=0.5, pads=0.5)
+FORCED = replace(SCENES["wide"], friction=0.3, pads=0.3)
 SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 
 

@@ -4,7 +4,7 @@ Row k of an array belongs to environment k. A scene that was built without envir
 without this axis; here it counts as one row.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -21,12 +21,19 @@ class Batch:
     """The robot in all environments from a complete reset on, and the record of its states."""
 
     def __init__(
-        self, scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase]
-    ) -> None:
-        """Reset every environment to the start of its case; raises as `reset_batch`."""
-        self.scene, self.robot, self.cases = scene, robot, list(cases)
+        self, scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase],
+        bodies: Sequence[Any] = (), begin: Callable[[], None] | None = None,
+    ) -> None:  # fmt: skip
+        """Reset every environment to the start of its case; raises as `reset_batch`.
+
+        Traces also have the links of `bodies`, as in `joint_control.run_case`. `begin` is called
+        after the reset, as to place them.
+        """
+        self.scene, self.robot, self.cases, self.bodies = scene, robot, list(cases), bodies
         self.dofs: list[int] = joints.dofs_idx_local.tolist()
         batch = reset_batch(scene, robot, joints, self.cases)
+        if begin:
+            begin()
         self.q_start = np.reshape(batch.q_start, (len(self.cases), -1))
         self.target = self.q_start.astype(np.float64)
         self.readings = [self._rows()]
@@ -102,7 +109,7 @@ class Batch:
 
     def _rows(self) -> tuple[FloatArray, ...]:
         """Return what the engine has now, each array with an axis of rows."""
-        found = joint_control.read(self.robot, self.dofs)
+        found = joint_control.read(self.robot, self.dofs, self.bodies)
         return tuple(values if self.scene.n_envs else values[None] for values in found)
 
     def _chosen(self, envs: Sequence[int] | None) -> list[int]:

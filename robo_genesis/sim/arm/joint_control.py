@@ -258,15 +258,15 @@ def assemble(
 
 
 def read(robot: Any, dofs: list[int], bodies: Sequence[Any] = ()) -> tuple[FloatArray, ...]:
-    """Return what the engine has now.
+    """Return what the engine has now, in a batch with an axis of environments first.
 
     Position (d,), link positions (l, 3) [m] and orientations (l, 4), those of `bodies` last;
     velocity, control force and internal force, each (d,).
     """
     return (
         to_numpy(robot.get_dofs_position(dofs)),
-        np.concatenate([to_numpy(of.get_links_pos()) for of in (robot, *bodies)]),
-        np.concatenate([to_numpy(of.get_links_quat()) for of in (robot, *bodies)]),
+        np.concatenate([to_numpy(of.get_links_pos()) for of in (robot, *bodies)], axis=-2),
+        np.concatenate([to_numpy(of.get_links_quat()) for of in (robot, *bodies)], axis=-2),
         to_numpy(robot.get_dofs_velocity(dofs)),
         to_numpy(robot.get_dofs_control_force(dofs)),
         to_numpy(robot.get_dofs_force(dofs)),

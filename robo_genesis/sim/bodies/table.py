@@ -43,7 +43,7 @@ class SceneCase(Controlled):
     above the support; gravity does not act on it if it is `weightless`. `density` [kg/m³];
     `friction` is that of the object, and with `pads` that of the robot is set as well. `bowl`
     is a choice of collision geometry, `bowl_at` (x, y) its place; a ball of `ball_radius`
-    [m] falls into it. `fov` is that of the camera in the world [degree].
+    [m] falls into it, none if that is 0. `fov` is that of the camera in the world [degree].
     """
 
     shape: str
@@ -105,7 +105,7 @@ class SceneCase(Controlled):
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A built scene: its robot, object, ball, cameras by name, and all that does not move."""
+    """A built scene: its robot, object, ball or None, cameras by name, and what does not move."""
 
     scene: Any
     robot: Any
@@ -115,10 +115,25 @@ class World:
     cameras: dict[str, Any]
 
 
-def build(gs: Any, case: SceneCase, view: dict[str, Any], wrist: dict[str, Any]) -> World:
-    """Declare a table scene and build it."""
+def build(
+    gs: Any, case: SceneCase, view: dict[str, Any] | None = None,
+    wrist: dict[str, Any] | None = None, n_envs: int = 0, **options: Any,
+) -> World:  # fmt: skip
+    """Declare a table scene and build it.
+
+    Args:
+        gs: the engine after `gs.init`.
+        case: the settings.
+        view: arguments of the camera in the world, None without one.
+        wrist: arguments of the camera on the hand, None without one.
+        n_envs: number of environments, 0 for a scene without.
+        options: further ones of `gs.options.RigidOptions`.
+    """
+    if n_envs:  # each environment has gains of its own
+        options = {"batch_dofs_info": True} | options
     scene = gs.Scene(
         sim_options=gs.options.SimOptions(dt=case.dt, substeps=case.substeps),
+        rigid_options=gs.options.RigidOptions(**options) if options else None,
         profiling_options=gs.options.ProfilingOptions(show_FPS=False),
         show_viewer=False,
     )
@@ -158,15 +173,16 @@ def build(gs: Any, case: SceneCase, view: dict[str, Any], wrist: dict[str, Any])
     )
     green = gs.surfaces.Default(color=(0.30, 0.60, 0.30, 1.0))
     basin = bowl.add(gs, scene, case.bowl, (*case.bowl_at, 0.0), surface=green, friction=0.8)
-    ball = scene.add_entity(
-        gs.morphs.Sphere(radius=case.ball_radius, pos=(*case.bowl_at, BALL_HEIGHT)),
-        material=gs.materials.Rigid(rho=1000.0),
-        surface=gs.surfaces.Default(color=(0.90, 0.50, 0.10, 1.0)),
-    )
-    cameras = {
-        "world": scene.add_camera(**view | {"fov": case.fov}),
-        "wrist": scene.add_camera(**wrist),
-    }
-    scene.build()
-    cameras["wrist"].attach(robot.get_link("hand"), np.array(ON_HAND))
+    ball = None
+    if case.ball_radius:
+        ball = scene.add_entity(
+            gs.morphs.Sphere(radius=case.ball_radius, pos=(*case.bowl_at, BALL_HEIGHT)),
+            material=gs.materials.Rigid(rho=1000.0),
+            surface=gs.surfaces.Default(color=(0.90, 0.50, 0.10, 1.0)),
+        )
+    given = {"world": view and view | {"fov": case.fov}, "wrist": wrist}
+    cameras = {name: scene.add_camera(**of) for name, of in given.items() if of}
+    scene.build(n_envs=n_envs)
+    if wrist:
+        cameras["wrist"].attach(robot.get_link("hand"), np.array(ON_HAND))
     return World(scene, robot, body, ball, [*fixed, basin], cameras)

@@ -1,0 +1,13 @@
+"""L08: a scripted expert."""
+
+from robo_genesis.core.declaration import on_demand
+
+__getattr__ = on_demand(
+    __name__,
+    LESSON="pages",
+    FRANKA_MJCF="robo_genesis.sim.arm.franka",
+    describe="robo_genesis.sim.arm.joints",
+    fixed_parts="robo_genesis.sim.visual_shape",
+    picking="robo_genesis.sim.arm",
+    read_shape="robo_genesis.sim.visual_shape",
+)

@@ -1,0 +1,126 @@
+"""Named checks of L08; the docstring of each is its claim."""
+
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from itertools import chain
+
+import numpy as np
+
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, within
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.trace import Episodes, Trace
+from robo_genesis.lessons.l08 import ladder, spec
+from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm.laws import commanded, dynamics, model_joints
+from robo_genesis.sim.common_checks import posture, stamps
+from robo_genesis.sim.laws import apart, kept, unit_quaternions
+
+
+def structure(run: Experiment) -> Iterator[Finding]:
+    """The robot has the links, joints and DOFs of its model file."""
+    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
+
+
+def place_is_enough(run: Experiment) -> Iterator[Finding]:
+    """Where the expert knows the place, all 64 episodes reach the last rung."""
+    yield equal("exact.success", run.metrics["exact"].resting, len(spec.FEW))
+
+
+def turned_camera(run: Experiment) -> Iterator[Finding]:
+    """With the camera turned by 4°, between 60 and 80 % of the 256 episodes succeed."""
+    share = run.metrics["askew"].resting / len(spec.STARTS)
+    yield within("askew.share", share, 0.7, 0.1)
+
+
+def words_differ(run: Experiment) -> Iterator[Finding]:
+    """On the same episodes, at least 95 % go through all phases, at least 30 more than succeed lift
+    the object at some time, and at least as many as succeed have it in the bowl at the end.
+    """
+    m = run.metrics["askew"]
+    yield above("askew.finished", m.finished, 0.95 * len(spec.STARTS) - 0.5)
+    yield above("askew.raised_once", m.raised_once, m.resting + 29.5)
+    yield above("askew.in_bowl", m.in_bowl, m.resting - 0.5)
+
+
+def along_the_pads(run: Experiment) -> Iterator[Finding]:
+    """Of the episodes whose error along the pads is below 5 mm, at least 95 % succeed; of those with
+    more than 9 mm, at most 20 %. The errors across the pads are below 11 mm, and do no harm.
+    """
+    error = np.abs(spec.ASKEW.beliefs - spec.STARTS)
+    good = ladder.reached(run.traces["askew"], spec.ASKEW) == len(ladder.RUNGS)
+    yield above("small_error.share", float(good[error[:, 0] < 5e-3].mean()), 0.95)
+    yield below("large_error.share", float(good[error[:, 0] > 9e-3].mean()), 0.2)
+    yield at_most("across_m", float(error[:, 1].max()), 11e-3)
+
+
+def shown_episodes(run: Experiment) -> Iterator[Finding]:
+    """Each episode of the replay reaches the rung that its name says, and goes through all phases."""
+    level = ladder.reached(run.traces["askew"], spec.ASKEW)
+    for name, row in spec.SHOWN.items():
+        yield equal(f"{name}.rungs", int(level[row]), spec.REACH[name])
+        yield equal(f"{name}.phase", int(run.traces["askew"].phase[-1, row]), picking.DONE)
+
+
+def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
+    """A repeated batch is equal to the last bit, and a permuted one has the same episodes to the
+    last bit, in their new order.
+    """
+    for name, other, order in (
+        ("again", "exact", slice(None)), ("permuted", "askew", spec.ORDER)
+    ):  # fmt: skip
+        one, two = run.traces[name], run.traces[other]
+        for array in (of.name for of in fields(Episodes) if of.name != "t"):
+            differ = int((getattr(one, array) != getattr(two, array)[:, order]).sum())
+            yield equal(f"{name}.{array}", differ, 0)
+
+
+def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+    """Each batch begins where its case puts robot and object. In the episodes of the replay, links
+    and control forces are those of the driven robot at each sample, until the hand is above the
+    object all forces and velocities as well, and the states are those of the batch.
+    """
+    yield from kept("the joint map", model_joints(run.joints))
+    for name in spec.BATCHES:
+        yield from kept(name, begins(run.traces[name], run.cases[name]))
+    for name, row in spec.SHOWN.items():
+        yield from kept(name, of_batch(run, name, row))
+
+
+def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
+    """Yield a start that is not that of the case, or no orientation."""
+    yield from unit_quaternions(trace.object_quat)
+    yield from apart("start", "q [rad or m]", trace.q[0], case.q_start, 1e-6)
+    place = np.column_stack([case.starts, np.full(len(case.starts), case.size[2] / 2)])
+    yield from apart("start", "object_pos [m]", trace.object_pos[0], place, 1e-6)
+
+
+def of_batch(run: Experiment, name: str, row: int) -> Iterator[Finding]:
+    """Yield what an episode of the replay does not share with its batch, or with a driven robot."""
+    trace, case, links = run.traces[name], spec.EPISODES[name], run.links[:-1]
+    every, batch = spec.ASKEW.commands, run.traces["askew"]
+    found = {"q": trace.q, "object_pos": trace.link_pos[:, -1], "object_quat": trace.link_quat[:, -1]}
+    for array, values in found.items():
+        expected = getattr(batch, array)[:, row]
+        yield from apart("pose", f"{array} of the batch", values[::every], expected, 0.0)
+    yield from unit_quaternions(trace.link_quat)
+    robot = without_object(trace)
+    yield from commanded(robot, case.commanding(trace.target), links)
+    approach = without_object(trace, every * int((batch.phase[:, row] > 0).argmax()) - every)
+    yield from dynamics(approach, case.commanding(approach.target))
+
+
+def without_object(trace: Trace, steps: int | None = None) -> Trace:
+    """Return the first steps of a run, or all, without the link of the object."""
+    lengths = {"state": (trace.steps if steps is None else steps) + 1}
+    lengths["step"] = lengths["state"] - 1
+    cut = {
+        name: getattr(trace, name)[: lengths.get(of.dims[0])] for name, of in trace.arrays().items()
+    }
+    return replace(trace, **cut | {n: cut[n][:, :-1] for n in ("link_pos", "link_quat")})
+
+
+CHECKS = (structure, stamps, laws_of_motion, posture)
+LECTURE = (
+    place_is_enough, turned_camera, words_differ, along_the_pads, shown_episodes,
+    order_does_not_matter,
+)  # fmt: skip

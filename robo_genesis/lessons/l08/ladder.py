@@ -1,0 +1,104 @@
+"""Success as a ladder: which rungs the episodes of a batch reach, and what other words count."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from robo_genesis.core.metrics import CaseMetrics, metric
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Episodes
+from robo_genesis.sim.arm.picking import DONE, LIFT, LOWER, MOVE, PickCase
+from robo_genesis.sim.bodies import bowl
+
+PRESSES = 0.1  # Normal force from which a finger holds [N]
+
+RAISED = 0.05  # Height that an object must gain in the lift [m]
+
+CENTRED, BELOW = 0.06, 0.01
+"""An object is in the bowl if its centre is this near to the axis, and its lowest point this far
+below the rim [m]."""
+
+WINDOW, STILL = 4, 2e-4
+"""Steps at the end in which an object at rest moves by less than this [m], as in L07."""
+
+
+def lowest(trace: Episodes, case: PickCase) -> FloatArray:
+    """Return the height (n+1, e) of the lowest point of a cylinder or box [m]."""
+    w, x, y, z = np.moveaxis(trace.object_quat.astype(np.float64), -1, 0)
+    up = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
+    length, width, height = np.array(case.size) / 2
+    if case.shape == "cylinder":
+        reach = np.hypot(up[0], up[1]) * length + np.abs(up[2]) * height
+    else:
+        reach = np.abs(up.T @ np.array([length, width, height])).T
+    return np.asarray(trace.object_pos[..., 2] - reach)
+
+
+def off_axis(trace: Episodes, case: PickCase) -> FloatArray:
+    """Return the horizontal distance (n+1, e) of the object from the axis of the bowl [m]."""
+    return np.asarray(np.linalg.norm(trace.object_pos[..., :2] - case.bowl_at, axis=-1))
+
+
+def rungs(trace: Episodes, case: PickCase) -> dict[str, np.ndarray]:
+    """Return by rung which episodes (e,) pass it, whatever the others say."""
+    both = (trace.force > PRESSES).all(axis=2)
+    carry = (trace.phase == MOVE) | (trace.phase == LOWER)
+    rise = trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
+    at_move = (trace.phase >= MOVE).argmax(axis=0)
+    moved = np.linalg.norm(trace.object_pos[-1] - trace.object_pos[-WINDOW - 1 :], axis=2)
+    inside = off_axis(trace, case)[-1] < CENTRED
+    return {
+        "planned": trace.phase[0] < DONE,
+        "held": (both & (trace.phase == LIFT)).any(axis=0),
+        "lifted": rise[at_move, np.arange(len(at_move))] >= RAISED,
+        "carried": carry.any(axis=0) & (both | ~carry).all(axis=0),
+        "released": (trace.phase[-1] == DONE) & (trace.touches[-1] == 0),
+        "contained": inside & (lowest(trace, case)[-1] < bowl.HEIGHT - BELOW),
+        "resting": moved.max(axis=0) < STILL,
+    }
+
+
+RUNGS = ("planned", "held", "lifted", "carried", "released", "contained", "resting")
+"""The rungs in their order."""
+
+
+def reached(trace: Episodes, case: PickCase) -> np.ndarray:
+    """Return how many rungs each episode passes before the first that it fails (e,)."""
+    passed = np.stack([*rungs(trace, case).values()])
+    return np.asarray(np.logical_and.accumulate(passed).sum(axis=0))
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodesMetrics(CaseMetrics):
+    """How many episodes reach each rung, and how many other words would count."""
+
+    planned: float = metric("1", "planned", "phase")
+    held: float = metric("1", "held", "phase", "force_N")
+    lifted: float = metric("1", "lifted", "phase", "force_N", "object_pos_m")
+    carried: float = metric("1", "carried", "phase", "force_N", "object_pos_m")
+    released: float = metric("1", "released", "phase", "force_N", "object_pos_m", "touches")
+    contained: float = metric("1", "contained", "phase", "force_N", "object_pos_m", "touches")
+    resting: float = metric("1", "success", "phase", "force_N", "object_pos_m", "touches")
+    finished: float = metric("1", "all phases done", "phase")
+    raised_once: float = metric("1", "lifted at some time", "object_pos_m")
+    over_bowl_once: float = metric("1", "over the bowl at some time", "object_pos_m")
+    in_bowl: float = metric("1", "in the bowl at the end", "object_pos_m", "object_quat_wxyz")
+    off_centre: float = metric("m", "median distance from the bowl's axis", "object_pos_m")
+
+
+def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
+    """Count episodes of one batch."""
+    level, passed = reached(trace, case), rungs(trace, case)
+    rise, apart = trace.object_pos[..., 2] - trace.object_pos[0, :, 2], off_axis(trace, case)
+    values = [
+        *((level > k).sum() for k in range(len(RUNGS))),
+        (trace.phase[-1] == DONE).sum(),
+        (rise.max(axis=0) >= RAISED).sum(),
+        (apart.min(axis=0) < CENTRED).sum(),
+        passed["contained"].sum(),
+        np.median(apart[-1]),
+    ]
+    return EpisodesMetrics(*map(float, values))
+
+
+NAMES = tuple(one.name for one in fields(EpisodesMetrics))

@@ -1,0 +1,119 @@
+"""Specification of lesson L08: the episodes of a scripted expert, limits and tolerances.
+
+Pages, checks, verification and tests read the experiment here. The module is data and computes
+nothing. `parameters()` has the values that decide what runs; all other values only judge.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core import check_spec
+from robo_genesis.core.experiment import inputs
+from robo_genesis.core.scene import CAMERA, FloatArray, read_only
+from robo_genesis.sim.arm import franka, picking, reaching
+from robo_genesis.sim.arm.picking import PickCase
+from robo_genesis.sim.bodies.table import SceneCase
+
+MEASURES = False
+
+MINIMUM_HARDWARE = "cpu"
+
+EXPECTED_MODEL = franka.MODEL_COUNTS
+
+KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
+KP[7:], KV[7:] = 480.0, 20.0  # As in L07: fingers that close on 50 mm press with 12 N
+
+CELLS = 16
+"""Rows and columns of the map of starts."""
+
+REGION = (0.40, 0.60), (-0.25, 0.06)
+"""Least and largest x and y of the starts [m]."""
+
+MIDDLE = read_only((0.5, -0.095))
+"""Where the camera that is turned sees right [m]."""
+
+
+def starts(cells: int = CELLS, seed: int = 1) -> FloatArray:
+    """Return places (cells², 2), one at random in each cell of the region [m].
+
+    Neighbours along x follow each other.
+    """
+    y, x = np.divmod(np.arange(cells**2), cells)
+    share = (np.column_stack([x, y]) + np.random.default_rng(seed).random((cells**2, 2))) / cells
+    least, most = np.transpose(REGION)
+    return read_only(least + share * (most - least))
+
+
+def turned(places: FloatArray, degrees: float) -> FloatArray:
+    """Return where a camera sees places (e, 2) if it is turned about the middle [m]."""
+    angle = np.radians(degrees)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return read_only(MIDDLE + (places - MIDDLE) @ turn.T)
+
+
+STARTS = starts()
+
+ASKEW = PickCase(
+    shape="cylinder", size=(0.05, 0.05, 0.07), place=(0.5, -0.05, 0.0), kp=KP, kv=KV,
+    starts=STARTS, beliefs=turned(STARTS, 4.0), settings=reaching.ONE_START,
+    dt=0.05, substeps=10, steps=130,
+)  # fmt: skip
+"""256 episodes with a camera that is turned by 4°."""
+
+FEW = starts(8, seed=2)
+EXACT = replace(ASKEW, starts=FEW, beliefs=FEW)
+"""64 episodes in which the expert knows the place."""
+
+ORDER = np.random.default_rng(3).permutation(len(STARTS))
+"""Environment k of the permuted run has the episode of this number."""
+
+PERMUTED = replace(ASKEW, starts=STARTS[ORDER], beliefs=ASKEW.beliefs[ORDER])
+
+BATCHES = {"exact": EXACT, "again": EXACT, "askew": ASKEW, "permuted": PERMUTED}
+"""Batches of the lecture; `again` repeats `exact`, `permuted` has the episodes of `askew`."""
+
+SHOWN = {"placed": 120, "slipped": 60, "tipped": 20, "pushed": 5}
+"""Episodes of `ASKEW` that the replay shows, and their environments."""
+
+REACH = {"placed": 7, "slipped": 3, "tipped": 2, "pushed": 1}
+"""How many rungs each of them reaches; not fitted to a run."""
+
+
+def one(row: int) -> SceneCase:
+    """Return the settings of one episode of `ASKEW`, at all its outer steps."""
+    control = ASKEW.control
+    return SceneCase(
+        shape=ASKEW.shape, size=ASKEW.size, place=(*STARTS[row].tolist(), 0.0), ball_radius=0.0,
+        kp=KP, kv=KV, steps=control.steps, dt=control.dt, substeps=control.substeps,
+    )  # fmt: skip
+
+
+EPISODES = {name: one(row) for name, row in SHOWN.items()}
+
+VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
+"""The camera; it shows one environment."""
+
+LABELS = {"exact": "place known", "askew": "camera turned by 4°"} | {
+    "placed": "in the bowl", "slipped": "lost on the way", "tipped": "lost in the lift",
+    "pushed": "pushed away",
+}  # fmt: skip
+"""Words of a reader for runs."""
+
+CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=True))
+"""The mark of each case in the palette."""
+
+RESOLUTION = {"1": 0.5, "m": 1e-4}
+"""By unit, the difference below which two values are equal."""
+
+TOLERANCES = check_spec.TOLERANCES | {"askew": (20.0, 0.0), "off_centre": (0.02, 0.0)}
+"""Contacts make rounding grow: another version of the engine had three more successes of 256."""
+
+RELATIONS: tuple[Any, ...] = ()
+"""No metric of two cases is compared."""
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the lecture as JSON values, for the evidence key."""
+    return inputs(BATCHES | EPISODES, VIEW, counted=list(EXPECTED_MODEL))

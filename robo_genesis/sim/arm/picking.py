@@ -1,0 +1,205 @@
+"""A scripted expert that picks an object and places it in a bowl, in all environments of a batch.
+
+The table is at z = 0, the height of the robot's base. The fingers close along y of the world.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Episodes
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.batch import Batch
+from robo_genesis.sim.arm.engine_kinematics import IkSettings, solve_ik
+from robo_genesis.sim.arm.joint_control import CaseError, ControlCase
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.kinematics import ARM
+from robo_genesis.sim.arm.lifting import DOWN, FINGERS, HAND_TO_PAD
+from robo_genesis.sim.bodies import bowl
+from robo_genesis.sim.bodies.table import SceneCase, World
+
+PHASES = ("pregrasp", "descend", "close", "lift", "move", "lower", "open", "retreat", "done")
+"""The phases of an episode in their order."""
+
+CLOSE, LIFT, MOVE, LOWER, OPEN, DONE = (
+    PHASES.index(name) for name in ("close", "lift", "move", "lower", "open", "done")
+)
+
+OF_GOAL = (0, 1, 1, 2, 3, 4, 4, 3, 3)
+"""By phase, the number of its goal among `waypoints`."""
+
+STRIDE = 0.012
+"""Largest change of a joint's command in one outer step [rad]."""
+
+ARRIVED, SLOW, STILL = 0.015, 0.05, 0.002
+"""A phase of the arm ends when each joint is this near to its goal [rad] and slower than this
+[rad/s]; one of the fingers when both are slower than this [m/s]."""
+
+CLOSING, LIMIT = 5, 120
+"""Least outer steps of a phase of the fingers, and most of any phase."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PickCase(SceneCase):
+    """Episodes of a scripted expert, one in each environment of a scene.
+
+    `starts` and `beliefs` (e, 2) are where the object begins and where the expert believes it [m].
+    A sample of `dt` has `commands` of the expert. `settings` are those of the solver. The pads
+    grip `pad` below the object's top; `above`, `rise` and `drop` are the heights of the pregrasp
+    and of the lift above the grasp, and of the object's lower face above the table when it is
+    released [m].
+    """
+
+    starts: FloatArray
+    beliefs: FloatArray
+    settings: IkSettings
+    commands: int = 5
+    pad: float = 0.025
+    above: float = 0.10
+    rise: float = 0.12
+    drop: float = 0.02
+
+    @property
+    def control(self) -> ControlCase:
+        """The settings of the robot in each environment; its steps are those of a command."""
+        n = self.commands
+        own = {"dt": self.dt / n, "substeps": self.substeps // n, "steps": self.steps * n}
+        return replace(self.commanding(self.q_start), **own)
+
+    @property
+    def waypoints(self) -> list[FloatArray]:
+        """Positions (e, 3) of the hand [m]: pregrasp, grasp, lifted, above the bowl, at release."""
+        grasp = self.size[2] - self.pad + HAND_TO_PAD
+        places = self.beliefs, np.broadcast_to(self.bowl_at, np.shape(self.beliefs))
+        heights = [(0, self.above), (0, 0.0), (0, self.rise), (1, self.rise), (1, self.drop)]
+        return [
+            np.column_stack([places[at], np.full(len(self.beliefs), grasp + more)])
+            for at, more in heights
+        ]
+
+
+def build(gs: Any, case: PickCase, view: dict[str, Any] | None = None, **options: Any) -> World:
+    """Build the scene of episodes, with the outer step of a command; see `table.build`.
+
+    Raises:
+        CaseError: an object begins over the bowl, where its episode would be solved already.
+    """
+    from robo_genesis.sim.bodies import table
+
+    solved = np.hypot(*(case.starts - case.bowl_at).T) < bowl.RIM + max(case.size[:2]) / 2
+    if solved.any():
+        raise CaseError(
+            f"The object of environment {int(solved.argmax())} begins over the bowl at "
+            f"{case.bowl_at}. Choose starts beside it: an episode that begins solved shows nothing."
+        )
+    scene = replace(case, dt=case.control.dt, substeps=case.control.substeps, ball_radius=0.0)
+    return table.build(gs, scene, view, n_envs=len(case.starts), **options)
+
+
+def plan(robot: Any, joints: JointMap, case: PickCase) -> tuple[FloatArray, np.ndarray]:
+    """Ask the solver for all waypoints, each from the answer before.
+
+    Returns:
+        Joint positions (phases, e, 7) at which the phases end [rad], and whether (e,) the solver
+        found all of them.
+    """
+    q, found = np.tile(case.q_start, (len(case.starts), 1)), []
+    good = np.ones(len(q), bool)
+    down = np.tile(DOWN, (len(q), 1))
+    for position in case.waypoints:
+        answer = solve_ik(robot, joints, position, down, q, case.settings)
+        good &= kinematics.accepted(answer.q, answer.error, *case.settings.tolerances)
+        q = np.concatenate([answer.q[:, :ARM].astype(float), q[:, ARM:]], axis=1)
+        found.append(q[:, :ARM])
+    return np.stack([found[at] for at in OF_GOAL]), good
+
+
+class Expert:
+    """The phase machine of all environments: a phase ends by what is measured, not by time."""
+
+    def __init__(self, case: PickCase, goals: FloatArray, accepted: np.ndarray) -> None:
+        """Begin the first phase; environments without accepted goals are done.
+
+        Args:
+            case: the settings.
+            goals: as of `plan`.
+            accepted: as of `plan`.
+        """
+        self.goals, self.rows = goals, np.arange(len(accepted))
+        self.phase = np.where(accepted, 0, DONE)
+        self.since = np.zeros(len(accepted), int)
+        self.command = np.tile(case.q_start, (len(accepted), 1))
+        self.opened = float(case.q_start[-1])
+
+    def act(self, q: FloatArray, qd: FloatArray) -> FloatArray:
+        """Return the next command (e, 9) from positions and velocities (e, 9) [rad or m]."""
+        self.since += 1
+        ends = self.ends(q, qd) | (self.since >= LIMIT)
+        ends &= self.phase < DONE
+        self.phase[ends] += 1
+        self.since[ends] = 0
+        way = self.goals[self.phase, self.rows] - self.command[:, :ARM]
+        longest = np.maximum(np.abs(way).max(axis=1, keepdims=True), STRIDE)
+        self.command[:, :ARM] += way * STRIDE / longest
+        shut = (self.phase >= CLOSE) & (self.phase < OPEN)
+        self.command[:, ARM:] = np.where(shut, 0.0, self.opened)[:, None]
+        return self.command
+
+    def ends(self, q: FloatArray, qd: FloatArray) -> np.ndarray:
+        """Return in which environments (e,) the present phase has reached its end."""
+        near = np.abs(q[:, :ARM] - self.goals[self.phase, self.rows]).max(axis=1) < ARRIVED
+        arrived = near & (np.abs(qd[:, :ARM]).max(axis=1) < SLOW)
+        still = (np.abs(qd[:, ARM:]).max(axis=1) < STILL) & (self.since >= CLOSING)
+        return np.where(np.isin(self.phase, (CLOSE, OPEN)), still, arrived)
+
+
+def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
+    """Return normal forces (e, 2) of both fingers on the object [N], and which are touched.
+
+    The engine pads the contacts of a batch to the longest list; its mask says which are valid.
+    """
+    contacts = world.body.get_contacts(with_entity=world.robot)
+    a, b, valid, force, normal = (
+        to_numpy(contacts[of]) for of in ("geom_a", "geom_b", "valid_mask", "force_a", "normal")
+    )
+    along = np.abs((force * normal).sum(axis=-1))
+    forces = []
+    for name in FINGERS.values():
+        link = world.robot.get_link(name)
+        of_link = np.isin([a, b], range(link.geom_start, link.geom_end)).any(axis=0)
+        forces.append((along * (valid & of_link)).sum(axis=1))
+    return np.stack(forces, axis=1), valid.any(axis=1)
+
+
+def run(world: World, joints: JointMap, case: PickCase) -> tuple[Episodes, Batch]:
+    """Let the expert work in all environments; return the samples, and the batch of all states."""
+    n = len(case.starts)
+
+    def place() -> None:
+        world.body.set_pos(np.column_stack([case.starts, np.full(n, case.size[2] / 2)]))
+
+    batch = Batch(world.scene, world.robot, joints, [case.control] * n, (world.body,), place)
+    expert = Expert(case, *plan(world.robot, joints, case))
+    samples = []
+    for k in range(case.steps * case.commands + 1):
+        q, pos, quat, qd = batch.readings[-1][:4]
+        if k % case.commands == 0:
+            samples.append((expert.phase.copy(), q, pos[:, -1], quat[:, -1], *pressing(world)))
+        if k < case.steps * case.commands:
+            batch.command(expert.act(q, qd))
+            batch.step(1)
+    phase, q, pos, quat, force, touches = map(np.stack, zip(*samples, strict=True))
+    return (
+        Episodes(
+            t=np.arange(case.steps + 1) * case.dt,
+            phase=phase.astype(np.int8),
+            q=q,
+            object_pos=pos,
+            object_quat=quat,
+            force=force.astype(np.float32),
+            touches=touches.astype(np.int8),
+        ),
+        batch,
+    )
