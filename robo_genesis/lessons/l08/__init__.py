@@ -8,6 +8,5 @@ __getattr__ = on_demand(
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
     describe="robo_genesis.sim.arm.joints",
     fixed_parts="robo_genesis.sim.visual_shape",
-    picking="robo_genesis.sim.arm",
     read_shape="robo_genesis.sim.visual_shape",
 )

@@ -2,11 +2,10 @@
 
 from collections.abc import Iterator
 from dataclasses import fields, replace
-from itertools import chain
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, within
+from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Episodes, Trace
 from robo_genesis.lessons.l08 import ladder, spec
@@ -43,18 +42,36 @@ def words_differ(run: Experiment) -> Iterator[Finding]:
 
 
 def along_the_pads(run: Experiment) -> Iterator[Finding]:
-    """Of the episodes whose error along the pads is below 5 mm, at least 95 % succeed; of those with
-    more than 9 mm, at most 20 %. The errors across the pads are below 11 mm, and do no harm.
+    """Each episode whose error along the pads is above −3 mm succeeds, up to 11 mm; none succeeds
+    below −6 mm. The errors across the pads are at most 7 mm.
     """
-    error = np.abs(spec.ASKEW.beliefs - spec.STARTS)
+    error = spec.ASKEW.beliefs - spec.STARTS
     good = ladder.reached(run.traces["askew"], spec.ASKEW) == len(ladder.RUNGS)
-    yield above("small_error.share", float(good[error[:, 0] < 5e-3].mean()), 0.95)
-    yield below("large_error.share", float(good[error[:, 0] > 9e-3].mean()), 0.2)
-    yield at_most("across_m", float(error[:, 1].max()), 11e-3)
+    yield equal("small_error.failed", int((~good[error[:, 0] > -3e-3]).sum()), 0)
+    yield equal("large_error.succeeded", int(good[error[:, 0] < -6e-3].sum()), 0)
+    yield above("largest_m", float(error[:, 0].max()), 10e-3)
+    yield at_most("across_m", float(np.abs(error[:, 1]).max()), 7.1e-3)
+
+
+def hand_is_short(run: Experiment) -> Iterator[Finding]:
+    """When the fingers begin to close, the hand is between 2.5 and 4.5 mm nearer to the base than
+    the expert believes the object.
+    """
+    for name in ("exact", "askew"):
+        yield within(f"{name}.short_m", run.metrics[name].short, -3.5e-3, 1e-3)
+
+
+def held_but_sliding(run: Experiment) -> Iterator[Finding]:
+    """In the move each finger presses with 11 to 12.5 N, and the object slides down in the fingers
+    by 0.5 to 2.5 mm/s.
+    """
+    for name in ("exact", "askew"):
+        yield within(f"{name}.press_N", run.metrics[name].press, 11.75, 0.75)
+        yield within(f"{name}.creep_m_s", run.metrics[name].creep, 1.5e-3, 1e-3)
 
 
 def shown_episodes(run: Experiment) -> Iterator[Finding]:
-    """Each episode of the replay reaches the rung that its name says, and goes through all phases."""
+    """Each episode of the replay reaches the rung of its name, and goes through all phases."""
     level = ladder.reached(run.traces["askew"], spec.ASKEW)
     for name, row in spec.SHOWN.items():
         yield equal(f"{name}.rungs", int(level[row]), spec.REACH[name])
@@ -98,8 +115,8 @@ def of_batch(run: Experiment, name: str, row: int) -> Iterator[Finding]:
     """Yield what an episode of the replay does not share with its batch, or with a driven robot."""
     trace, case, links = run.traces[name], spec.EPISODES[name], run.links[:-1]
     every, batch = spec.ASKEW.commands, run.traces["askew"]
-    found = {"q": trace.q, "object_pos": trace.link_pos[:, -1], "object_quat": trace.link_quat[:, -1]}
-    for array, values in found.items():
+    pos, quat = trace.link_pos[:, -1], trace.link_quat[:, -1]
+    for array, values in (("q", trace.q), ("object_pos", pos), ("object_quat", quat)):
         expected = getattr(batch, array)[:, row]
         yield from apart("pose", f"{array} of the batch", values[::every], expected, 0.0)
     yield from unit_quaternions(trace.link_quat)
@@ -121,6 +138,6 @@ def without_object(trace: Trace, steps: int | None = None) -> Trace:
 
 CHECKS = (structure, stamps, laws_of_motion, posture)
 LECTURE = (
-    place_is_enough, turned_camera, words_differ, along_the_pads, shown_episodes,
-    order_does_not_matter,
+    place_is_enough, turned_camera, words_differ, along_the_pads, hand_is_short, held_but_sliding,
+    shown_episodes, order_does_not_matter,
 )  # fmt: skip

@@ -1,13 +1,14 @@
 """Success as a ladder: which rungs the episodes of a batch reach, and what other words count."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Episodes
-from robo_genesis.sim.arm.picking import DONE, LIFT, LOWER, MOVE, PickCase
+from robo_genesis.sim.arm.kinematics import hand_pose
+from robo_genesis.sim.arm.picking import CLOSE, DONE, LIFT, LOWER, MOVE, PickCase
 from robo_genesis.sim.bodies import bowl
 
 PRESSES = 0.1  # Normal force from which a finger holds [N]
@@ -83,7 +84,13 @@ class EpisodesMetrics(CaseMetrics):
     raised_once: float = metric("1", "lifted at some time", "object_pos_m")
     over_bowl_once: float = metric("1", "over the bowl at some time", "object_pos_m")
     in_bowl: float = metric("1", "in the bowl at the end", "object_pos_m", "object_quat_wxyz")
+    upper: float = metric("1", "success among the half with larger y", "phase", "force_N",
+                          "object_pos_m", "touches")  # fmt: skip
     off_centre: float = metric("m", "median distance from the bowl's axis", "object_pos_m")
+    short: float = metric("m", "hand beyond its believed place, along x", "q_rad_or_m", "phase")
+    press: float = metric("N", "force of a finger in the move", "force_N", "phase")
+    creep: float = metric("m/s", "slide in the fingers in the move", "q_rad_or_m", "object_pos_m",
+                          noun="speed at which the object slides in the fingers")  # fmt: skip
 
 
 def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
@@ -96,9 +103,27 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         (rise.max(axis=0) >= RAISED).sum(),
         (apart.min(axis=0) < CENTRED).sum(),
         passed["contained"].sum(),
+        (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
         np.median(apart[-1]),
+        np.median(at_closing(trace)[:, 0] - case.beliefs[:, 0]),
+        *grip(trace, level > RUNGS.index("carried")),
     ]
     return EpisodesMetrics(*map(float, values))
 
 
-NAMES = tuple(one.name for one in fields(EpisodesMetrics))
+def at_closing(trace: Episodes) -> FloatArray:
+    """Return where the hand is (e, 3) when the fingers begin to close [m]."""
+    first = (trace.phase >= CLOSE).argmax(axis=0)
+    return np.asarray(hand_pose(trace.q[first, np.arange(len(first))]).position)
+
+
+def grip(trace: Episodes, held: np.ndarray) -> tuple[float, float]:
+    """Return force of a finger [N] and downward slide of the object [m/s], medians over the move.
+
+    `held` (e,) are the episodes that count. The first and the last sample of a move do not.
+    """
+    inner = (trace.phase == MOVE) & np.roll(trace.phase == MOVE, 1, 0) & held
+    inner &= np.roll(trace.phase == MOVE, -1, 0)
+    above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
+    speed = np.gradient(above, trace.dt, axis=0)
+    return float(np.median(trace.force[inner])), float(np.median(speed[inner]))

@@ -12,16 +12,14 @@ from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 
 MEASURES = False
 
-COPIES = {"again": "repeats another run of this page", "permuted": "has the episodes of another run"}
+COPY = "repeats the episodes of another run of this page, and has no metrics"
 ONE = "one episode of a batch, at all its steps"
 
 
 def batches(cases: dict[str, Any]) -> dict[str, Run]:
-    """Return runs of all episodes; copies of others have no metrics."""
-    return {
-        name: Run(case, name not in COPIES, COPIES.get(name, ""), Episodes)
-        for name, case in cases.items()
-    }
+    """Return runs of all episodes; those that are not counted copy others."""
+    counted = {name: name in spec.COUNTED for name in cases}
+    return {n: Run(cases[n], own, "" if own else COPY, Episodes) for n, own in counted.items()}
 
 
 LECTURE = MeasuringPage(
@@ -37,7 +35,7 @@ LECTURE = MeasuringPage(
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(("exact", "askew"), EpisodesMetrics),
+    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics),
     pages={"lecture": LECTURE},
     replays={
         "episodes": Replay(

@@ -13,6 +13,7 @@ can have curves of the chosen run, or the chosen posture in 3D. The data come fr
 | `notes` | the meaning of signs in the cells |
 | `curves` | what is drawn of a run; each map has the axes, each cell the packed values |
 | `postures` | by run the targets (m, 3) [m] of its answers; each map names its `run` |
+| `traces` | runs of the postures that are not in the bundle, by name |
 | `thing` | what the postures are of, by default the thing of the lesson's first replay |
 | `around` | whether what does not move is drawn with the postures |
 | `tables` | by caption the rows of a table below the fold |
@@ -113,7 +114,8 @@ def explorer_block(
         name: what the lesson calls the data, if it has several.
     """
     data = recorded.explored(*name)
-    parts = {part: data.pop(part, None) for part in ("postures", "tables", "picture")}
+    kept = ("postures", "traces", "tables", "picture")
+    parts = {part: data.pop(part, None) for part in kept}
     block = nodes.container(classes=["explorer-block"], evidence_runs=(key,))
     if parts["picture"] is not None:
         if not (recorded.folder / "frames" / f"{parts['picture']['name']}_rgb.png").is_file():
@@ -124,7 +126,9 @@ def explorer_block(
     elif parts["postures"] is not None:
         block["classes"].append("replay-block")
         files = "-".join(("postures", *key.split("/"), *name))
-        block += postures(directive, files, recorded, data, parts["postures"], parts["tables"])
+        runs = recorded.experiment.traces | (parts["traces"] or {})
+        traces = {name: with_target(runs[name], of) for name, of in parts["postures"].items()}
+        block += postures(directive, files, recorded, data, traces, parts["tables"] or {})
     else:
         block += [opening("", data), panel(data)]
     return block
@@ -182,7 +186,7 @@ def postures(
     name: str,
     recorded: Recorded,
     data: Mapping[str, Any],
-    targets: Mapping[str, FloatArray],
+    traces: Mapping[str, Trace],
     found: Mapping[str, Sequence[Mapping[str, Any]]],
 ) -> Iterator[nodes.Node]:
     """Yield the answers of a page in 3D, and leave one model with an animation for each map.
@@ -192,7 +196,7 @@ def postures(
         name: of the model's files.
         recorded: the bundle of the page.
         data: see the module's table.
-        targets: as the key `postures` there.
+        traces: of the postures with their targets, by map.
         found: as the key `tables` there.
     """
     from robo_genesis.site.replay.scenery import fitted  # it loads slowly
@@ -200,7 +204,6 @@ def postures(
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
     shape = replays.shape_file(recorded.lesson, replay.thing)
     thing = data.get("thing", replay.thing)
-    traces = {case: with_target(run.traces[case], of) for case, of in targets.items()}
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
     inputs = [name.encode(), shape.read_bytes(), *replays.bundle_inputs(recorded.folder)]
     alt = f"The {thing} at the start, drawn from the recorded poses."
@@ -215,7 +218,8 @@ def postures(
     caption = f"Recorded postures of the {thing}. Yellow cross: the target."
     yield replays.stage(still, over, caption, f"{name}-model")
     yield panel(data, f"Show in 3D loads the {thing}: {weight} kB.")
-    yield from fold(directive, found)
+    if found:
+        yield from fold(directive, found)
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 
 

@@ -1,0 +1,70 @@
+"""Figures of L08, each a function of the experiment."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.plotting import LINE, legend_above, look
+from robo_genesis.lessons.l08 import ladder, spec
+from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm.franka import LINK_PARENTS
+from robo_genesis.sim.arm.kinematics import hand_pose
+
+MEASURES = False
+
+
+def posture(run: Experiment) -> Figure:
+    """Show the camera frames of both ends, without a camera the link origins of an episode."""
+    return plotting.robot_ends(run.frames, run.traces["placed"], LINK_PARENTS)
+
+
+def phases(run: Experiment) -> Figure:
+    """Draw the height of the object and the phase of one episode over time."""
+    figure = plotting.figure(4.4)
+    above, below = figure.subplots(2, 1, sharex=True)
+    trace, row = run.traces["askew"], spec.SHOWN["placed"]
+    hand = hand_pose(trace.q[:, row]).position[:, 2]
+    body = trace.object_pos[:, row, 2]
+    for label, z, mark in (("hand", hand, "first"), ("object", body, "baseline")):
+        above.plot(trace.t, 1000 * z, label=label, **look(mark))
+    below.step(trace.t, trace.phase[:, row], where="post", **look("baseline"))
+    below.set(yticks=range(len(picking.PHASES)), yticklabels=picking.PHASES, xlabel="time [s]")
+    above.set_ylabel("z [mm]")
+    plotting.label_ends(above, "Height of hand and object, and the phase")
+    return figure
+
+
+def errors(run: Experiment) -> Figure:
+    """Draw the error of the believed place in each episode, marked by the rung it reaches."""
+    figure, ax = plotting.axes(4.6)
+    error = 1000 * (spec.ASKEW.beliefs - spec.STARTS)
+    level = ladder.reached(run.traces["askew"], spec.ASKEW)
+    for name, mark, sign in (
+        ("placed", "baseline", "o"), ("slipped", "first", "s"), ("tipped", "second", "^"),
+        ("pushed", "third", "x"),
+    ):  # fmt: skip
+        rung = spec.REACH[name]
+        own = level == rung
+        ax.plot(*error[own].T, sign, color=look(mark)["color"], markersize=4, label=SIGNS[rung])
+    ax.axvline(0, **LINE)
+    ax.set(xlabel="error along the pads, x [mm]", ylabel="error across the pads, y [mm]")
+    legend_above(ax, "Each sign is an episode")
+    return figure
+
+
+SIGNS = {7: "in the bowl", 3: "lost on the way", 2: "lost in the lift", 1: "never held"}
+"""By number of rungs, the words of the legend."""
+
+
+def creep(run: Experiment) -> Figure:
+    """Draw how far the object is below its place in the hand at the start of the move."""
+    figure, ax = plotting.axes(3.4)
+    trace, row = run.traces["askew"], spec.SHOWN["placed"]
+    held = (picking.LIFT, picking.MOVE, picking.LOWER)
+    inside = np.flatnonzero(np.isin(trace.phase[:, row], held))
+    above = hand_pose(trace.q[inside, row]).position[:, 2] - trace.object_pos[inside, row, 2]
+    ax.plot(trace.t[inside], 1000 * (above - above[0]), **look("baseline"))
+    ax.set(xlabel="time [s]", ylabel="slid down [mm]")
+    ax.set_title("Slide of the object in the closed fingers")
+    return figure
