@@ -6,6 +6,7 @@ __getattr__ = on_demand(
     __name__,
     LESSON="pages",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
+    build="robo_genesis.sim.arm.picking",
     describe="robo_genesis.sim.arm.joints",
     fixed_parts="robo_genesis.sim.visual_shape",
     read_shape="robo_genesis.sim.visual_shape",

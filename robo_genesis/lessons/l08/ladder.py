@@ -122,8 +122,13 @@ def grip(trace: Episodes, held: np.ndarray) -> tuple[float, float]:
 
     `held` (e,) are the episodes that count. The first and the last sample of a move do not.
     """
-    inner = (trace.phase == MOVE) & np.roll(trace.phase == MOVE, 1, 0) & held
-    inner &= np.roll(trace.phase == MOVE, -1, 0)
+    inner = inside_move(trace) & held
     above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
     speed = np.gradient(above, trace.dt, axis=0)
     return float(np.median(trace.force[inner])), float(np.median(speed[inner]))
+
+
+def inside_move(trace: Episodes) -> np.ndarray:
+    """Return the samples (n+1, e) of the move without its first and its last one."""
+    moving = trace.phase == MOVE
+    return np.asarray(moving & np.roll(moving, 1, 0) & np.roll(moving, -1, 0))

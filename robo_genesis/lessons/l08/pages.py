@@ -4,6 +4,7 @@ from typing import Any
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Run, counts
 from robo_genesis.core.trace import Episodes, Trace
 from robo_genesis.lessons.l08 import checks, ladder, spec
@@ -33,10 +34,24 @@ LECTURE = MeasuringPage(
     parameters=spec.parameters,
 )
 
+LAB = with_functions(
+    MeasuringPage(
+        runs={name: Run(case, False, ONE) for name, case in spec.LAB_EPISODE.items()}
+        | batches(spec.LAB),
+        kind=Trace,
+        joints=JOINT_NAMES,
+        readings={"model": counts(MODEL_COUNTS)},
+        measure=ladder.episodes_metrics,
+        checks=(*checks.CHECKS, *checks.LAB),
+        parameters=spec.lab_parameters,
+    ),
+    "grasp_pose", "ended", "rungs", "wilson", "creep",
+)  # fmt: skip
+
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics),
-    pages={"lecture": LECTURE},
+    pages={"lecture": LECTURE, "lab": LAB},
     replays={
         "episodes": Replay(
             tuple(spec.SHOWN),

@@ -16,7 +16,8 @@ MEASURES = False
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the link origins of an episode."""
-    return plotting.robot_ends(run.frames, run.traces["placed"], LINK_PARENTS)
+    episode = next(name for name in spec.ROWS if name in run.cases)
+    return plotting.robot_ends(run.frames, run.traces[episode], LINK_PARENTS)
 
 
 def phases(run: Experiment) -> Figure:

@@ -35,14 +35,18 @@ MIDDLE = read_only((0.5, -0.095))
 """Where the camera that is turned sees right [m]."""
 
 
-def starts(cells: int = CELLS, seed: int = 1) -> FloatArray:
-    """Return places (cells², 2), one at random in each cell of the region [m].
+def starts(
+    cells: int = CELLS, seed: int = 1, region: tuple[tuple[float, float], ...] = REGION
+) -> FloatArray:
+    """Return places (cells², 2), one at random in each cell of a region [m].
+
+    A region is the least and the largest x, and those of y.
 
     Neighbours along x follow each other.
     """
     y, x = np.divmod(np.arange(cells**2), cells)
     share = (np.column_stack([x, y]) + np.random.default_rng(seed).random((cells**2, 2))) / cells
-    least, most = np.transpose(REGION)
+    least, most = np.transpose(region)
     return read_only(least + share * (most - least))
 
 
@@ -84,21 +88,32 @@ REACH = {"placed": 7, "slipped": 3, "tipped": 2, "pushed": 1}
 """How many rungs each of them reaches; not fitted to a run."""
 
 
-def one(row: int) -> SceneCase:
-    """Return the settings of one episode of `ASKEW`, at all its outer steps."""
-    control = ASKEW.control
+def one(row: int, of: PickCase = ASKEW) -> SceneCase:
+    """Return the settings of one episode of a batch, at all its outer steps."""
+    control = of.control
     return SceneCase(
-        shape=ASKEW.shape, size=ASKEW.size, place=(*STARTS[row].tolist(), 0.0), ball_radius=0.0,
+        shape=of.shape, size=of.size, place=(*of.starts[row].tolist(), 0.0), ball_radius=0.0,
         kp=KP, kv=KV, steps=control.steps, dt=control.dt, substeps=control.substeps,
     )  # fmt: skip
 
 
 EPISODES = {name: one(row) for name, row in SHOWN.items()}
 
+LAB = {"exact": EXACT, "again": EXACT}
+"""Batches of the lab."""
+
+LAB_EPISODE = {"one": one(0, EXACT)}
+"""The episode of `EXACT` that the lab has at all its outer steps."""
+
+ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact", 0)}
+"""By episode, its batch and its environment there."""
+
+CASES = LAB | LAB_EPISODE
+
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 """The camera; it shows one environment."""
 
-LABELS = {"exact": "place known", "askew": "camera turned by 4°"} | {
+LABELS = {"exact": "place known", "one": "one episode", "askew": "camera turned by 4°"} | {
     "placed": "in the bowl", "slipped": "lost on the way", "tipped": "lost in the lift",
     "pushed": "pushed away",
 }  # fmt: skip
@@ -120,3 +135,8 @@ RELATIONS: tuple[Any, ...] = ()
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lecture as JSON values, for the evidence key."""
     return inputs(BATCHES | EPISODES, VIEW, counted=list(EXPECTED_MODEL))
+
+
+def lab_parameters() -> dict[str, Any]:
+    """Return every configured input of the lab, as `parameters`."""
+    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL))

@@ -34,5 +34,6 @@ def episodes(
 
 
 def keep(page: Any, batch: Batch) -> None:
-    """Give a page all states of the episodes that its replay shows."""
-    page.traces |= {name: batch.trace(row) for name, row in spec.SHOWN.items()}
+    """Give a page all states of the episodes that its replay or its schematic shows."""
+    rows = {name: row for name, (_, row) in spec.ROWS.items() if name in page.experiment.cases}
+    page.traces |= {name: batch.trace(row) for name, row in rows.items()}

@@ -3,6 +3,7 @@
 The table is at z = 0, the height of the robot's base. The fingers close along y of the world.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -98,8 +99,10 @@ def build(gs: Any, case: PickCase, view: dict[str, Any] | None = None, **options
     return table.build(gs, scene, view, n_envs=len(case.starts), **options)
 
 
-def plan(robot: Any, joints: JointMap, case: PickCase) -> tuple[FloatArray, np.ndarray]:
-    """Ask the solver for all waypoints, each from the answer before.
+def plan(
+    robot: Any, joints: JointMap, case: PickCase, points: list[FloatArray] | None = None
+) -> tuple[FloatArray, np.ndarray]:
+    """Ask the solver for all waypoints or other `points`, each from the answer before.
 
     Returns:
         Joint positions (phases, e, 7) at which the phases end [rad], and whether (e,) the solver
@@ -108,7 +111,7 @@ def plan(robot: Any, joints: JointMap, case: PickCase) -> tuple[FloatArray, np.n
     q, found = np.tile(case.q_start, (len(case.starts), 1)), []
     good = np.ones(len(q), bool)
     down = np.tile(DOWN, (len(q), 1))
-    for position in case.waypoints:
+    for position in points or case.waypoints:
         answer = solve_ik(robot, joints, position, down, q, case.settings)
         good &= kinematics.accepted(answer.q, answer.error, *case.settings.tolerances)
         q = np.concatenate([answer.q[:, :ARM].astype(float), q[:, ARM:]], axis=1)
@@ -173,15 +176,21 @@ def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
     return np.stack(forces, axis=1), valid.any(axis=1)
 
 
-def run(world: World, joints: JointMap, case: PickCase) -> tuple[Episodes, Batch]:
-    """Let the expert work in all environments; return the samples, and the batch of all states."""
+def run(
+    world: World, joints: JointMap, case: PickCase, of: Callable[..., Expert] = Expert,
+    points: list[FloatArray] | None = None,
+) -> tuple[Episodes, Batch]:  # fmt: skip
+    """Let the expert work in all environments; return the samples, and the batch of all states.
+
+    `of` makes another expert, and `points` are its waypoints.
+    """
     n = len(case.starts)
 
     def place() -> None:
         world.body.set_pos(np.column_stack([case.starts, np.full(n, case.size[2] / 2)]))
 
     batch = Batch(world.scene, world.robot, joints, [case.control] * n, (world.body,), place)
-    expert = Expert(case, *plan(world.robot, joints, case))
+    expert = of(case, *plan(world.robot, joints, case, points))
     samples = []
     for k in range(case.steps * case.commands + 1):
         q, pos, quat, qd = batch.readings[-1][:4]
