@@ -10,16 +10,14 @@ import numpy as np
 from robo_genesis.core.checks import Finding, equal, within
 from robo_genesis.core.exercises import as_test, compared, refused, same_array
 from robo_genesis.lessons.l08 import ladder, rates
-from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
-from robo_genesis.sim.arm.lifting import HAND_TO_PAD, PAD
 
 MEASURES = False
 
 # Place of the lower face and height of an object [m]
 OBJECTS = {
-    "on_the_table": ((0.5, -0.1, 0.0), 0.07), "beside": ((-0.31, 0.42, 0.0), 0.031),
-    "above_the_bowl": ((0.55, 0.22, 0.02), 0.07), "on_a_shelf": ((0.4, 0.25, 0.3), 0.12),
+    "on_the_table": ((0.5, -0.1, 0.0), 0.07), "above_the_bowl": ((0.55, 0.22, 0.02), 0.031),
 }  # fmt: skip
 
 
@@ -27,12 +25,9 @@ OBJECTS = {
 def grasp(grasp_pose: Callable[..., Any]) -> Iterator[Finding]:
     """Check `grasp_pose(place, height)`: positions of the hand at pregrasp and grasp [m]."""
     for name, (place, height) in OBJECTS.items():
+        right = np.array(lifting.waypoints(place, height)[:2])
         found = grasp_pose(np.array(place), height)
-        yield equal(f"{name}.number_of_positions", len(found), 2)
-        x, y, z = place
-        at = np.array([x, y, z + height - PAD + HAND_TO_PAD])
-        for label, own, more in zip(("pregrasp_m", "grasp_m"), found, (0.1, 0.0), strict=True):
-            yield from same_array(f"{name}.{label}", own, np.add(at, (0, 0, more)), 1e-9)
+        yield from same_array(f"{name}.pregrasp_and_grasp_m", found, right, 1e-9)
 
 
 AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
@@ -40,16 +35,13 @@ AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
 # Whether a phase of the arm ends and one of the fingers, and by array and joint what is added to an
 # arm at its goal with still fingers
 STATES: dict[str, tuple[bool, bool, dict[tuple[str, int], float]]] = {
-    "at_its_goal": (True, True, {}), "closed": (True, True, {("q", 7): -0.04, ("q", 8): -0.04}),
+    "at_its_goal": (True, True, {}), "nan": (False, True, {("q", 2): nan}),
     "near": (True, True, {("q", k): 0.9 * AT * (-1) ** k for k in range(ARM)}),
     "slow": (True, True, {("qd", k): 0.9 * SLOW * (-1) ** k for k in range(ARM)}),
-    "first_joint_far": (False, True, {("q", 0): 1.1 * AT}), "nan": (False, True, {("q", 2): nan}),
-    "last_joint_below": (False, True, {("q", 6): -1.1 * AT}), "far": (False, True, {("q", 1): -9}),
-    "at_the_limit": (False, True, {("q", 3): AT}), "fast": (False, True, {("qd", 6): 1.1 * SLOW}),
-    "moves_back": (False, True, {("qd", 0): -1.1 * SLOW}), "v": (False, True, {("qd", 2): SLOW}),
-    "speed_nan": (False, True, {("qd", 4): nan}), "left_nan": (True, False, {("qd", 7): nan}),
+    "first_joint_above": (False, True, {("q", 0): 1.1 * AT}), "v": (False, True, {("qd", 2): SLOW}),
+    "last_joint_below": (False, True, {("q", 6): -1.1 * AT}), "at": (False, True, {("q", 3): AT}),
+    "moves_back": (False, True, {("qd", 0): -1.1 * SLOW}), "v_nan": (False, True, {("qd", 4): nan}),
     "left_finger_closes": (True, False, {("qd", 7): -1.1 * STILL}),
-    "right_finger_opens": (True, False, {("qd", 8): 1.1 * STILL}),
     "fingers_opposed": (True, False, {("qd", 7): -0.1, ("qd", 8): 0.1}),
     "almost_still": (True, True, {("qd", 7): 0.9 * STILL, ("qd", 8): -0.9 * STILL}),
     "finger_at_the_limit": (True, False, {("qd", 8): -STILL}),
@@ -78,13 +70,12 @@ def ends(ended: Callable[..., Any]) -> Iterator[Finding]:
 
 
 PHASES = np.array([0, 1, 2, 3, 3, 4, 4, 5, 6, 7, 8, 8, 8, 8, 8, 8])
-LATE, END = slice(5, None), slice(9, None)
+LATE, END, RIM = slice(5, None), slice(9, None), (0.55, 0.22, 0.05)
 
 # Array, index and value of each fault of an episode, and how many rungs the episode passes
 EPISODES: dict[str, tuple[Any, ...]] = {
     "success": (7,), "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
-    "no_plan": ("phase", ..., 8, 0), "done_at_first": ("phase", 0, 8, 0),
-    "one_finger_in_the_lift": ("force", ([3, 4], 1), 0.0, 1), "no_lift": ("phase", [3, 4], 2, 1),
+    "done_at_first": ("phase", 0, 8, 0), "no_lift": ("phase", [3, 4], 2, 1),
     "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1), "held_once": ("force", 3, 0.0, 7),
     "held_at_the_limit": ("force", [3, 4], 0.1, 1), "lightly": ("force", slice(3, 8), 0.11, 7),
     "stays_in_the_lift": ("phase", LATE, 3, 2), "rises_late": ("pos", (5, 2), 0.08, 2),
@@ -94,14 +85,12 @@ EPISODES: dict[str, tuple[Any, ...]] = {
     "lost_in_the_move": ("force", (6, 0), 0.0, 3), "lost_then": ("force", (7, 1), 0.0, 3),
     "lost_at_the_limit": ("force", (5, 1), 0.1, 3), "released_early": ("force", 8, 0.0, 7),
     "not_done": ("phase", -1, 7, 4), "touched_at_the_end": ("touches", -1, 1, 4),
-    "touched_before": ("touches", -2, 1, 7), "and_moves": ("touches", -1, 1, "pos", 12, 9.0, 4),
-    "beside_the_bowl": ("pos", (END, 1), 0.285, 5), "hovers": ("lowest", (), 0.1, 5),
+    "touched_before": ("touches", -2, 1, 7), "nan": ("lowest", (), nan, 5),
     "diagonal": ("pos", (END, slice(0, 2)), [0.5, 0.27], 5), "on_rim": ("lowest", (), 0.041, 5),
-    "high_rim": ("rim", 2, 0.2, "lowest", (), 0.18, 7), "lowest_nan": ("lowest", (), nan, 5),
-    "moves_at_first": ("pos", (11, 0), 0.5503, 6), "moved_before": ("pos", 10, 0.55, 7),
-    "moves_at_last": ("pos", (15, 2), 0.0403, 6), "and_back": ("pos", (13, 1), 0.2197, 6),
+    "high_rim": ("rim", 2, 0.2, "lowest", (), 0.18, 7), "moved_before": ("pos", 10, 0.55, 7),
+    "moves_at_first": ("pos", (11, 0), 0.5503, 6), "moves_at_last": ("pos", (15, 2), 0.0403, 6),
     "in_all_directions": ("pos", 12, [0.55015, 0.22015, 0.04015], 6),
-    "both_ways": ("pos", ([12, 13], 0), [0.55015, 0.54985], 7),
+    "both_ways": ("pos", ([11, 12], 0), [0.55015, 0.54985], 7),
 }  # fmt: skip
 
 
@@ -109,10 +98,9 @@ def episode(*faults: Any) -> list[Any]:
     """Return the arguments of `rungs` for a successful episode with faults."""
     closed = (PHASES >= picking.LIFT) & (PHASES < picking.OPEN)
     pos = np.where(closed[:, None], [0.5, -0.1, 0.15], [0.5, -0.1, 0.035])
-    pos[PHASES >= picking.OPEN] = 0.55, 0.22, 0.04
-    force = np.where(closed, 12.0, 0.0)[:, None] * [1.0, 1.0]
-    found = {"phase": PHASES.copy(), "force": force, "pos": pos, "touches": closed.astype(int),
-             "lowest": np.array(0.005), "rim": np.array([0.55, 0.22, 0.05])}  # fmt: skip
+    pos[PHASES >= picking.OPEN] = *RIM[:2], 0.04
+    found = {"phase": PHASES.copy(), "force": np.outer(closed, [12.0, 12.0]), "pos": pos,
+             "touches": closed * 1, "lowest": np.array(0.005), "rim": np.array(RIM)}  # fmt: skip
     for name, index, value in zip(faults[::3], faults[1::3], faults[2::3], strict=True):
         found[name][index] = value
     return [of if of.ndim else float(of) for of in found.values()]
@@ -140,10 +128,8 @@ def intervals(wilson: Callable[..., Any]) -> Iterator[Finding]:
 
 
 # Times [s], and distances by which the object has slid down [m]
-SLIDES: dict[str, tuple[list[float], list[float]]] = {
-    "steady": ([2.0, 2.05, 2.1], [0.0, 1e-4, 2e-4]), "two_samples": ([0.5, 0.7], [0.03, 0.05]),
-    "still": ([1.0, 2.0, 4.0], [0.02, 0.02, 0.02]), "slides_up": ([0.0, 1.0, 2.0], [3.0, 2.0, 1.0]),
-    "outlier": ([0.0, 0.1, 0.2, 0.3, 0.4], [0.0, 1e-3, 2e-3, 9e-3, 4e-3]),
+SLIDES = {
+    "steady": ([2.0, 2.05, 2.1], [0.0, 1e-4, 2e-4]), "upwards": ([0.0, 2.0], [0.09, 0.05]),
     "outlier_at_the_end": ([3.0, 3.1, 3.2, 3.3, 3.4], [0.0, 1e-3, 2e-3, 3e-3, 9e-3]),
     "uneven_times": ([0.0, 0.1, 0.5, 0.6, 2.0], [0.0, 2e-3, 3e-3, 9e-3, 9e-3]),
 }  # fmt: skip
@@ -151,10 +137,10 @@ SLIDES: dict[str, tuple[list[float], list[float]]] = {
 
 @as_test
 def sliding(creep: Callable[..., Any]) -> Iterator[Finding]:
-    """Check `creep(hand_z, object_z, t)`: the least-squares speed downwards in the fingers [m/s]."""
+    """Check `creep(hand_z, object_z, t)`: the least-squares speed downwards [m/s]."""
     for name, (times, slid) in SLIDES.items():
         t, down = np.array(times), np.array(slid)
         right = float(np.polyfit(t - t.mean(), down, 1)[0])
-        for label, hand in (("at_rest", np.full(len(t), 0.3)), ("moving", 0.3 + 0.2 * t**2)):
+        for moves, hand in (("at_rest", 0 * t + 0.3), ("moving", 0.3 + 0.2 * t**2)):
             found = float(creep(hand, hand - 0.1 - down, t))
-            yield within(f"{name}.hand_{label}_m_s", found, right, 1e-9)
+            yield within(f"{name}.hand_{moves}_m_s", found, right, 1e-9)

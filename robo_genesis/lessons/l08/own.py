@@ -23,10 +23,10 @@ MEASURES = False
 def missing(function: Written, *given: Any) -> bool:
     """Return whether a function is not written yet, and print which one."""
     found = refused(lambda: function(*given))
-    if isinstance(found, NotImplementedError):
-        print(f"{found}; the course's code is used meanwhile")
-        return True
-    return False
+    absent = isinstance(found, NotImplementedError)
+    if absent:
+        print(f"{found}. Until then the course's code does this.")
+    return absent
 
 
 def waypoints(grasp_pose: Written, case: PickCase) -> list[FloatArray]:
@@ -44,7 +44,7 @@ def machine(ended: Written) -> type[picking.Expert]:
     class Own(picking.Expert):
         def ends(self, q: FloatArray, qd: FloatArray) -> np.ndarray:
             goal, of_fingers = self.goals[self.phase, self.rows], np.isin(self.phase, (CLOSE, OPEN))
-            return np.asarray(ended(q, qd, goal, of_fingers, self.since))
+            return np.asarray(ended(q, qd, goal, of_fingers, self.since), bool)
 
     return Own
 
@@ -57,14 +57,13 @@ def run(world: World, joints: Any, case: PickCase, grasp_pose: Written, ended: W
     return picking.run(world, joints, case, of, points)[0]
 
 
-def repeated(mine: Episodes, course: Episodes, case: PickCase) -> str:
-    """Return whether a student's expert does the same as the recorded one."""
-    same = int((ladder.reached(mine, case) == ladder.reached(course, case)).sum())
-    apart = np.linalg.norm(mine.object_pos[-1] - course.object_pos[-1], axis=1).max()
-    return (
-        f"Your expert reaches the rung of the recorded one in {same} of {len(case.starts)} "
-        f"episodes. At the end the objects are at most {scaled_value(float(apart), 'mm')} apart."
+def repeated(mine: Episodes, course: Episodes) -> str:
+    """Return how far objects of a student's expert are from those of the recorded one."""
+    apart = np.linalg.norm(mine.object_pos[-1] - course.object_pos[-1], axis=1)
+    near = (
+        f"At the end {(apart < 1e-3).sum()} of {len(apart)} objects are within 1 mm of the recorded"
     )
+    return f"{near} ones. The largest distance is {scaled_value(float(apart.max()), 'mm')}."
 
 
 def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray | None:
@@ -82,22 +81,21 @@ def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
     for k, name in enumerate(ladder.RUNGS):
         own = "-" if mine is None else (mine > k).sum()
         lines.append(f"{name:10} {own:>6} {(course > k).sum():>7}")
-    lines.append(f"All phases are done in {(trace.phase[-1] == DONE).sum()} episodes.")
-    if mine is not None and len(other := np.flatnonzero(mine != course)):
-        k = other[0]
-        lines.append(f"The ladders differ in {len(other)} episodes; in number {k} yours counts "
-                     f"{mine[k]} rungs, the course's {course[k]}.")  # fmt: skip
-    return "\n".join(lines)
+    if mine is not None and (mine != course).any():
+        lines.append(f"The ladders differ in the episodes {np.flatnonzero(mine != course)}.")
+    return "\n".join(
+        [*lines, f"All phases are done in {(trace.phase[-1] == DONE).sum()} episodes."]
+    )
 
 
 def rate(rungs: Written, wilson: Written, trace: Episodes, case: PickCase) -> str:
     """Return the rate of success with its interval, by the student and by the course."""
-    n, course = len(case.starts), int((ladder.reached(trace, case) == len(ladder.RUNGS)).sum())
-    mine = levels(rungs, trace, case)
-    own = course if mine is None else int((mine == len(ladder.RUNGS)).sum())
-    of = "-" if missing(wilson, own, n) else percent(wilson(own, n))
-    by_course = percent(rates.wilson(course, n))
-    return f"yours   {own} of {n}: {of}\ncourse  {course} of {n}: {by_course}"
+    lines, course = [], ladder.reached(trace, case)
+    for level, interval in ((levels(rungs, trace, case), wilson), (course, rates.wilson)):
+        k, n = int(np.sum(level == len(ladder.RUNGS))), len(course)
+        absent = level is None or missing(interval, k, n)
+        lines.append("-" if absent else f"{k} of {n}: {percent(interval(k, n))}")
+    return "yours   {}\ncourse  {}".format(*lines)
 
 
 def percent(interval: tuple[float, float]) -> str:
@@ -109,34 +107,30 @@ def slide(creep: Written, trace: Episodes, case: PickCase) -> str:
     """Return the median speed of the slide in the move, by the student and by the course."""
     held = ladder.reached(trace, case) > ladder.RUNGS.index("carried")
     inner, hand = ladder.inside_move(trace) & held, hand_pose(trace.q).position[..., 2]
-    rows = [(inner[:, k], k) for k in np.flatnonzero(inner.sum(axis=0) > 1)]
-    if not rows:
+    if not inner.any():
         return "No episode is carried, so there is no slide to measure."
-    course, of = scaled_value(ladder.grip(trace, held)[1], "mm/s"), "-"
-    if not missing(creep, *(np.arange(2.0),) * 3):
+    rows, of = [(inner[:, k], k) for k in np.flatnonzero(inner.sum(axis=0) > 1)], "-"
+    if not missing(creep, *np.eye(3)):
         found = [creep(hand[at, k], trace.object_pos[at, k, 2], trace.t[at]) for at, k in rows]
         of = scaled_value(float(np.median(found)), "mm/s")
-    return f"yours   {of}\ncourse  {course}   in {len(rows)} episodes"
+    return f"yours   {of}\ncourse  {scaled_value(ladder.grip(trace, held)[1], 'mm/s')}"
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the recorded episodes."""
-    m, n = run.metrics["exact"], len(spec.EXACT.starts)
-    good, counts = int(m.resting), [n, *(int(getattr(m, rung)) for rung in ladder.RUNGS)]
-    steps = zip(ladder.RUNGS, counts, counts[1:], strict=False)
-    lost = [f"{a - b} at “{rung}”" for rung, a, b in steps if a > b]
+    m, level = run.metrics["exact"], ladder.reached(run.traces["exact"], spec.EXACT)
+    n, good = len(level), int(m.resting)
+    first = ((rung, (level == k).sum()) for k, rung in enumerate(ladder.RUNGS))
+    lost = [f"{count} at “{rung}”" for rung, count in first if count]
     differ = sum(finding.found for finding in order_does_not_matter(run))
-    side = "nearer to the base" if m.short < 0 else "further from the base"
     return bullets([
         f"{good} of {n} episodes reach the last rung. The interval of the rate is "
         f"{percent(rates.wilson(good, n))}.",
         f"Episodes fail first: {listed(lost)}." if lost else "No episode fails.",
         f"All phases are done in {m.finished:.0f} episodes. At some time the object is lifted in "
         f"{m.raised_once:.0f}.",
-        f"When the fingers begin to close, the hand is "
-        f"{scaled_value(abs(m.short), 'mm')} {side} than the expert believes the object (median).",
         f"In the move a finger presses with {m.press:.1f} N, and the object slides down by "
-        f"{scaled_value(m.creep, 'mm/s')} (medians)." if counts[4] else
+        f"{scaled_value(m.creep, 'mm/s')} (medians)." if m.carried else
         "No episode is carried, so force and slide are not measured.",
         f"The repeated batch differs in {differ} numbers." if differ else
         "The repeated batch is equal to the last bit.",
