@@ -23,8 +23,8 @@ def batches(cases: dict[str, Any]) -> dict[str, Run]:
 
 
 LECTURE = MeasuringPage(
-    runs=batches(spec.BATCHES)
-    | {name: Run(case, False, ONE) for name, case in spec.EPISODES.items()},
+    runs={name: Run(case, False, ONE) for name, case in spec.EPISODES.items()}
+    | batches(spec.BATCHES),
     kind=Trace,
     joints=JOINT_NAMES,
     readings={"model": counts(MODEL_COUNTS)},
