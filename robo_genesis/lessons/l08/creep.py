@@ -9,38 +9,31 @@ import numpy as np
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim.bodies.grippers import (
-    ARMATURE, CONTACTS, PAD, PAD_MASS, SIZE, HeldCase,
-)  # fmt: skip
+from robo_genesis.sim.bodies import grippers
+from robo_genesis.sim.bodies.grippers import CONTACTS, PAD, SIZE, HeldCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 from robo_genesis.sim.mujoco.grippers import ratio_of
 
 SCANS: Mapping[str, Mapping[str, float]] = {
     "friction": {"mu_03": 0.3, "mu_05": 0.5, "base": 1.0, "mu_15": 1.5, "mu_2": 2.0},
     "force": {"N_2": 2.0, "N_5": 5.0, "base": 10.0, "N_20": 20.0, "N_40": 40.0},
-    "mass": {"m_005": 0.05, "base": 0.1, "m_02": 0.2, "m_05": 0.5, "m_1": 1.0, "m_15": 1.5},
+    "mass": {"m_005": 0.05, "base": 0.1, "m_02": 0.2, "m_05": 0.5, "m_09": 0.9, "m_15": 1.5},
 }
 """Runs that differ from `base` in one setting, by setting and name."""
 
-ROW: Mapping[str, Mapping[str, float]] = {
-    "box": {}, "slick": {"friction": 0.3}, "rough": {"friction": 2.0}, "full": {"mass": 0.9},
-    "over": {"mass": 1.5},
-}  # fmt: skip
-"""Boxes of each other scene. The weight of `over` is more than µN, that of the others is less."""
+SCAN = {name: {of: value} for of, row in SCANS.items() for name, value in row.items()}
 
-ONE = {"box": {}}
-DRY = {name: own for name, own in ROW.items() if name != "rough"}  # Which would sink in by 5 mm
+ROW = {name: SCAN[name] for name in ("base", "mu_03", "mu_2", "m_09", "m_15")}
+"""Boxes of each other scene. The weight of `m_15` is more than µN, that of the others is less."""
+
+ONE = {"base": SCAN["base"]}
+SHALLOW = {name: own for name, own in ROW.items() if name != "mu_2"}  # Which would sink in by 5 mm
 
 
 def side_by_side(of: Mapping[str, Mapping[str, float]], **common: Any) -> dict[str, HeldCase]:
     """Return grippers in a row along y."""
     cases = enumerate(of.items())
-    return {n: HeldCase(place=round(0.1 * k, 1), **common | own) for k, (n, own) in cases}
-
-
-def changed(setting: str, value: float) -> HeldCase:
-    """Return the case of `base` with one other setting."""
-    return HeldCase(**{setting: value})
+    return {n: HeldCase(place=round(0.1 * k, 1), **{**common, **own}) for k, (n, own) in cases}
 
 
 def scene(name: str, of: Mapping[str, Mapping[str, float]] = ROW, **common: Any) -> Any:
@@ -51,20 +44,19 @@ def scene(name: str, of: Mapping[str, Mapping[str, float]] = ROW, **common: Any)
 LIGHT = HeldCase().friction * HeldCase().force / HeldCase().gravity
 """Mass whose weight is µN [kg]."""
 
-LONG = {"long": side_by_side({"long": {}}, dt=0.05, substeps=20, duration=10.0)}
-SOFT = (
-    {"scan": side_by_side({n: {of: v} for of, row in SCANS.items() for n, v in row.items()})}
-    | scene("pyramid") | scene("T_5ms", time_constant=0.005) | scene("T_20ms", DRY, time_constant=0.02)
+LONG = {"long": side_by_side({"long": {}}, dt=0.1, substeps=40, duration=10.0)}
+SCENES: dict[str, dict[str, HeldCase]] = (
+    LONG | {"scan": side_by_side(SCAN)}
+    | scene("T_5ms", time_constant=0.005) | scene("T_20ms", SHALLOW, time_constant=0.02)
     | scene("h_1ms", ONE, substeps=10) | scene("iterations_500", ONE, iterations=500)
+    | scene("elliptic_1", cone="elliptic", impratio=1.0)
+    | scene("elliptic_10", cone="elliptic", impratio=10.0) | scene("elliptic", cone="elliptic")
+    | scene("pyramid_10", impratio=10.0) | scene("pyramid_100", impratio=100.0)
+    | scene("noslip_5", noslip=5)
 )  # fmt: skip
-ROUND = scene("elliptic_1", cone="elliptic", impratio=1.0)
-ROUND |= scene("elliptic_10", cone="elliptic", impratio=10.0) | scene("elliptic", cone="elliptic")
-STIFF = scene("pyramid_10", impratio=10.0) | scene("pyramid_100", impratio=100.0)
-NOSLIP = scene("noslip_5", noslip=5)
-SCENES = LONG | SOFT | ROUND | STIFF | NOSLIP
 """The runs in Genesis, by scene."""
 
-CASES: dict[str, HeldCase] = {n: case for of in SCENES.values() for n, case in of.items()}
+CASES = {n: case for of in SCENES.values() for n, case in of.items()}
 TWINS = {f"mujoco_{name}": case for name, case in CASES.items()}
 """The same runs in MuJoCo, in float64."""
 
@@ -73,22 +65,22 @@ CHANGES = {
     "mu_2": ("friction 1 → 2", "base", "a deeper contact"),
     "N_40": ("force 10 → 40 N", "base", "a deeper contact, four times the force"),
     "m_05": ("5 times the mass", "base", "–"),
-    "h_1ms_box": ("step 2.5 → 1 ms", "base", "2.5 times as many steps"),
-    "iterations_500_box": ("500 solver iterations", "base", "none used: it has converged"),
-    "T_5ms_box": ("T 10 → 5 ms", "base", "a step of at most T/2"),
-    "T_20ms_box": ("T 10 → 20 ms", "base", "a deeper contact"),
-    "noslip_5_box": ("noslip, 5 iterations", "base", "a second solver in each step"),
-    "noslip_5_over": ("the same, *mg* > µN", "m_15", "the same"),
-    "elliptic_1_box": ("elliptic, impratio 1", "base", "depth as with µ = 1"),
-    "elliptic_box": ("elliptic, impratio 100", "base", "depth as with µ = 1; no noslip"),
-    "pyramid_100_box": ("pyramid, impratio 100", "base", "a stiffer normal direction"),
+    "h_1ms_base": ("step 2.5 → 1 ms", "base", "2.5 times as many steps"),
+    "iterations_500_base": ("500 solver iterations", "base", "none: the solver has converged"),
+    "T_5ms_base": ("T 10 → 5 ms", "base", "a step of at most T/2"),
+    "T_20ms_base": ("T 10 → 20 ms", "base", "a deeper contact"),
+    "noslip_5_base": ("noslip, 5 iterations", "base", "a second solver in each step"),
+    "noslip_5_m_15": ("the same, *mg* > µN", "m_15", "the same"),
+    "elliptic_1_base": ("elliptic, impratio 1", "base", "depth as with µ = 1"),
+    "elliptic_base": ("elliptic, impratio 100", "base", "depth as with µ = 1; no noslip"),
+    "pyramid_100_base": ("pyramid, impratio 100", "base", "a stiffer normal direction"),
 }
 """What users try, by run: words, the run without it, and its price."""
 
 LABELS = {
-    "long": "10 s", "base": "μ = 1", "mu_2": "μ = 2", "h_1ms_box": "h = 1 ms",
-    "T_5ms_box": "T = 5 ms", "m_15": "1.5 kg", "noslip_5_over": "1.5 kg, noslip",
-    "noslip_5_box": "noslip", "elliptic_box": "elliptic cone, impratio 100",
+    "long": "10 s", "base": "μ = 1", "mu_2": "μ = 2", "h_1ms_base": "h = 1 ms",
+    "T_5ms_base": "T = 5 ms", "m_15": "1.5 kg", "noslip_5_m_15": "1.5 kg, noslip",
+    "noslip_5_base": "noslip", "elliptic_base": "elliptic cone, impratio 100",
 }  # fmt: skip
 """Words of a reader for runs."""
 
@@ -108,7 +100,7 @@ def formulas(case: HeldCase, in_mujoco: bool = False) -> tuple[float, float]:
     d, most, mu = mujoco_contacts.IMPEDANCE[0], mujoco_contacts.IMPEDANCE[1], case.friction
     seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
     k, b = 1 / seconds**2, 2 / seconds
-    w = 1 / case.mass + 1 / (3 * (PAD_MASS + ARMATURE))
+    w = 1 / case.mass + 1 / (3 * (grippers.PAD_MASS + grippers.ARMATURE))
     friction, normal = case.mass * case.gravity / CONTACTS, 2 * case.force / CONTACTS
     square = mu**2 / ratio_of(case)
     edges = 2 * square * (1 + (mu**2 if in_mujoco else square))
@@ -117,7 +109,10 @@ def formulas(case: HeldCase, in_mujoco: bool = False) -> tuple[float, float]:
         if case.cone == "elliptic":
             depth, creep = soft * normal / (k * d), soft / ratio_of(case) * friction / b
         elif friction <= mu * normal / 2:
-            depth, creep = edges * soft * normal / 4 / (k * d), edges * soft * friction / 2 / mu**2 / b
+            depth, creep = (
+                edges * soft * normal / 4 / (k * d),
+                edges * soft * friction / 2 / mu**2 / b,
+            )
         else:  # the edge that points down is free
             depth = edges * soft * (normal - friction / mu) / 2 / (k * d)
             creep = edges * soft * (1.5 * friction / mu - normal / 2) / mu / b

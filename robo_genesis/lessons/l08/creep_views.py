@@ -11,6 +11,7 @@ from robo_genesis.core.plotting import look
 from robo_genesis.core.text import scaled_value
 from robo_genesis.lessons.l08 import creep
 from robo_genesis.lessons.l08.creep_checks import share_of
+from robo_genesis.sim.bodies.grippers import HeldCase
 
 MEASURES = False
 
@@ -25,13 +26,18 @@ def scans(run: Experiment) -> Figure:
     for ax, (setting, label) in zip(axes, AXES.items(), strict=True):
         names = [*creep.SCANS[setting]]
         values = [getattr(run.cases[name], setting) for name in names]
-        ax.plot(values, [1000 * run.metrics[n].creep for n in names], "o", color=look("first")["color"])
+        ax.plot(
+            values, [1000 * run.metrics[n].creep for n in names], "o", color=look("first")["color"]
+        )
         fine = np.linspace(values[0], values[-1], 200)
-        cases = [creep.changed(setting, value) for value in fine]
-        ax.plot(fine, [1000 * creep.formulas(c)[1] for c in cases], ":", color=look("other")["color"])
-        ax.set(xlabel=label, ylim=(0, None))
+        cases = [HeldCase(**{setting: value}) for value in fine]
+        ax.plot(
+            fine, [1000 * creep.formulas(c)[1] for c in cases], ":", color=look("other")["color"]
+        )
+        ax.set_xlabel(label)
     axes[-1].axvline(creep.LIGHT, **plotting.LINE)
-    axes[0].set_ylabel("creep [mm/s]")
+    axes[-1].annotate("mg = µN", (creep.LIGHT, 0.1), rotation=90, va="bottom", ha="right")
+    axes[0].set(ylabel="creep [mm/s]", ylim=(0, None))
     return figure
 
 
@@ -45,17 +51,3 @@ def changes(run: Experiment) -> Iterator[dict[str, str]]:
         }
         depth = scaled_value(run.metrics[name].depth, "µm")
         yield {"change": words} | shares | {"depth": depth, "price": price}
-
-
-@tables.as_table
-def stiffer(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return the creep with the pyramid and other impratios, beside both formulas."""
-    for scene in creep.STIFF:
-        for one in ("slick", "box", "rough"):
-            name = f"{scene}_{one}"
-            case = run.cases[name]
-            row = {"impratio": f"{case.impratio:g}", "µ": f"{case.friction:g}"}
-            for head, of in (("Genesis", name), ("MuJoCo", f"mujoco_{name}")):
-                row[head] = scaled_value(run.metrics[of].creep, "mm/s")
-                row[f"formula of {head}"] = scaled_value(creep.formulas(case, of != name)[1], "mm/s")
-            yield row

@@ -9,7 +9,7 @@ import numpy as np
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.bodies.contacts import contact_constants, rigid_options
+from robo_genesis.sim.bodies.contacts import contact_constants, rigid_options, shared_case
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
 
@@ -23,8 +23,10 @@ PAD_MASS, ARMATURE = 1.0, 0.1  # [kg]; Genesis adds this armature to each joint 
 CONTACTS = 8
 """Contact points of a box, four at each pad."""
 
-SHARED = ("time_constant", "cone", "impratio", "noslip", "iterations", "dt", "substeps")
-SHARED += ("settle", "duration")
+SHARED = (
+    "time_constant", "cone", "impratio", "noslip", "iterations", "dt", "substeps", "settle",
+    "duration", "gravity",
+)  # fmt: skip
 """Settings that cases in one scene have in common."""
 
 
@@ -90,8 +92,8 @@ class World:
 
 
 def build_world(gs: Any, cases: Mapping[str, HeldCase]) -> World:
-    """Declare a gripper for each case, which have the fields of `SHARED` in common; build it."""
-    common = next(iter(cases.values()))
+    """Declare a scene with a gripper for each case, and build it; raises as `shared_case`."""
+    common = shared_case(cases, SHARED)
     further = {"iterations": common.iterations} if common.iterations else {}
     scene = gs.Scene(
         sim_options=gs.options.SimOptions(
@@ -123,7 +125,7 @@ def record_world(
 
     Readings are the friction of each box, the time constant of its contacts, and their number.
     """
-    common, scene = next(iter(world.cases.values())), world.scene
+    common, scene = shared_case(world.cases, SHARED), world.scene
     scene.reset()
     for name, (hand, _) in world.grippers.items():
         hand.control_dofs_force(np.full(2, world.cases[name].force, np.float32))

@@ -47,17 +47,22 @@ def ratio_of(case: HeldCase) -> float:
     return case.impratio or (100.0 if case.cone == "elliptic" else 1.0)
 
 
-def run_case(case: HeldCase) -> BodyTrace:
-    """Run a case as `grippers.record_world` does, computed in float64, stored in float32."""
+def run_case(case: HeldCase, as_genesis: bool = False) -> BodyTrace:
+    """Run a case as `grippers.record_world` does, computed in float64, stored in float32.
+
+    The arguments are as of `load`.
+    """
     import mujoco
 
-    model = load(case)
+    model = load(case, as_genesis)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, nstep=round(case.settle / case.h))
     states = record_states(
         lambda: mujoco.mj_step(model, data, nstep=case.substeps),
         case.steps,
-        lambda: [of[0].astype(np.float32) for of in links(case, data.qpos[None], data.qvel[None])],
+        lambda: tuple(
+            of[0].astype(np.float32) for of in links(case, data.qpos[None], data.qvel[None])
+        ),
     )
     return BodyTrace(times(case), *stacked(states))
 
