@@ -47,7 +47,7 @@ def changes(run: Experiment) -> Iterator[dict[str, str]]:
     for name, (words, other, price) in creep.CHANGES.items():
         shares = {
             head: f"{share_of(run, engine + name, engine + other):z.3f}"
-            for head, engine in (("× in Genesis", ""), ("× in MuJoCo", "mujoco_"))
+            for head, engine in (("Genesis", ""), ("MuJoCo", "mujoco_"))
         }
-        depth = scaled_value(run.metrics[name].depth, "µm")
-        yield {"change": words} | shares | {"depth": depth, "price": price}
+        depth = scaled_value(run.metrics[name].depth, "µm").removesuffix(" µm")
+        yield {"change": words} | shares | {"depth [µm]": depth, "price": price}

@@ -1,5 +1,7 @@
 """The decimal numbers that prose of L08 may hold: configured inputs and calculations by hand."""
 
+import numpy as np
+
 from robo_genesis.sim.bodies.grippers import ARMATURE, PAD_MASS
 
 CONFIGURED = {
@@ -16,6 +18,9 @@ CONFIGURED = {
     "weight of half a kilogram [N]": 4.9,
     "µ from which the creep is nearly constant, by the formula": 1.2,
     "µ up to which it is, by the formula": 1.7,
+    "one unit of float32 at 0.4 m per solver step, by hand [mm/s]": round(
+        float(np.spacing(np.float32(0.4))) / 0.0025 * 1e3, 3
+    ),
     "largest gain of force": 2.1,
     "share of µN of the box with 0.9 kg": 0.88,
 }
