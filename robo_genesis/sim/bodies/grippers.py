@@ -84,7 +84,7 @@ def pads(case: HeldCase) -> str:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A built scene with the pads and the box of each case."""
+    """A built scene, and by case its pads and its box."""
 
     scene: Any
     grippers: Mapping[str, tuple[Any, Any]]
@@ -95,24 +95,21 @@ def build_world(gs: Any, cases: Mapping[str, HeldCase]) -> World:
     """Declare a scene with a gripper for each case, and build it; raises as `shared_case`."""
     common = shared_case(cases, SHARED)
     further = {"iterations": common.iterations} if common.iterations else {}
+    options, fall = gs.options, (0, 0, -common.gravity)
     scene = gs.Scene(
-        sim_options=gs.options.SimOptions(
-            dt=common.dt, substeps=common.substeps, gravity=(0, 0, -common.gravity)
-        ),
-        rigid_options=gs.options.RigidOptions(**rigid_options(gs, common), **further),
-        profiling_options=gs.options.ProfilingOptions(show_FPS=False),
+        sim_options=options.SimOptions(dt=common.dt, substeps=common.substeps, gravity=fall),
+        rigid_options=options.RigidOptions(**rigid_options(gs, common), **further),
+        profiling_options=options.ProfilingOptions(show_FPS=False),
         show_viewer=False,
     )
     grippers = {}
     for name, case in cases.items():
-        at = (0.0, case.place, 0.0)
+        at, density = (0.0, case.place, 0.0), case.mass / SIZE**3
         file = f"<mujoco><worldbody>{pads(case)}</worldbody></mujoco>"
+        box, rigid = gs.morphs.Box(size=(SIZE,) * 3, pos=at), gs.materials.Rigid
         grippers[name] = (
             scene.add_entity(gs.morphs.MJCF(file=file, pos=at)),
-            scene.add_entity(
-                gs.morphs.Box(size=(SIZE,) * 3, pos=at),
-                gs.materials.Rigid(rho=case.mass / SIZE**3, friction=case.friction),
-            ),
+            scene.add_entity(box, rigid(rho=density, friction=case.friction)),
         )
     scene.build()
     return World(scene, grippers, dict(cases))
@@ -131,17 +128,9 @@ def record_world(
         hand.control_dofs_force(np.full(2, world.cases[name].force, np.float32))
     for _ in range(round(common.settle / common.dt)):
         scene.step()
-
-    def read() -> dict[str, tuple[FloatArray, ...]]:
-        return {
-            name: tuple(
-                np.concatenate([of_box, of_hand[-2:]])
-                for of_box, of_hand in zip(read_body(box), read_body(hand), strict=True)
-            )
-            for name, (hand, box) in world.grippers.items()
-        }
-
-    states = record_states(scene.step, common.steps, read)
+    states = record_states(
+        scene.step, common.steps, lambda: {n: read(*of) for n, of in world.grippers.items()}
+    )
     for name, (_, box) in world.grippers.items():
         traces[name] = BodyTrace(times(common), *stacked([state[name] for state in states]))
         geom = box.geoms[0]
@@ -152,3 +141,9 @@ def record_world(
         }
         for group, value in found.items():
             readings.setdefault(group, {})[name] = value
+
+
+def read(hand: Any, box: Any) -> tuple[FloatArray, ...]:
+    """Return position, orientation, velocity and angular velocity of `LINKS`, now."""
+    both = zip(read_body(box), read_body(hand), strict=True)
+    return tuple(np.concatenate([of_box, of_hand[-2:]]) for of_box, of_hand in both)
