@@ -7,6 +7,8 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, counts
 from robo_genesis.core.trace import Episodes, Trace
 from robo_genesis.lessons.l08 import checks, ladder, spec
+from robo_genesis.lessons.l08.creep import HeldMetrics
+from robo_genesis.lessons.l08.creep_checks import CREEP
 from robo_genesis.lessons.l08.ladder import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 
@@ -35,8 +37,9 @@ LECTURE = MeasuringPage(
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics),
-    pages={"lecture": LECTURE},
+    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics)
+    | dict.fromkeys(CREEP.cases, HeldMetrics),
+    pages={"lecture": LECTURE, "creep": CREEP},
     replays={
         "episodes": Replay(
             tuple(spec.SHOWN),
