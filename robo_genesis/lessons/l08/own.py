@@ -132,6 +132,6 @@ def conclusions(run: Experiment) -> str:
         f"In the move a finger presses with {m.press:.1f} N, and the object slides down by "
         f"{scaled_value(m.creep, 'mm/s')} (medians)." if m.carried else
         "No episode is carried, so force and slide are not measured.",
-        f"The repeated batch differs in {differ} numbers." if differ else
+        f"Numbers that differ in the repeated batch: {differ}." if differ else
         "The repeated batch is equal to the last bit.",
     ])  # fmt: skip

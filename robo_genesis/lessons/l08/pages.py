@@ -52,8 +52,7 @@ LAB = with_functions(
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics)
-    | dict.fromkeys(CREEP.cases, HeldMetrics),
+    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics) | dict.fromkeys(CREEP.cases, HeldMetrics),
     pages={"lecture": LECTURE, "lab": LAB, "creep": CREEP},
     replays={
         "episodes": Replay(

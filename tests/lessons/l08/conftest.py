@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from robot_runs import LINKS, answer, driven
 
+from robo_genesis.core.exercises import FUNCTIONS
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.trace import Episodes
+from robo_genesis.core.trace import Episodes, Trace
 from robo_genesis.lessons.l08 import spec
-from robo_genesis.lessons.l08.pages import LECTURE
+from robo_genesis.lessons.l08.pages import LAB, LECTURE
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.kinematics import hand_pose
 
@@ -84,19 +85,36 @@ def batch(case, arm) -> Episodes:
     )
 
 
+def whole(arm, start, level) -> Trace:
+    """Return an episode at all its steps."""
+    at = path(start, level, *arm, arm[0].dt)[:, None]
+    quat = np.tile(np.float32([1, 0, 0, 0]), (*at.shape[:2], 1))
+    return replace(
+        arm[0],
+        link_pos=np.concatenate([arm[0].link_pos, at], axis=1),
+        link_quat=np.concatenate([arm[0].link_quat, quat], axis=1),
+    )
+
+
 @pytest.fixture(scope="session")
 def episodes(arm, joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
     traces = {name: batch(case, arm) for name, case in spec.BATCHES.items()}
-    for name, row in spec.SHOWN.items():
-        at = path(spec.STARTS[row], spec.REACH[name], *arm, arm[0].dt)[:, None]
-        quat = np.tile(np.float32([1, 0, 0, 0]), (*at.shape[:2], 1))
-        traces[name] = replace(
-            arm[0],
-            link_pos=np.concatenate([arm[0].link_pos, at], axis=1),
-            link_quat=np.concatenate([arm[0].link_quat, quat], axis=1),
-        )
+    traces |= {n: whole(arm, spec.STARTS[row], spec.REACH[n]) for n, row in spec.SHOWN.items()}
     return Experiment(
         page=LECTURE, traces=traces, links=[*LINKS, "object"],
         readings={"model": spec.EXPECTED_MODEL}, frames={}, rendered=False, joints=joints,
     )  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def lab(arm, episodes) -> Experiment:
+    """A run of the lab that passes its checks."""
+    traces = {name: episodes.traces[name] for name in spec.LAB}
+    passed = {FUNCTIONS: dict.fromkeys(LAB.readings[FUNCTIONS].units, 1)}
+    return replace(
+        episodes,
+        page=LAB,
+        traces=traces | {"one": whole(arm, spec.FEW[0], 7)},
+        readings=episodes.readings | passed,
+    )

@@ -2,9 +2,15 @@
 
 import numpy as np
 
+from robo_genesis.lessons.l08 import rates
+from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 from robo_genesis.sim.bodies.grippers import ARMATURE, PAD_MASS
 
 CONFIGURED = {
+    "z of the interval": rates.Z,
+    "hand above the pads [m]": HAND_TO_PAD,
+    "the same [mm]": 1e3 * HAND_TO_PAD,
+    "width of a wide box [m]": 0.078,
     "w of a pad, by hand [1/kg]": round(1 / (3 * (PAD_MASS + ARMATURE)), 3),
     "1 + m w, by hand": 1.03,
     "creep of the base case, by hand [mm/s]": 1.33,
