@@ -57,15 +57,6 @@ def run(world: World, joints: Any, case: PickCase, grasp_pose: Written, ended: W
     return picking.run(world, joints, case, of, points)[0]
 
 
-def repeated(mine: Episodes, course: Episodes) -> str:
-    """Return how far objects of a student's expert are from those of the recorded one."""
-    apart = np.linalg.norm(mine.object_pos[-1] - course.object_pos[-1], axis=1)
-    near = (
-        f"At the end {(apart < 1e-3).sum()} of {len(apart)} objects are within 1 mm of the recorded"
-    )
-    return f"{near} ones. The largest distance is {scaled_value(float(apart.max()), 'mm')}."
-
-
 def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray | None:
     """Return by a student's ladder how many rungs each episode passes, None if it is missing."""
     lowest, rim = ladder.lowest(trace, case)[-1], np.array([*case.bowl_at, bowl.HEIGHT])

@@ -33,35 +33,21 @@ MISTAKES = {
     },
     "rungs": {
         "np.cumprod(passed).sum()": ["sum(passed)", "7 * all(passed)", "7 - sum(passed)"],
-        "(force > of.PRESSES).all(axis=1)": [
-            "(force > 0.1).any(axis=1)", "(force >= 0.1).all(axis=1)", "force.mean(axis=1) > 0.1",
-        ],
-        "phase[0] != of.DONE": ["True", "(phase != of.DONE).any()"],
-        "both[phase == of.LIFT].any()": [
-            "both.any()", "both[phase == 3].all()", "(force > 0.1)[phase == 3].any(0).all()",
-        ],
-        "pos[phase >= of.MOVE][:1, 2]": [
-            "pos[phase == of.MOVE][:1, 2]", "pos[:, 2]", "pos[phase == of.LIFT][-1:, 2]",
-        ],
-        "- pos[0, 2] >=": [">=", "- 0.035 >=", "- pos[0, 2] >"],
-        "carry.any() and both[carry].all()": [
-            "both[carry].all()", "both[carry].any()", "carry.any() and both[carry][-1]",
-        ],
+        "all(axis=1)": ["any(axis=1)"], "(force >": ["(force >="], "0] != of.DONE": ["0] < 9"],
+        "both[phase == of.LIFT].any()": ["both.any()", "(force > 0.1)[phase == 3].any(0).all()"],
+        "phase >= of.MOVE": ["phase == of.MOVE", "phase >= 0", "phase == of.LIFT"],
+        "- pos[0, 2] >=": [">=", "- 0.035 >=", "- pos[0, 2] >"], "both[carry].all()": ["any(carry)"],
+        "carry.any() and": ["", "True or"],
         "(of.MOVE, of.LOWER)": ["of.MOVE", "of.LOWER", "(3, 4, 5)", "(4, 5, 6)"],
         "touches[-1] == 0": ["True", "touches[phase == 8].sum() == 0", "not both[-1]"],
-        "phase[-1] == of.DONE and": ["", "of.DONE in phase and"],
-        "near and lowest < rim[2] - of.BELOW": [
-            "near", "lowest < rim[2] - 0.01", "near and lowest < rim[2]", "near and lowest < 0.04",
-            "near and pos[-1, 2] < rim[2] - of.BELOW / 2", "near and not lowest >= rim[2] - 0.01",
-        ],
-        "np.linalg.norm(pos[-1, :2] - rim[:2])": [
-            "abs(pos[-1, :2] - rim[:2]).max()", "np.linalg.norm(pos[-1, :2] - (0.55, 0.22))",
-        ],
-        "pos[-5:] - pos[-1]": [
-            "pos[-4:] - pos[-1]", "pos[-6:] - pos[-1]", "pos[-5:] - pos[-5]", "[pos[-5] - pos[-1]]",
-            "np.diff(pos[-5:], axis=0)", "(pos[-5:] - pos[-1])[:, :2]", "pos[phase == 8] - pos[-1]",
-        ],
-        "moved.max()": ["moved.mean()", "abs(pos[-5:] - pos[-1]).max()"],
+        "phase[-1] == of.DONE and": ["", "of.DONE in phase and"], "near and": ["", "near or"],
+        "lowest < rim[2] - of.BELOW": ["True", "lowest < rim[2]", "lowest < 0.04"],
+        "rim[:2])": ["(0.55, 0.22))", "rim[:2], np.inf)"], "lowest <": ["not lowest >="],
+        "pos[-5:] - pos[-1]": ["pos[-4:] - pos[-1]", "pos[-6:] - pos[-1]", "pos[-5:] - pos[-5]"],
+        "np.linalg.norm(pos[-5:] - pos[-1], axis=1)": [
+            "abs(pos[-5:] - pos[-1])", "np.linalg.norm(np.diff(pos[-5:], axis=0), axis=1)",
+            "np.linalg.norm((pos[-5:] - pos[-1])[:, :2], axis=1)", "abs(pos[-5] - pos[-1])",
+        ], "moved.max()": ["moved.mean()"],
     },
     "wilson": {
         "1.96**2": ["1.96", "2**2"], "half = 1.96 *": ["half ="], "np.sqrt(": ["("],
