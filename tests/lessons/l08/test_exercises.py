@@ -36,7 +36,7 @@ MISTAKES = {
         "all(axis=1)": ["any(axis=1)"], "(force >": ["(force >="], "0] != of.DONE": ["0] < 9"],
         "both[phase == of.LIFT].any()": ["both.any()", "(force > 0.1)[phase == 3].any(0).all()"],
         "phase >= of.MOVE": ["phase == of.MOVE", "phase >= 0", "phase == of.LIFT"],
-        "- pos[0, 2] >=": [">=", "- 0.035 >=", "- pos[0, 2] >"], "both[carry].all()": ["any(carry)"],
+        "- pos[0, 2] >=": ["- 0 >=", "- 0.035 >=", "- pos[0, 2] >"], "both[carry].all()": ["True"],
         "carry.any() and": ["", "True or"],
         "(of.MOVE, of.LOWER)": ["of.MOVE", "of.LOWER", "(3, 4, 5)", "(4, 5, 6)"],
         "touches[-1] == 0": ["True", "touches[phase == 8].sum() == 0", "not both[-1]"],
