@@ -37,8 +37,7 @@ LECTURE = MeasuringPage(
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics)
-    | dict.fromkeys(CREEP.cases, HeldMetrics),
+    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics) | dict.fromkeys(CREEP.cases, HeldMetrics),
     pages={"lecture": LECTURE, "creep": CREEP},
     replays={
         "episodes": Replay(
