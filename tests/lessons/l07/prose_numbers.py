@@ -27,7 +27,6 @@ CONFIGURED = {
     "its weight, by hand [N]": 10.6,
     "weight that two pads carry with little friction, by hand [N]": 7.2,
     "largest y of the map [m]": round(float(table_map.Y[-1]), 2),
-    "largest x of the map [m]": float(table_map.X[-1]),
     "farthest corner of the map, by hand [m]": round(
         float(np.hypot(table_map.X[-1], table_map.Y[-1])), 2
     ),
