@@ -29,4 +29,9 @@ CONFIGURED = {
     ),
     "largest gain of force": 2.1,
     "share of µN of the box with 0.9 kg": 0.88,
+    "force of a finger in an example [N]": 11.7,
+    "mass that it carries, by hand [kg]": round(2 * 11.7 / (9.81 + 5), 2),
+    "seconds to slide by 10 mm, by hand [s]": round(10 / 1.2, 1),
+    "error of the reader's own task [m]": 0.008,
+    "z of a 95 % interval": rates.Z,
 }
