@@ -60,8 +60,8 @@ def ends(ended: Callable[..., Any]) -> Iterator[Finding]:
             for of_fingers in (False, True):
                 right = expected[of_fingers] and (since >= picking.CLOSING or not of_fingers)
                 rows.append((*state.values(), goal[:ARM], of_fingers, since, right))
-                found = bool(ended(*rows[-1][:-1]))
-                yield equal(f"{name}.of_fingers_{of_fingers}_since_{since}", found, right)
+                label = f"{name}.of_fingers_{of_fingers}_since_{since}"
+                yield equal(label, bool(ended(*rows[-1][:-1])), right)
     *batch, answers = (np.array(column) for column in zip(*rows, strict=True))
     found = np.asarray(ended(*batch))
     yield equal("batch.shape", list(found.shape), [len(rows)])
