@@ -109,8 +109,8 @@ LAB_EPISODE = {"one": one(0, EXACT)}
 ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact", 0)}
 """By episode, its batch and its environment there."""
 
-CASES = BATCHES | EPISODES
-"""The runs of the lecture."""
+CASES = {name: BATCHES[name] for name in COUNTED}
+"""The batches that have metrics."""
 
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 """The camera; it shows one environment."""
@@ -137,7 +137,7 @@ RELATIONS: tuple[Any, ...] = ()
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lecture as JSON values, for the evidence key."""
-    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL))
+    return inputs(BATCHES | EPISODES, VIEW, counted=list(EXPECTED_MODEL))
 
 
 def lab_parameters() -> dict[str, Any]:
