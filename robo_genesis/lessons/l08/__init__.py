@@ -7,6 +7,7 @@ __getattr__ = on_demand(
     LESSON="pages",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
     describe="robo_genesis.sim.arm.joints",
+    picking="robo_genesis.sim.arm.picking",
     fixed_parts="robo_genesis.sim.visual_shape",
     read_shape="robo_genesis.sim.visual_shape",
 )

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -85,10 +86,15 @@ def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
     for name, other, order in (
         ("again", "exact", slice(None)), ("permuted", "askew", spec.ORDER)
     ):  # fmt: skip
-        one, two = run.traces[name], run.traces[other]
-        for array in (of.name for of in fields(Episodes) if of.name != "t"):
-            differ = int((getattr(one, array) != getattr(two, array)[:, order]).sum())
-            yield equal(f"{name}.{array}", differ, 0)
+        yield from same_episodes(run, name, other, order)
+
+
+def same_episodes(run: Experiment, name: str, other: str, order: Any) -> Iterator[Finding]:
+    """Require equal episodes of two batches, those of the second in an order."""
+    one, two = run.traces[name], run.traces[other]
+    for array in (of.name for of in fields(Episodes) if of.name != "t"):
+        differ = int((getattr(one, array) != getattr(two, array)[:, order]).sum())
+        yield equal(f"{name}.{array}", differ, 0)
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
@@ -109,6 +115,7 @@ def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
     yield from apart("start", "q [rad or m]", trace.q[0], case.q_start, 1e-6)
     place = np.column_stack([case.starts, np.full(len(case.starts), case.size[2] / 2)])
     yield from apart("start", "object_pos [m]", trace.object_pos[0], place, 1e-6)
+    yield from apart("start", "object_quat", trace.object_quat[0], case.turns, 1e-6)
 
 
 def of_batch(run: Experiment, name: str, row: int) -> Iterator[Finding]:

@@ -1,12 +1,13 @@
 """The measuring pages of L08, and its declaration."""
 
+from dataclasses import replace
 from typing import Any
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, counts
 from robo_genesis.core.trace import Episodes, Trace
-from robo_genesis.lessons.l08 import checks, ladder, spec
+from robo_genesis.lessons.l08 import checks, edge, edge_checks, ladder, spec
 from robo_genesis.lessons.l08.ladder import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 
@@ -18,7 +19,7 @@ ONE = "one episode of a batch, at all its steps"
 
 def batches(cases: dict[str, Any]) -> dict[str, Run]:
     """Return runs of all episodes; those that are not counted copy others."""
-    counted = {name: name in spec.COUNTED for name in cases}
+    counted = {name: name in (*spec.COUNTED, *edge.COUNTED) for name in cases}
     return {n: Run(cases[n], own, "" if own else COPY, Episodes) for n, own in counted.items()}
 
 
@@ -33,10 +34,19 @@ LECTURE = MeasuringPage(
     parameters=spec.parameters,
 )
 
+RATES = replace(
+    LECTURE,
+    runs=batches(edge.COUNTED | edge.COPIES),
+    checks=edge_checks.RATES,
+    parameters=edge.parameters,
+    camera=False,
+)
+MISTAKES = replace(RATES, runs={}, checks=(checks.structure,))
+
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics),
-    pages={"lecture": LECTURE},
+    metrics=dict.fromkeys((*spec.COUNTED, *edge.COUNTED), EpisodesMetrics),
+    pages={"lecture": LECTURE, "rates": RATES, "mistakes": MISTAKES},
     replays={
         "episodes": Replay(
             tuple(spec.SHOWN),

@@ -35,11 +35,12 @@ def phases(run: Experiment) -> Figure:
     return figure
 
 
-def errors(run: Experiment) -> Figure:
+def errors(run: Experiment, batch: str = "askew") -> Figure:
     """Draw the error of the believed place in each episode, marked by the rung it reaches."""
     figure, ax = plotting.axes(4.6)
-    error = 1000 * (spec.ASKEW.beliefs - spec.STARTS)
-    level = ladder.reached(run.traces["askew"], spec.ASKEW)
+    case = run.cases[batch]
+    error = 1000 * (case.beliefs - case.starts)
+    level = ladder.reached(run.traces[batch], case)
     for name, mark, sign in (
         ("placed", "baseline", "o"), ("slipped", "first", "s"), ("tipped", "second", "^"),
         ("pushed", "third", "x"),
