@@ -4,7 +4,8 @@ Every function makes one mistake and measures its symptom. Do not copy them.
 """
 
 from dataclasses import replace
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -24,36 +25,26 @@ DENSE = replace(SOUND, density=8000.0)
 FAR, HIGH = 0.05, 0.04  # Errors of the belief, and of the height of the grasp [m]
 
 
-class Seen(NamedTuple):
-    """What a batch shows: numbers of episodes, and medians over them.
+def seen(world: World, joints: JointMap, case: picking.PickCase) -> SimpleNamespace:
+    """Run a batch; return numbers of episodes, and medians over them.
 
-    `opening` [m] and `press` [N] are those when the lift begins, `pushed` is how far the object
-    is from its start when the fingers begin to close [m].
+    `late` are those whose descent took its limit. `opening` is that when the lift begins, `pushed`
+    how far the object is from its start when the fingers begin to close [m], and `tilt` its largest
+    one in the move [degree].
     """
-
-    finished: int
-    late: int
-    success: int
-    carried: int
-    opening: float
-    press: float
-    pushed: float
-
-
-def seen(world: World, joints: JointMap, case: picking.PickCase) -> Seen:
-    """Run a batch."""
     trace, rows = picking.run(world, joints, case)[0], range(len(case.starts))
     close, lift = ((trace.phase >= of).argmax(0) for of in (picking.CLOSE, picking.LIFT))
-    pushed = trace.object_pos[close, rows] - trace.object_pos[0]
-    limit = picking.LIMIT // case.commands
-    return Seen(
-        int((trace.phase[-1] == picking.DONE).sum()),
-        int(((trace.phase == picking.DESCEND).sum(0) >= limit).sum()),
-        int(edge.good(trace, case).sum()),
-        int(ladder.rungs(trace, case)["carried"].sum()),
-        float(np.median(trace.q[lift, rows, -2:].sum(1))),
-        float(np.median(trace.force[lift, rows].sum(1))),
-        float(np.median(np.linalg.norm(pushed, axis=1))),
+    away = trace.object_pos[close, rows] - trace.object_pos[0]
+    lean = 1 - 2 * (trace.object_quat[..., 1:3] ** 2).sum(axis=-1)
+    tilt = np.degrees(np.arccos(np.clip(lean, -1, 1))) * (trace.phase == picking.MOVE)
+    descent = (trace.phase == picking.DESCEND).sum(axis=0) * case.commands
+    return SimpleNamespace(
+        finished=(trace.phase[-1] == picking.DONE).sum(),
+        late=(descent >= picking.LIMIT).sum(),
+        success=edge.good(trace, case).sum(),
+        opening=np.median(trace.q[lift, rows, -2:].sum(axis=1)),
+        pushed=np.median(np.linalg.norm(away, axis=1)),
+        tilt=np.median(tilt.max(axis=0)),
     )
 
 
@@ -66,7 +57,7 @@ def empty_hand(world: World, joints: JointMap) -> Mistake:
         f"{1000 * found.opening:.1f} mm apart. {found.success} cylinders end in the bowl."
     )
     shown = found.finished == len(STARTS) and not found.success and found.opening < 1e-3
-    return Mistake("empty_hand", shown and not found.late, text)
+    return Mistake("empty_hand", bool(shown and not found.late), text)
 
 
 def too_high(world: World, joints: JointMap) -> Mistake:
@@ -81,7 +72,7 @@ def too_high(world: World, joints: JointMap) -> Mistake:
         f"{before.finished} and {after.finished} episodes."
     )
     shown = before.success >= len(STARTS) - 1 and not after.success and after.opening < 0.02
-    return Mistake("too_high", shown and after.finished == len(STARTS), text)
+    return Mistake("too_high", bool(shown and after.finished == len(STARTS)), text)
 
 
 def pushed(world: World, joints: JointMap) -> Mistake:
@@ -93,7 +84,7 @@ def pushed(world: World, joints: JointMap) -> Mistake:
         f"{found.success} cylinders end in the bowl."
     )
     shown = found.late > len(STARTS) / 2 and found.pushed > 0.01 and found.success <= 1
-    return Mistake("pushed", shown, text)
+    return Mistake("pushed", bool(shown), text)
 
 
 def no_mask(world: World) -> Mistake:
@@ -105,7 +96,7 @@ def no_mask(world: World) -> Mistake:
     listed, real = valid.shape[1], int(valid.sum())
     press = np.linalg.norm(force, axis=2).sum(axis=1).mean()
     text = (
-        f"`contacts[\"geom_a\"].shape` is {tuple(contacts['geom_a'].shape)}: {listed} contacts in "
+        f'`contacts["geom_a"].shape` is {tuple(contacts["geom_a"].shape)}: {listed} contacts in '
         f"each environment, with {press:.1f} N in all. `valid_mask` marks {real} of them."
     )
     return Mistake("no_mask", listed > 0 and not real, text)
@@ -119,3 +110,18 @@ def solved(gs: Any) -> Mistake:
     text = f"Before the first step, {over} of {len(case.starts)} episodes count as a success."
     shown = over == 1 and isinstance(error, CaseError)
     return Mistake("solved", shown, f"{text} The course's own scene refuses: {quoted(error)}")
+
+
+def mass_alone(world: World, dense: World, joints: JointMap) -> Mistake:
+    """Give a cylinder of density 400 the mass of one of density 8000; this changes the world."""
+    mass = DENSE.density * DENSE.volume
+    link, rows = world.body.links[0].name, range(len(STARTS))
+    read = set_link_mass(world.body, link, np.full(len(STARTS), mass), rows)
+    changed, built = seen(world, joints, SOUND), seen(dense, joints, DENSE)
+    text = (
+        f"Both have {read[0]:.2f} kg. Built with density {DENSE.density:g}, {built.success} of "
+        f"{len(STARTS)} cylinders succeed, and in the move they tilt by {built.tilt:.0f}°. With "
+        f"the mass set, it is {changed.success}, and they tilt by {changed.tilt:.0f}°."
+    )
+    shown = changed.success + 4 < built.success and changed.tilt > 20 > built.tilt
+    return Mistake("mass_alone", bool(shown), text)

@@ -1,4 +1,4 @@
-"""The page on rates on made-up batches: its cases, checks and tables, and the clock of a descent."""
+"""The page on rates on made-up batches: its checks and tables, and the clock of a descent."""
 
 from dataclasses import fields, replace
 
