@@ -5,54 +5,26 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from lessons.changed_runs import failed, put, trace
+from lessons.l08.made_batches import episodes
 from robot_runs import LINKS
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.trace import Episodes
 from robo_genesis.lessons.l08 import edge, edge_shown, pages, plots, spec
 from robo_genesis.sim.arm import picking
-from robo_genesis.sim.bodies import bowl
 
 
 def outcomes(name, case):
     """Return which episodes succeed, hang in the hand, and are touched early."""
     along, across = 1000 * (case.beliefs - case.starts).T
-    k, none = np.arange(len(case.starts)), np.zeros(len(case.starts), bool)
-    return {
-        "grid": ((along > -3) & (along < 11) & (abs(across) < 19), none, abs(across) > 15),
-        "plain": (k < 90, none, none),
-        "corrected": (k < 110, none, none),
-        "timed": (k >= 24, none, none),
-        "boxes": (k < 100, k >= 108, none),
-    }[name]
-
-
-def episodes(name, case):
-    """Return a batch whose phases last equally long; other objects stay where they begin."""
-    good, hanging, early = outcomes(name, case)
-    phase = np.minimum(np.arange(case.steps + 1) // 6, picking.DONE).repeat(len(good))
-    phase = phase.reshape(-1, len(good)).astype(np.int8)
-    place = np.tile(np.column_stack([case.starts, 0 * good + case.size[2] / 2]), (len(phase), 1, 1))
-    held = (phase >= picking.LIFT) & (phase < picking.OPEN) & good
-    place[..., 2] += 0.1 * held
-    over = (phase >= picking.MOVE) & (good | hanging)
-    place[over, :2] = case.bowl_at
-    place[(phase >= picking.MOVE) & hanging, 2] += bowl.HEIGHT
-    touches = held | ((phase >= picking.CLOSE) & hanging) | ((phase == 1) & early)
-    return Episodes(
-        t=np.arange(case.steps + 1) * case.dt,
-        phase=phase,
-        q=np.tile(np.float32(case.q_start), (*phase.shape, 1)),
-        object_pos=np.float32(place),
-        object_quat=np.float32(np.tile(case.turns, (len(phase), 1, 1))),
-        force=np.float32(12 * np.stack([held, held], axis=-1)),
-        touches=touches.astype(np.int8),
-    )
+    k = np.arange(len(case.starts))
+    inside = (along > -3) & (along < 11) & (abs(across) < 19)
+    good = {"plain": k < 90, "corrected": k < 110, "timed": k >= 24, "boxes": k < 100}
+    return good.get(name, inside), (name == "boxes") & (k >= 108), abs(across) > 15
 
 
 @pytest.fixture(scope="module")
 def run(joints):
-    made = {name: episodes(name, case) for name, case in edge.COUNTED.items()}
+    made = {name: episodes(case, *outcomes(name, case)) for name, case in edge.COUNTED.items()}
     for name, of in list(made.items()):
         arrays = {f.name: getattr(of, f.name) for f in fields(of) if f.name != "t"}
         copy = {array: values[:, edge.order(name)] for array, values in arrays.items()}
