@@ -64,8 +64,12 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
 
 
 def fixed_parts(entity: Any) -> list[Part]:
-    """Return the geometry of a built entity that does not move, at its place in the world."""
-    place, quat = to_numpy(entity.get_pos()), to_numpy(entity.get_quat())
+    """Return the geometry of a built entity that does not move, at its place in the world.
+
+    Of a batch it is the place in the first environment.
+    """
+    place = to_numpy(entity.get_pos()).reshape(-1, 3)[0]
+    quat = to_numpy(entity.get_quat()).reshape(-1, 4)[0]
     return [
         replace(part, link=WORLD, vertices=(rotate(quat, part.vertices) + place).astype(np.float32))
         for part in read_shape(entity)

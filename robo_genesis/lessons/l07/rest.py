@@ -103,28 +103,22 @@ RESOLUTION = {"m": 1e-5, "m/s": 5e-6, "%": 1.0}
 3e-6 m/s at a solver step of 1 ms."""
 
 
-def impedance(depth: float) -> float:
-    """Return the impedance d of a contact at a depth [m]."""
-    least, most, width, middle, power = mujoco_contacts.IMPEDANCE
-    x = min(depth / width, 1.0)
-    low, high = x**power / middle ** (power - 1), (1 - x) ** power / (1 - middle) ** (power - 1)
-    return float(least + (most - least) * (low if x < middle else 1 - high))
-
-
-def formulas(case: ContactCase) -> tuple[float, float]:
+def formulas(case: ContactCase, in_mujoco: bool = False) -> tuple[float, float]:
     """Return the depth [m] and the creep [m/s] of a box on four contacts, which grow with (1−d)/d.
 
-    The impedance d depends on the depth, so both are found by iteration.
+    The impedance d depends on the depth, so both are found by iteration. With the pyramid, Genesis
+    divides both μ² by impratio, MuJoCo one of them.
     """
     d, most, four = mujoco_contacts.IMPEDANCE[0], mujoco_contacts.IMPEDANCE[1], 4
     seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
     pyramid, stiffer, square = case.cone == "pyramidal", case.impratio or 1.0, case.friction**2
-    sinking = square * (1 + square) / 2 / stiffer if pyramid else 1.0
-    sliding = (1 + square if pyramid else 1.0) / stiffer
+    edges = 1 + square / (1.0 if in_mujoco else stiffer)
+    sinking = square * edges / 2 / stiffer if pyramid else 1.0
+    sliding = (edges if pyramid else 1.0) / stiffer
     for _ in range(30):
         share = (1 - d) / d * case.gravity / four
         depth = share * np.cos(case.tilt) * seconds**2 / d * sinking
-        d = impedance(depth)
+        d = mujoco_contacts.impedance(depth)
     return float(depth), float(share * np.sin(case.tilt) * seconds / 2 * sliding)
 
 

@@ -139,10 +139,10 @@ def verdicts(found: Experiment) -> dict[str, np.ndarray]:
     return {"reachable": reached, **seen, "graspable": free}
 
 
-def totals(found: Experiment) -> dict[str, float]:
+def totals(found: Experiment) -> dict[str, int]:
     """Return how many of the cells that the hand reaches pass each test."""
     good = verdicts(found)
-    return {name: float((of & good["reachable"]).sum()) for name, of in good.items()}
+    return {name: int((of & good["reachable"]).sum()) for name, of in good.items()}
 
 
 def map_follows(found: Experiment) -> Iterator[Finding]:

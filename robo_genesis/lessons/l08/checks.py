@@ -33,7 +33,7 @@ def turned_camera(run: Experiment) -> Iterator[Finding]:
 
 
 def words_differ(run: Experiment) -> Iterator[Finding]:
-    """On the same episodes, at least 95 % go through all phases, at least 30 more than succeed lift
+    """On the same episodes, at least 95 % finish all phases, at least 30 more than succeed lift
     the object at some time, and at least as many as succeed have it in the bowl at the end.
     """
     m = run.metrics["askew"]
@@ -72,7 +72,7 @@ def held_but_sliding(run: Experiment) -> Iterator[Finding]:
 
 
 def shown_episodes(run: Experiment) -> Iterator[Finding]:
-    """Each episode of the replay reaches the rung of its name, and goes through all phases."""
+    """Each episode of the replay reaches the rung of its name, and finishes all phases."""
     level = ladder.reached(run.traces["askew"], spec.ASKEW)
     for name, row in spec.SHOWN.items():
         yield equal(f"{name}.rungs", int(level[row]), spec.REACH[name])

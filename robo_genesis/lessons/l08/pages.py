@@ -8,6 +8,8 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, counts
 from robo_genesis.core.trace import Episodes, Trace
 from robo_genesis.lessons.l08 import checks, edge, edge_checks, ladder, spec
+from robo_genesis.lessons.l08.creep import HeldMetrics
+from robo_genesis.lessons.l08.creep_checks import CREEP
 from robo_genesis.lessons.l08.ladder import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 
@@ -24,8 +26,8 @@ def batches(cases: dict[str, Any]) -> dict[str, Run]:
 
 
 LECTURE = MeasuringPage(
-    runs=batches(spec.BATCHES)
-    | {name: Run(case, False, ONE) for name, case in spec.EPISODES.items()},
+    runs={name: Run(case, False, ONE) for name, case in spec.EPISODES.items()}
+    | batches(spec.BATCHES),
     kind=Trace,
     joints=JOINT_NAMES,
     readings={"model": counts(MODEL_COUNTS)},
@@ -45,8 +47,9 @@ MISTAKES = replace(RATES, runs={}, checks=(checks.structure,))
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys((*spec.COUNTED, *edge.COUNTED), EpisodesMetrics),
-    pages={"lecture": LECTURE, "rates": RATES, "mistakes": MISTAKES},
+    metrics=dict.fromkeys((*spec.COUNTED, *edge.COUNTED), EpisodesMetrics)
+    | dict.fromkeys(CREEP.cases, HeldMetrics),
+    pages={"lecture": LECTURE, "creep": CREEP, "rates": RATES, "mistakes": MISTAKES},
     replays={
         "episodes": Replay(
             tuple(spec.SHOWN),

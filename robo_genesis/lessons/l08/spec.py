@@ -12,6 +12,7 @@ import numpy as np
 from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, FloatArray, read_only
+from robo_genesis.lessons.l08 import creep
 from robo_genesis.sim.arm import franka, reaching
 from robo_genesis.sim.arm.picking import PickCase
 from robo_genesis.sim.bodies.table import SceneCase
@@ -95,6 +96,9 @@ def one(row: int) -> SceneCase:
 
 EPISODES = {name: one(row) for name, row in SHOWN.items()}
 
+CASES = {name: BATCHES[name] for name in COUNTED}
+"""The batches that have metrics."""
+
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 """The camera; it shows one environment."""
 
@@ -102,20 +106,17 @@ LABELS = {"exact": "place known", "askew": "camera turned by 4°"} | {
     "placed": "in the bowl", "slipped": "lost on the way", "tipped": "lost in the lift",
     "pushed": "pushed away", "grid": "grid of errors", "plain": "plain",
     "corrected": "sag corrected", "timed": "descent by a clock", "boxes": "yaw ignored",
-}  # fmt: skip
+} | creep.LABELS  # fmt: skip
 """Words of a reader for runs."""
 
 CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=True))
 """The mark of each case in the palette."""
 
-RESOLUTION = {"1": 0.5, "m": 1e-4}
+RESOLUTION = {"1": 0.5, "m": 1e-4} | creep.RESOLUTION
 """By unit, the difference below which two values are equal."""
 
-TOLERANCES = (
-    check_spec.TOLERANCES
-    | dict.fromkeys(("askew", "grid", "plain", "corrected", "timed", "boxes"), (20.0, 0.0))
-    | {"off_centre": (0.02, 0.0)}
-)
+TOLERANCES = check_spec.TOLERANCES | creep.TOLERANCES | {"off_centre": (0.02, 0.0)}
+TOLERANCES |= dict.fromkeys(("askew", "grid", "plain", "corrected", "timed", "boxes"), (20.0, 0.0))
 """Contacts make rounding grow: another version of the engine had three more successes of 256."""
 
 RELATIONS: tuple[Any, ...] = ()

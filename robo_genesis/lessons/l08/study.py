@@ -25,12 +25,11 @@ def episodes(
     """
     cases = page.experiment.cases
     world = picking.build(gs, cases[names[0]], view)
-    joints, batches = describe(page, world.robot), []
+    joints = describe(page, world.robot)
     page.links = [*page.links, "object"]
-    for name in names:
-        page.traces[name], batch = picking.run(world, joints, cases[name])
-        batches = batches or [batch]
-    return world, batches[0]
+    runs = {name: picking.run(world, joints, cases[name]) for name in names}
+    page.traces |= {name: trace for name, (trace, _) in runs.items()}
+    return world, runs[names[0]][1]
 
 
 def keep(page: Any, batch: Batch) -> None:

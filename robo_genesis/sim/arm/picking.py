@@ -73,9 +73,8 @@ class PickCase(SceneCase):
     @property
     def control(self) -> ControlCase:
         """The settings of the robot in each environment; its steps are those of a command."""
-        n = self.commands
-        own = {"dt": self.dt / n, "substeps": self.substeps // n, "steps": self.steps * n}
-        return replace(self.commanding(self.q_start), **own)
+        case, n = self.commanding(self.q_start), self.commands
+        return replace(case, dt=self.dt / n, substeps=self.substeps // n, steps=self.steps * n)
 
     @property
     def waypoints(self) -> list[FloatArray]:
@@ -174,15 +173,16 @@ def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
     """
     contacts = world.body.get_contacts(with_entity=world.robot)
     a, b, valid, force, normal = (
-        to_numpy(contacts[of]) for of in ("geom_a", "geom_b", "valid_mask", "force_a", "normal")
+        np.asarray(to_numpy(contacts[of]))
+        for of in ("geom_a", "geom_b", "valid_mask", "force_a", "normal")
     )
     along = np.abs((force * normal).sum(axis=-1))
     forces = []
     for name in FINGERS.values():
         link = world.robot.get_link(name)
         of_link = np.isin([a, b], range(link.geom_start, link.geom_end)).any(axis=0)
-        forces.append((along * (valid & of_link)).sum(axis=1))
-    return np.stack(forces, axis=1), valid.any(axis=1)
+        forces.append((along * valid * of_link).sum(axis=1))
+    return np.stack(forces, axis=1), np.asarray(valid.any(axis=1))
 
 
 def run(world: World, joints: JointMap, case: PickCase) -> tuple[Episodes, Batch]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -32,6 +32,8 @@ CHOICES: dict[str, tuple[str | None, ...]] = {
     "resolution": (None, "convex", "signorini"),
 }
 """The words that a case takes, by setting."""
+
+Case = TypeVar("Case")
 
 State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
 
@@ -186,8 +188,11 @@ def build_world(
     return World(scene, surface, bodies, dict(cases), camera)
 
 
-def rigid_options(gs: Any, case: ContactCase) -> dict[str, Any]:
-    """Return friction model and time constant of a case as options; None is the default."""
+def rigid_options(gs: Any, case: Any) -> dict[str, Any]:
+    """Return friction model and time constant of a case as options; None is the default.
+
+    Other cases than `ContactCase` have these fields as well.
+    """
     resolution = gs.contact_resolution[case.resolution] if case.resolution else None
     seconds = {"constraint_timeconst": case.time_constant} if case.time_constant else {}
     return {
@@ -259,17 +264,17 @@ def read_world(world: World) -> dict[str, State]:
     return states
 
 
-def shared_case(cases: Mapping[str, ContactCase]) -> ContactCase:
-    """Return the first case, whose fields of `SHARED` are those of all cases.
+def shared_case(cases: Mapping[str, Case], shared: tuple[str, ...] = SHARED) -> Case:
+    """Return the first case, whose fields of `shared` are those of all cases.
 
     Raises:
-        ContactError: there are no cases, or they differ in a field of `SHARED`.
+        ContactError: there are no cases, or they differ in such a field.
     """
     if not cases:
         raise ContactError("No cases were given; a scene takes at least one. Name a case.")
     first = next(iter(cases.values()))
     for name, case in cases.items():
-        for field in SHARED:
+        for field in shared:
             if getattr(case, field) != getattr(first, field):
                 raise ContactError(
                     f"{name} asks for {field}={getattr(case, field)}, another case of the scene "

@@ -35,6 +35,14 @@ def time_constant(h: float, requested: float | None = None) -> float:
     return max(DEFAULT_TIME_CONSTANT if requested is None else requested, 2 * h)
 
 
+def impedance(depth: float) -> float:
+    """Return the impedance d of a contact at a depth [m]."""
+    least, most, width, middle, power = IMPEDANCE
+    x = min(depth / width, 1.0)
+    low, high = x**power / middle ** (power - 1), (1 - x) ** power / (1 - middle) ** (power - 1)
+    return float(least + (most - least) * (low if x < middle else 1 - high))
+
+
 def load(case: ContactCase, own_defaults: bool = False) -> Any:
     """Compile the surface and one free body with the case's step, friction, cone and spring.
 

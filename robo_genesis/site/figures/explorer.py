@@ -126,7 +126,7 @@ def explorer_block(
     elif parts["postures"] is not None:
         block["classes"].append("replay-block")
         files = "-".join(("postures", *key.split("/"), *name))
-        runs = recorded.experiment.traces | (parts["traces"] or {})
+        runs = {**recorded.experiment.traces, **(parts["traces"] or {})}
         traces = {name: with_target(runs[name], of) for name, of in parts["postures"].items()}
         block += postures(directive, files, recorded, data, traces, parts["tables"] or {})
     else:

@@ -1,6 +1,8 @@
 """The decimal numbers that prose of L07 may hold: configured inputs and calculations by hand."""
 
-from robo_genesis.lessons.l07 import mistakes, spec
+import numpy as np
+
+from robo_genesis.lessons.l07 import mistakes, spec, table_map
 
 GOOD, OUTSIDE = spec.SCENES["baseline"], spec.SCENES["outside"]
 
@@ -24,4 +26,8 @@ CONFIGURED = {
     "mass of a cylinder of steel [kg]": mistakes.HEAVY,
     "its weight, by hand [N]": 10.6,
     "weight that two pads carry with little friction, by hand [N]": 7.2,
+    "largest y of the map [m]": round(float(table_map.Y[-1]), 2),
+    "farthest corner of the map, by hand [m]": round(
+        float(np.hypot(table_map.X[-1], table_map.Y[-1])), 2
+    ),
 }

@@ -1,0 +1,143 @@
+"""Boxes that two pads hold: cases, formulas of depth and creep, and what a reader may change."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.experiment import inputs
+from robo_genesis.core.metrics import CaseMetrics, metric
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.bodies import grippers
+from robo_genesis.sim.bodies.grippers import CONTACTS, PAD, SIZE, HeldCase
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+from robo_genesis.sim.mujoco.grippers import ratio_of
+
+SCANS: Mapping[str, Mapping[str, float]] = {
+    "friction": {"mu_03": 0.3, "mu_05": 0.5, "base": 1.0, "mu_15": 1.5, "mu_2": 2.0},
+    "force": {"N_2": 2.0, "N_5": 5.0, "base": 10.0, "N_20": 20.0, "N_40": 40.0},
+    "mass": {"m_005": 0.05, "base": 0.1, "m_02": 0.2, "m_05": 0.5, "m_09": 0.9, "m_15": 1.5},
+}
+"""Runs that differ from `base` in one setting, by setting and name."""
+
+SCAN = {name: {of: value} for of, row in SCANS.items() for name, value in row.items()}
+
+ROW = {name: SCAN[name] for name in ("base", "mu_03", "mu_2", "m_09", "m_15")}
+"""Boxes of each other scene. The weight of `m_15` is more than µN, that of the others is less."""
+
+ONE = {"base": SCAN["base"]}
+SHALLOW = {name: own for name, own in ROW.items() if name != "mu_2"}  # Which would sink in by 5 mm
+
+
+def side_by_side(of: Mapping[str, Mapping[str, float]], **common: Any) -> dict[str, HeldCase]:
+    """Return grippers in a row along y."""
+    cases = enumerate(of.items())
+    return {n: HeldCase(place=round(0.1 * k, 1), **{**common, **own}) for k, (n, own) in cases}
+
+
+def scene(name: str, of: Mapping[str, Mapping[str, float]] = ROW, **common: Any) -> Any:
+    """Return a scene by its name; its cases have that name before theirs."""
+    return {name: side_by_side({f"{name}_{one}": own for one, own in of.items()}, **common)}
+
+
+LIGHT = HeldCase().friction * HeldCase().force / HeldCase().gravity
+"""Mass whose weight is µN [kg]."""
+
+LONG = {"long": side_by_side({"long": {}}, dt=0.1, substeps=40, duration=10.0)}
+SCENES: dict[str, dict[str, HeldCase]] = (
+    LONG | {"scan": side_by_side(SCAN)}
+    | scene("T_5ms", time_constant=0.005) | scene("T_20ms", SHALLOW, time_constant=0.02)
+    | scene("h_1ms", ONE, substeps=10) | scene("iterations_500", ONE, iterations=500)
+    | scene("elliptic_1", cone="elliptic", impratio=1.0)
+    | scene("elliptic_10", cone="elliptic", impratio=10.0) | scene("elliptic", cone="elliptic")
+    | scene("pyramid_10", impratio=10.0) | scene("pyramid_100", impratio=100.0)
+    | scene("noslip_5", noslip=5)
+)  # fmt: skip
+"""The runs in Genesis, by scene."""
+
+CASES = {n: case for of in SCENES.values() for n, case in of.items()}
+TWINS = {f"mujoco_{name}": case for name, case in CASES.items()}
+"""The same runs in MuJoCo, in float64."""
+
+CHANGES = {
+    "base": ("nothing", "base", "–"),
+    "mu_2": ("friction 1 → 2", "base", "a deeper contact"),
+    "N_40": ("force 10 → 40 N", "base", "a deeper contact, four times the force"),
+    "m_05": ("5 times the mass", "base", "–"),
+    "h_1ms_base": ("step 2.5 → 1 ms", "base", "2.5 times as many steps"),
+    "iterations_500_base": ("500 solver iterations", "base", "none: the solver has converged"),
+    "T_5ms_base": ("T 10 → 5 ms", "base", "a step of at most T/2"),
+    "T_20ms_base": ("T 10 → 20 ms", "base", "a deeper contact"),
+    "noslip_5_base": ("noslip, 5 iterations", "base", "a second solver in each step"),
+    "noslip_5_m_15": ("the same, *mg* > µN", "m_15", "the same"),
+    "elliptic_1_base": ("elliptic, impratio 1", "base", "depth as with µ = 1"),
+    "elliptic_base": ("elliptic, impratio 100", "base", "depth as with µ = 1; no noslip"),
+    "pyramid_100_base": ("pyramid, impratio 100", "base", "a stiffer normal direction"),
+}
+"""What users try, by run: words, the run without it, and its price."""
+
+LABELS = {
+    "long": "10 s", "base": "μ = 1", "mu_2": "μ = 2", "h_1ms_base": "h = 1 ms",
+    "T_5ms_base": "T = 5 ms", "m_15": "1.5 kg", "noslip_5_m_15": "1.5 kg, noslip",
+    "noslip_5_base": "noslip", "elliptic_base": "elliptic cone, impratio 100",
+}  # fmt: skip
+"""Words of a reader for runs."""
+
+TOLERANCES: dict[str, tuple[float, float]] = {
+    "creep": (4e-6, 0.005), "depth": (1e-7, 0.005), "path": (4e-6, 0.005)
+}  # fmt: skip
+"""By metric, (atol, rtol) of a value between engines, backends or processors."""
+
+RESOLUTION = {"m/s": 5e-6}
+
+
+def formulas(case: HeldCase, in_mujoco: bool = False) -> tuple[float, float]:
+    """Return the depth [m] and the creep [m/s] of a held box; see the page for their derivation.
+
+    The impedance d depends on the depth, so both are found by iteration.
+    """
+    d, most, mu = mujoco_contacts.IMPEDANCE[0], mujoco_contacts.IMPEDANCE[1], case.friction
+    seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
+    k, b = 1 / seconds**2, 2 / seconds
+    w = 1 / case.mass + 1 / (3 * (grippers.PAD_MASS + grippers.ARMATURE))
+    friction, normal = case.mass * case.gravity / CONTACTS, 2 * case.force / CONTACTS
+    square = mu**2 / ratio_of(case)
+    edges = 2 * square * (1 + (mu**2 if in_mujoco else square))
+    for _ in range(100):
+        soft = (1 - d) / d * w
+        if case.cone == "elliptic":
+            depth, creep = soft * normal / (k * d), soft / ratio_of(case) * friction / b
+        elif friction <= mu * normal / 2:
+            depth, creep = (
+                edges * soft * normal / 4 / (k * d),
+                edges * soft * friction / 2 / mu**2 / b,
+            )
+        else:  # the edge that points down is free
+            depth = edges * soft * (normal - friction / mu) / 2 / (k * d)
+            creep = edges * soft * (1.5 * friction / mu - normal / 2) / mu / b
+        d = (d + mujoco_contacts.impedance(depth)) / 2
+    return float(depth), float(creep)
+
+
+@dataclass(frozen=True, slots=True)
+class HeldMetrics(CaseMetrics):
+    """How a held box slides."""
+
+    creep: float = metric("m/s", "creep down the pads", "link_pos_m")
+    depth: float = metric("m", "depth of the contacts", "link_pos_m")
+    path: float = metric("m", "path down the pads", "link_pos_m")
+
+
+def held_metrics(trace: BodyTrace, case: HeldCase) -> HeldMetrics:
+    """Measure one run."""
+    place = trace.link_pos.astype(np.float64)
+    path = place[0, 0, 2] - place[-1, 0, 2]
+    gap = (place[-1, 2, 0] - place[-1, 1, 0]) / 2  # half of the distance of the pads' centres
+    depth = SIZE / 2 + PAD[0] - gap
+    return HeldMetrics(float(path) / case.duration, float(depth), float(path))
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input as JSON values, for the evidence key."""
+    return inputs(CASES, twins=list(TWINS))

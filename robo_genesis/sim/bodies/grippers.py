@@ -1,0 +1,149 @@
+"""Boxes that two pads hold in the air: build grippers side by side, run them, record the motion."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from robo_genesis.core.scene import DT, FloatArray
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.contacts import contact_constants, rigid_options, shared_case
+from robo_genesis.sim.bodies.free_fall import GRAVITY
+from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
+
+LINKS = ("box", "left", "right")
+"""The links of a run: the box and both pads."""
+
+SIZE, PAD = 0.04, (0.005, 0.03, 0.03)  # Edge of the box, and half the edges of a pad [m]
+
+PAD_MASS, ARMATURE = 1.0, 0.1  # [kg]; Genesis adds this armature to each joint of an MJCF file
+
+CONTACTS = 8
+"""Contact points of a box, four at each pad."""
+
+SHARED = (
+    "time_constant", "cone", "impratio", "noslip", "iterations", "dt", "substeps", "settle",
+    "duration", "gravity",
+)  # fmt: skip
+"""Settings that cases in one scene have in common."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeldCase:
+    """All settings of one run of a box between two pads, which slide along x.
+
+    `place` is the y of the gripper [m]; its height is 0, where float32 resolves a slow motion.
+    `friction` is the coefficient of the box, and the pads have less; `force` presses each pad [N],
+    `mass` is that of the box [kg]. After `settle` seconds, `duration` seconds are recorded. The
+    other settings are as of `ContactCase`; `iterations` of the solver, None for its default.
+    """
+
+    place: float = 0.0
+    friction: float = 1.0
+    force: float = 10.0
+    mass: float = 0.1
+    time_constant: float = 0.01
+    cone: Literal["pyramidal", "elliptic"] = "pyramidal"
+    impratio: float | None = None
+    resolution: None = None
+    noslip: int = 0
+    iterations: int | None = None
+    dt: float = DT
+    substeps: int = 4
+    settle: float = 0.3
+    duration: float = 0.2
+    gravity: float = GRAVITY
+
+    @property
+    def steps(self) -> int:
+        """Number of recorded outer steps."""
+        return round(self.duration / self.dt)
+
+    @property
+    def h(self) -> float:
+        """Length of one solver step [s]."""
+        return self.dt / self.substeps
+
+
+def pads(case: HeldCase) -> str:
+    """Return the bodies of two pads in the language of MuJoCo; both engines read them.
+
+    Their geoms are turned, because MuJoCo computes softness otherwise for pads along the axes.
+    """
+    x, (thick, wide, high) = SIZE / 2 + PAD[0], PAD
+    pad = """<body name="{}" pos="{} 0 0">
+    <joint name="{}" type="slide" axis="{} 0 0" armature="{}"/>
+    <geom type="box" size="{} {} {}" euler="90 0 0" mass="{}" friction=".05 0 0"
+     solref="{} 1"/></body>"""
+    same = (ARMATURE, thick, high, wide, PAD_MASS, case.time_constant)
+    left, right = pad.format("left", -x, "l", 1, *same), pad.format("right", x, "r", -1, *same)
+    return f'<body name="frame">{left}{right}</body>'
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A built scene, and by case its pads and its box."""
+
+    scene: Any
+    grippers: Mapping[str, tuple[Any, Any]]
+    cases: Mapping[str, HeldCase]
+
+
+def build_world(gs: Any, cases: Mapping[str, HeldCase]) -> World:
+    """Declare a scene with a gripper for each case, and build it; raises as `shared_case`."""
+    common = shared_case(cases, SHARED)
+    further = {"iterations": common.iterations} if common.iterations else {}
+    options, fall = gs.options, (0, 0, -common.gravity)
+    scene = gs.Scene(
+        sim_options=options.SimOptions(dt=common.dt, substeps=common.substeps, gravity=fall),
+        rigid_options=options.RigidOptions(**rigid_options(gs, common), **further),
+        profiling_options=options.ProfilingOptions(show_FPS=False),
+        show_viewer=False,
+    )
+    grippers = {}
+    for name, case in cases.items():
+        at, density = (0.0, case.place, 0.0), case.mass / SIZE**3
+        file = f"<mujoco><worldbody>{pads(case)}</worldbody></mujoco>"
+        box, rigid = gs.morphs.Box(size=(SIZE,) * 3, pos=at), gs.materials.Rigid
+        grippers[name] = (
+            scene.add_entity(gs.morphs.MJCF(file=file, pos=at)),
+            scene.add_entity(box, rigid(rho=density, friction=case.friction)),
+        )
+    scene.build()
+    return World(scene, grippers, dict(cases))
+
+
+def record_world(
+    world: World, traces: dict[str, BodyTrace], readings: dict[str, dict[str, float]]
+) -> None:
+    """Reset a world, press, settle and step; add its traces and readings to those of others.
+
+    Readings are the friction of each box, the time constant of its contacts, and their number.
+    """
+    common, scene = shared_case(world.cases, SHARED), world.scene
+    scene.reset()
+    for name, (hand, _) in world.grippers.items():
+        hand.control_dofs_force(np.full(2, world.cases[name].force, np.float32))
+    for _ in range(round(common.settle / common.dt)):
+        scene.step()
+    states = record_states(
+        scene.step, common.steps, lambda: {n: read(*of) for n, of in world.grippers.items()}
+    )
+    for name, (_, box) in world.grippers.items():
+        traces[name] = BodyTrace(times(common), *stacked([state[name] for state in states]))
+        geom = box.geoms[0]
+        found = {
+            "friction": float(to_numpy(scene.rigid_solver.get_geoms_friction([geom.idx]))[0]),
+            "time_constant": float(contact_constants(scene, geom)[0]),
+            "contacts": len(to_numpy(box.get_contacts()["penetration"])),
+        }
+        for group, value in found.items():
+            readings.setdefault(group, {})[name] = value
+
+
+def read(hand: Any, box: Any) -> tuple[FloatArray, ...]:
+    """Return position, orientation, velocity and angular velocity of `LINKS`, now."""
+    both = zip(read_body(box), read_body(hand), strict=True)
+    return tuple(np.concatenate([of_box, of_hand[-2:]]) for of_box, of_hand in both)

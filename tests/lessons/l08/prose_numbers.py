@@ -1,0 +1,32 @@
+"""The decimal numbers that prose of L08 may hold: configured inputs and calculations by hand."""
+
+import numpy as np
+
+from robo_genesis.lessons.l08 import rates
+from robo_genesis.sim.bodies.grippers import ARMATURE, PAD_MASS
+
+CONFIGURED = {
+    "w of a pad, by hand [1/kg]": round(1 / (3 * (PAD_MASS + ARMATURE)), 3),
+    "1 + m w, by hand": 1.03,
+    "creep of the base case, by hand [mm/s]": 1.33,
+    "its path in 10 s [mm]": 13.3,
+    "the same with the largest impedance [mm]": 6.3,
+    "share of the path, by hand": 0.924,
+    "the factor (1 − d)/d that follows": 0.1026,
+    "the impedance that follows": 0.907,
+    "path, by hand [mm]": 12.3,
+    "path with the elliptic cone, by hand [mm]": 0.06,
+    "weight of half a kilogram [N]": 4.9,
+    "µ from which the creep is nearly constant, by the formula": 1.2,
+    "µ up to which it is, by the formula": 1.7,
+    "one unit of float32 at 0.4 m per solver step, by hand [mm/s]": round(
+        float(np.spacing(np.float32(0.4))) / 0.0025 * 1e3, 3
+    ),
+    "largest gain of force": 2.1,
+    "share of µN of the box with 0.9 kg": 0.88,
+    "force of a finger in an example [N]": 11.7,
+    "mass that it carries, by hand [kg]": round(2 * 11.7 / (9.81 + 5), 2),
+    "seconds to slide by 10 mm, by hand [s]": round(10 / 1.2, 1),
+    "error of the reader's own task [m]": 0.008,
+    "z of a 95 % interval": rates.Z,
+}

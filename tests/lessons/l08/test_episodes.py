@@ -1,0 +1,145 @@
+"""The ladder, rates and checks of L08: known values, and each check with its own fault."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lessons.changed_runs import copied, failed, metric, put, reading, shift, trace
+
+from robo_genesis.lessons.l08 import explorer, ladder, plots, rates, spec, text
+from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm.joint_control import CaseError
+
+PLACED = spec.SHOWN["placed"]
+
+
+@pytest.mark.parametrize(
+    ("k", "n", "low", "high"),
+    [(1, 1, 0.207, 1.0), (64, 64, 0.943, 1.0), (256, 256, 0.985, 1.0), (0, 10, 0.0, 0.278)],
+)
+def test_wilson_intervals_that_others_publish(k, n, low, high):
+    assert rates.wilson(k, n) == pytest.approx((low, high), abs=6e-4)
+
+
+def test_an_interval_of_nothing_is_refused():
+    for k, n in ((0, 0), (3, 2), (-1, 5)):
+        with pytest.raises(ValueError, match="give 0 to n successes"):
+            rates.wilson(k, n)
+
+
+def test_the_paired_test_is_exact():
+    assert rates.paired(0, 5) == pytest.approx(2 / 32)
+    assert rates.paired(3, 3) == 1.0
+    assert rates.paired(1, 22) == rates.paired(22, 1)
+
+
+def test_the_checks_accept_the_episodes(episodes):
+    assert [one for one in episodes.outcomes() if not one.passed] == []
+    for figure in (plots.posture, plots.phases, plots.errors, plots.creep):
+        assert figure(episodes).axes
+    assert text.rung_table(episodes).count("\n") == len(ladder.RUNGS) + 2
+    assert "of 256" in text.words_table(episodes)
+
+
+LOST = [
+    ("held", {"force": put((slice(None), PLACED, 0), 0)}),
+    ("lifted", {"object_pos": put((slice(None), PLACED, 2), 0.035)}),
+    ("carried", {"force": put((60, PLACED, 1), 0)}),
+    ("released", {"touches": put((-1, PLACED), 1)}),
+    ("contained", {"object_pos": put((slice(-9, None), PLACED, 0), 0.62)}),
+    ("resting", {"object_pos": shift((-1, PLACED, 0), 3e-4)}),
+]
+
+
+@pytest.mark.parametrize(("rung", "arrays"), LOST, ids=[name for name, _ in LOST])
+def test_an_episode_is_lost_at_its_rung(episodes, rung, arrays):
+    run = trace("askew", **arrays)(episodes)
+    level = ladder.reached(run.traces["askew"], spec.ASKEW)[PLACED]
+    assert ladder.RUNGS[level] == rung
+
+
+def test_a_refused_plan_fails_the_first_rung(episodes):
+    run = trace("askew", phase=put((slice(None), PLACED), picking.DONE))(episodes)
+    assert ladder.reached(run.traces["askew"], spec.ASKEW)[PLACED] == 0
+
+
+def test_the_lowest_point_of_a_tilted_cylinder_and_box(episodes):
+    one = episodes.traces["askew"]
+    half = np.pi / 8  # a turn by 45° about x
+    quat = np.zeros_like(one.object_quat)
+    quat[..., 0], quat[..., 1] = np.cos(half), np.sin(half)
+    tilted = replace(one, object_quat=quat, object_pos=np.zeros_like(one.object_pos))
+    corner = -(0.025 + 0.035) * np.sqrt(0.5)
+    for shape in ("cylinder", "box"):
+        found = ladder.lowest(tilted, replace(spec.ASKEW, shape=shape))
+        assert found == pytest.approx(np.full_like(found, corner))
+
+
+def test_a_start_over_the_bowl_is_refused():
+    case = replace(spec.EXACT, starts=np.array([[0.5, 0.0], [0.56, 0.2]]))
+    with pytest.raises(CaseError, match="environment 1 begins over the bowl"):
+        picking.build(None, case)
+
+
+def test_the_machine_waits_for_what_is_measured():
+    case = replace(spec.EXACT, starts=np.zeros((2, 2)), beliefs=np.zeros((2, 2)))
+    goals = np.zeros((9, 2, 7)) + case.q_start[:7]
+    expert = picking.Expert(case, goals, np.array([True, False]))
+    q, still = np.tile(case.q_start, (2, 1)), np.zeros((2, 9))
+    expert.act(q, still + 1.0)  # near, but fast
+    assert expert.phase.tolist() == [0, picking.DONE]
+    for phase in (1, 2):
+        expert.act(q, still)
+        assert expert.phase[0] == phase
+    commands = [expert.act(q, still)[0, -1] for _ in range(picking.CLOSING - 1)]
+    assert commands == [0.0] * len(commands)
+    assert expert.phase[0] == picking.CLOSE
+    expert.act(q, still)
+    assert expert.phase[0] == picking.LIFT
+
+
+def test_a_command_moves_by_the_stride_at_most():
+    case = replace(spec.EXACT, starts=np.zeros((1, 2)), beliefs=np.zeros((1, 2)))
+    expert = picking.Expert(case, np.ones((9, 1, 7)), np.ones(1, bool))
+    q = np.array([case.q_start])
+    moved = expert.act(q, 0 * q).copy() - q
+    assert np.abs(moved).max() == pytest.approx(picking.STRIDE)
+
+
+def test_each_cell_shows_its_own_episode(episodes):
+    data = explorer.explored(episodes)
+    cells = [cell for row in data["maps"][0]["rows"][::-1] for cell in row["cells"]]
+    levels = ladder.reached(episodes.traces["askew"], spec.ASKEW)
+    assert [cell["numbers"][0] for cell in cells] == levels.tolist()
+    ends = data["traces"]["ends"]
+    assert ends.link_pos[1 + PLACED, -1] == pytest.approx(
+        episodes.traces["askew"].object_pos[-1, PLACED]
+    )
+
+
+SPOILED = {
+    "another model": (reading("model", "links", 10), {"structure"}),
+    "a failure where the place is known": (
+        trace("exact", touches=put((-1, 0), 1)), {"place_is_enough", "order_does_not_matter"}
+    ),
+    "a rate of one half": (metric("askew", resting=128.0), {"turned_camera"}),
+    "no more lifted than placed": (metric("askew", raised_once=180.0), {"words_differ"}),
+    "a hand at its command": (metric("exact", short=0.0), {"hand_is_short"}),
+    "a grip that does not slide": (metric("exact", creep=0.0), {"held_but_sliding"}),
+    "another episode in the replay": (
+        trace("askew", touches=put((-1, PLACED), 1)),
+        {"along_the_pads", "order_does_not_matter", "shown_episodes"},
+    ),
+    "a batch in the order of another": (copied("permuted", "askew"), {"order_does_not_matter"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SPOILED)
+def test_a_check_fails_for_its_own_fault(episodes, name):
+    spoil, expected = SPOILED[name]
+    assert failed(spoil(episodes)) == expected
+
+
+def test_a_replayed_episode_that_is_not_of_the_batch_breaks_its_law(episodes):
+    run = trace("placed", link_pos=shift((300, -1, 0), 1e-4))(episodes)
+    assert [one.name for one in run.outcomes() if not one.passed] == ["laws_of_motion"]
