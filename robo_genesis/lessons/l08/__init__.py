@@ -8,6 +8,7 @@ __getattr__ = on_demand(
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
     build="robo_genesis.sim.arm.picking",
     describe="robo_genesis.sim.arm.joints",
+    picking="robo_genesis.sim.arm.picking",
     grippers="robo_genesis.sim.bodies",
     mujoco_grippers="robo_genesis.sim.mujoco.grippers",
     fixed_parts="robo_genesis.sim.visual_shape",

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Episodes, Trace
-from robo_genesis.lessons.l08 import ladder, spec
+from robo_genesis.lessons.l08 import metrics, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.laws import commanded, dynamics, model_joints
 from robo_genesis.sim.common_checks import posture, stamps
@@ -46,7 +47,7 @@ def along_the_pads(run: Experiment) -> Iterator[Finding]:
     below −6 mm. The errors across the pads are at most 7 mm.
     """
     error = spec.ASKEW.beliefs - spec.STARTS
-    good = ladder.reached(run.traces["askew"], spec.ASKEW) == len(ladder.RUNGS)
+    good = metrics.reached(run.traces["askew"], spec.ASKEW) == len(metrics.RUNGS)
     yield equal("small_error.failed", int((~good[error[:, 0] > -3e-3]).sum()), 0)
     yield equal("large_error.succeeded", int(good[error[:, 0] < -6e-3].sum()), 0)
     yield above("largest_m", float(error[:, 0].max()), 10e-3)
@@ -72,7 +73,7 @@ def held_but_sliding(run: Experiment) -> Iterator[Finding]:
 
 def shown_episodes(run: Experiment) -> Iterator[Finding]:
     """Each episode of the replay reaches the rung of its name, and finishes all phases."""
-    level = ladder.reached(run.traces["askew"], spec.ASKEW)
+    level = metrics.reached(run.traces["askew"], spec.ASKEW)
     for name, row in spec.SHOWN.items():
         yield equal(f"{name}.rungs", int(level[row]), spec.REACH[name])
         yield equal(f"{name}.phase", int(run.traces["askew"].phase[-1, row]), picking.DONE)
@@ -85,12 +86,16 @@ def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
     for name, other, order in (
         ("again", "exact", slice(None)), ("permuted", "askew", spec.ORDER)
     ):  # fmt: skip
-        if name not in run.cases:
-            continue
-        one, two = run.traces[name], run.traces[other]
-        for array in (of.name for of in fields(Episodes) if of.name != "t"):
-            differ = int((getattr(one, array) != getattr(two, array)[:, order]).sum())
-            yield equal(f"{name}.{array}", differ, 0)
+        if name in run.cases:
+            yield from same_episodes(run, name, other, order)
+
+
+def same_episodes(run: Experiment, name: str, other: str, order: Any) -> Iterator[Finding]:
+    """Require equal episodes of two batches, those of the second in an order."""
+    one, two = run.traces[name], run.traces[other]
+    for array in (of.name for of in fields(Episodes) if of.name != "t"):
+        differ = int((getattr(one, array) != getattr(two, array)[:, order]).sum())
+        yield equal(f"{name}.{array}", differ, 0)
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
@@ -112,6 +117,7 @@ def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
     yield from apart("start", "q [rad or m]", trace.q[0], case.q_start, 1e-6)
     place = np.column_stack([case.starts, np.full(len(case.starts), case.size[2] / 2)])
     yield from apart("start", "object_pos [m]", trace.object_pos[0], place, 1e-6)
+    yield from apart("start", "object_quat", trace.object_quat[0], case.turns, 1e-6)
 
 
 def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Finding]:

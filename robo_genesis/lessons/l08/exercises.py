@@ -9,7 +9,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, equal, within
 from robo_genesis.core.exercises import as_test, compared, refused, same_array
-from robo_genesis.lessons.l08 import ladder, rates
+from robo_genesis.lessons.l08 import metrics, rates
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
 
@@ -78,7 +78,7 @@ EPISODES: dict[str, tuple[Any, ...]] = {
     "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1), "held_once": ("force", 3, 0.0, 7),
     "held_at_the_limit": ("force", [3, 4], 0.1, 1), "lightly": ("force", slice(3, 8), 0.11, 7),
     "stays_in_the_lift": ("phase", LATE, 3, 2), "rises_late": ("pos", (5, 2), 0.08, 2),
-    "lifted_to_the_limit": ("pos", (0, 2), 0.0, "pos", (5, 2), ladder.RAISED, 7),
+    "lifted_to_the_limit": ("pos", (0, 2), 0.0, "pos", (5, 2), metrics.RAISED, 7),
     "move_is_short": ("phase", [5, 6], 5, 7), "no_move_no_lower": ("phase", [5, 6, 7], 6, 3),
     "lost_then": ("force", (7, 1), 0.0, 3), "lost_at_the_limit": ("force", (5, 1), 0.1, 3),
     "not_done": ("phase", -1, 7, 4), "touched_at_the_end": ("touches", -1, 1, 4),

@@ -7,7 +7,7 @@ import numpy as np
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l08 import ladder, spec
+from robo_genesis.lessons.l08 import metrics, spec
 from robo_genesis.sim.arm import picking
 
 MEASURES = False
@@ -19,7 +19,7 @@ COLUMNS = ("start x, y [mm]", "error x, y [mm]", "rungs passed", "first failed",
 def explored(found: Experiment) -> dict[str, Any]:
     """Return the data of the map, as `site/figures/explorer.py` shows them."""
     trace, case = found.traces["askew"], spec.ASKEW
-    level, apart = ladder.reached(trace, case), ladder.off_axis(trace, case)[-1]
+    level, apart = metrics.reached(trace, case), metrics.off_axis(trace, case)[-1]
     moving = trace.phase == picking.MOVE
     press = np.array([np.median(trace.force[moving[:, k], k]) if moving[:, k].any() else 0.0
                       for k in range(len(level))])  # fmt: skip
@@ -28,9 +28,12 @@ def explored(found: Experiment) -> dict[str, Any]:
     y = np.linspace(*spec.REGION[1], n + 1)
     rows = [{"label": decimal(1000 * (y[k] + y[k + 1]) / 2, 0), "cells": cells[k * n :][:n]}
             for k in range(n)]  # fmt: skip
-    caption = "Starts from above, x to the right, y upwards [mm]. Each cell is an episode."
+    x = " to ".join(f"{1000 * end:.0f}" for end in spec.REGION[0])
+    caption = (
+        f"Starts from above: x from {x} mm to the right, y [mm] upwards. A cell is an episode."
+    )
     return {
-        "thing": "object",
+        "thing": "robot",
         "around": True,
         "choices": ("Map", "Cells show"),
         "maps": [{"run": "ends", "label": "Starts", "caption": caption, "rows": rows[::-1],
@@ -47,8 +50,8 @@ def explored(found: Experiment) -> dict[str, Any]:
 def cell(number: int, level: int, press: float, apart: float) -> dict[str, Any]:
     """Return a cell of the map, which shows the end of its episode."""
     (x, y), error = 1000 * spec.STARTS[number], 1000 * (spec.ASKEW.beliefs - spec.STARTS)[number]
-    done = level == len(ladder.RUNGS)
-    failed = "none" if done else ladder.RUNGS[level]
+    done = level == len(metrics.RUNGS)
+    failed = "none" if done else metrics.RUNGS[level]
     place = f"{x:.0f}, {decimal(y, 0)}"
     return {
         "answer": number + 1,

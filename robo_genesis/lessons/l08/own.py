@@ -9,7 +9,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed, scaled_value
 from robo_genesis.core.trace import Episodes
-from robo_genesis.lessons.l08 import ladder, rates, spec
+from robo_genesis.lessons.l08 import metrics, rates, spec
 from robo_genesis.lessons.l08.checks import order_does_not_matter
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.kinematics import ARM, hand_pose
@@ -59,7 +59,7 @@ def run(world: World, joints: Any, case: PickCase, grasp_pose: Written, ended: W
 
 def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray | None:
     """Return by a student's ladder how many rungs each episode passes, None if it is missing."""
-    lowest, rim = ladder.lowest(trace, case)[-1], np.array([*case.bowl_at, bowl.HEIGHT])
+    lowest, rim = metrics.lowest(trace, case)[-1], np.array([*case.bowl_at, bowl.HEIGHT])
     arrays = (trace.phase, trace.force, trace.object_pos, trace.touches)
     given = [(*(of[:, k] for of in arrays), lowest[k], rim) for k in range(len(lowest))]
     return None if missing(rungs, *given[0]) else np.array([rungs(*each) for each in given])
@@ -67,9 +67,9 @@ def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray | None
 
 def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
     """Return how many episodes reach each rung, by the student's ladder and by the course's."""
-    mine, course = levels(rungs, trace, case), ladder.reached(trace, case)
+    mine, course = levels(rungs, trace, case), metrics.reached(trace, case)
     lines = [f"{'rung':10} {'yours':>6} {'course':>7}"]
-    for k, name in enumerate(ladder.RUNGS):
+    for k, name in enumerate(metrics.RUNGS):
         own = "-" if mine is None else (mine > k).sum()
         lines.append(f"{name:10} {own:>6} {(course > k).sum():>7}")
     if mine is not None and (mine != course).any():
@@ -81,9 +81,9 @@ def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
 
 def rate(rungs: Written, wilson: Written, trace: Episodes, case: PickCase) -> str:
     """Return the rate of success with its interval, by the student and by the course."""
-    lines, course = [], ladder.reached(trace, case)
+    lines, course = [], metrics.reached(trace, case)
     for level, interval in ((levels(rungs, trace, case), wilson), (course, rates.wilson)):
-        k, n = int(np.sum(level == len(ladder.RUNGS))), len(course)
+        k, n = int(np.sum(level == len(metrics.RUNGS))), len(course)
         absent = level is None or missing(interval, k, n)
         lines.append("-" if absent else f"{k} of {n}: {percent(interval(k, n))}")
     return "yours   {}\ncourse  {}".format(*lines)
@@ -96,22 +96,22 @@ def percent(interval: tuple[float, float]) -> str:
 
 def slide(creep: Written, trace: Episodes, case: PickCase) -> str:
     """Return the median speed of the slide in the move, by the student and by the course."""
-    held = ladder.reached(trace, case) > ladder.RUNGS.index("carried")
-    inner, hand = ladder.inside_move(trace) & held, hand_pose(trace.q).position[..., 2]
+    held = metrics.reached(trace, case) > metrics.RUNGS.index("carried")
+    inner, hand = metrics.inside_move(trace) & held, hand_pose(trace.q).position[..., 2]
     if not inner.any():
         return "No episode is carried, so there is no slide to measure."
     rows, of = [(inner[:, k], k) for k in np.flatnonzero(inner.sum(axis=0) > 1)], "-"
     if not missing(creep, *np.eye(3)):
         found = [creep(hand[at, k], trace.object_pos[at, k, 2], trace.t[at]) for at, k in rows]
         of = scaled_value(float(np.median(found)), "mm/s")
-    return f"yours   {of}\ncourse  {scaled_value(ladder.grip(trace, held)[1], 'mm/s')}"
+    return f"yours   {of}\ncourse  {scaled_value(metrics.grip(trace, held)[1], 'mm/s')}"
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the recorded episodes."""
-    m, level = run.metrics["exact"], ladder.reached(run.traces["exact"], spec.EXACT)
+    m, level = run.metrics["exact"], metrics.reached(run.traces["exact"], spec.EXACT)
     n, good = len(level), int(m.resting)
-    first = ((rung, (level == k).sum()) for k, rung in enumerate(ladder.RUNGS))
+    first = ((rung, (level == k).sum()) for k, rung in enumerate(metrics.RUNGS))
     lost = [f"{count} at “{rung}”" for rung, count in first if count]
     differ = sum(finding.found for finding in order_does_not_matter(run))
     return bullets([

@@ -1,5 +1,6 @@
 """The measuring pages of L08, and its declaration."""
 
+from dataclasses import replace
 from typing import Any
 
 from robo_genesis.core.channels import Replay
@@ -7,10 +8,10 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Run, counts
 from robo_genesis.core.trace import Episodes, Trace
-from robo_genesis.lessons.l08 import checks, ladder, spec
+from robo_genesis.lessons.l08 import checks, edge, edge_checks, metrics, spec
 from robo_genesis.lessons.l08.creep import HeldMetrics
 from robo_genesis.lessons.l08.creep_checks import CREEP
-from robo_genesis.lessons.l08.ladder import EpisodesMetrics
+from robo_genesis.lessons.l08.metrics import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 
 MEASURES = False
@@ -21,7 +22,7 @@ ONE = "one episode of a batch, at all its steps"
 
 def batches(cases: dict[str, Any]) -> dict[str, Run]:
     """Return runs of all episodes; those that are not counted copy others."""
-    counted = {name: name in spec.COUNTED for name in cases}
+    counted = {name: name in (*spec.COUNTED, *edge.COUNTED) for name in cases}
     return {n: Run(cases[n], own, "" if own else COPY, Episodes) for n, own in counted.items()}
 
 
@@ -31,7 +32,7 @@ LECTURE = MeasuringPage(
     kind=Trace,
     joints=JOINT_NAMES,
     readings={"model": counts(MODEL_COUNTS)},
-    measure=ladder.episodes_metrics,
+    measure=metrics.episodes_metrics,
     checks=(*checks.CHECKS, *checks.LECTURE),
     parameters=spec.parameters,
 )
@@ -43,17 +44,27 @@ LAB = with_functions(
         kind=Trace,
         joints=JOINT_NAMES,
         readings={"model": counts(MODEL_COUNTS)},
-        measure=ladder.episodes_metrics,
+        measure=metrics.episodes_metrics,
         checks=(*checks.CHECKS, *checks.LAB),
         parameters=spec.lab_parameters,
     ),
     "grasp_pose", "ended", "rungs", "wilson", "creep",
 )  # fmt: skip
 
+RATES = replace(
+    LECTURE,
+    runs=batches(edge.COUNTED | edge.COPIES),
+    checks=edge_checks.RATES,
+    parameters=edge.parameters,
+    camera=False,
+)
+MISTAKES = replace(RATES, runs={}, checks=(checks.structure,))
+
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.COUNTED, EpisodesMetrics) | dict.fromkeys(CREEP.cases, HeldMetrics),
-    pages={"lecture": LECTURE, "lab": LAB, "creep": CREEP},
+    metrics=dict.fromkeys((*spec.COUNTED, *edge.COUNTED), EpisodesMetrics)
+    | dict.fromkeys(CREEP.cases, HeldMetrics),
+    pages={"lecture": LECTURE, "lab": LAB, "mistakes": MISTAKES, "rates": RATES, "creep": CREEP},
     replays={
         "episodes": Replay(
             tuple(spec.SHOWN),

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, legend_above, look
-from robo_genesis.lessons.l08 import ladder, spec
+from robo_genesis.lessons.l08 import metrics, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import hand_pose
@@ -36,11 +36,12 @@ def phases(run: Experiment) -> Figure:
     return figure
 
 
-def errors(run: Experiment) -> Figure:
+def errors(run: Experiment, batch: str = "askew") -> Figure:
     """Draw the error of the believed place in each episode, marked by the rung it reaches."""
     figure, ax = plotting.axes(4.6)
-    error = 1000 * (spec.ASKEW.beliefs - spec.STARTS)
-    level = ladder.reached(run.traces["askew"], spec.ASKEW)
+    case = run.cases[batch]
+    error = 1000 * (case.beliefs - case.starts)
+    level = metrics.reached(run.traces[batch], case)
     for name, mark, sign in (
         ("placed", "baseline", "o"), ("slipped", "first", "s"), ("tipped", "second", "^"),
         ("pushed", "third", "x"),

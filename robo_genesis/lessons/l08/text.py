@@ -5,7 +5,7 @@ from typing import Any
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l08 import ladder, rates, spec
+from robo_genesis.lessons.l08 import metrics, rates, spec
 
 MEASURES = False
 
@@ -37,7 +37,7 @@ def words_table(run: Experiment) -> Iterator[dict[str, str]]:
 def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
     """Return by rung how many episodes reach it, and how many fail there first."""
     left = len(spec.STARTS)
-    for rung in ladder.RUNGS:
+    for rung in metrics.RUNGS:
         exact, askew = (int(getattr(run.metrics[name], rung)) for name in spec.COUNTED)
         yield {"rung": rung, spec.LABELS["exact"]: exact, spec.LABELS["askew"]: askew,
                "of these fail here first": left - askew}  # fmt: skip

@@ -24,8 +24,8 @@ from robo_genesis.sim.bodies.table import SceneCase, World
 PHASES = ("pregrasp", "descend", "close", "lift", "move", "lower", "open", "retreat", "done")
 """The phases of an episode in their order."""
 
-CLOSE, LIFT, MOVE, LOWER, OPEN, DONE = (
-    PHASES.index(name) for name in ("close", "lift", "move", "lower", "open", "done")
+DESCEND, CLOSE, LIFT, MOVE, LOWER, OPEN, DONE = (
+    PHASES.index(name) for name in ("descend", "close", "lift", "move", "lower", "open", "done")
 )
 
 OF_GOAL = (0, 1, 1, 2, 3, 4, 4, 3, 3)
@@ -50,7 +50,8 @@ class PickCase(SceneCase):
     A sample of `dt` has `commands` of the expert. `settings` are those of the solver. The pads
     grip `pad` below the object's top; `above`, `rise` and `drop` are the heights of the pregrasp
     and of the lift above the grasp, and of the object's lower face above the table when it is
-    released [m].
+    released [m]. Objects are turned by `yaws` (e,) about z, which the expert ignores [rad]. Where
+    `timed` (e,) is above 0, the descent ends after as many outer steps, whatever is measured.
     """
 
     starts: FloatArray
@@ -61,6 +62,14 @@ class PickCase(SceneCase):
     above: float = 0.10
     rise: float = 0.12
     drop: float = 0.02
+    yaws: FloatArray | float = 0.0
+    timed: FloatArray | float = 0.0
+
+    @property
+    def turns(self) -> FloatArray:
+        """Orientations (e, 4) in which the objects begin, (w, x, y, z)."""
+        half = np.broadcast_to(self.yaws, len(self.starts)) / 2
+        return np.column_stack([np.cos(half), 0 * half, 0 * half, np.sin(half)])
 
     @property
     def control(self) -> ControlCase:
@@ -134,6 +143,7 @@ class Expert:
         self.since = np.zeros(len(accepted), int)
         self.command = np.tile(case.q_start, (len(accepted), 1))
         self.opened = float(case.q_start[-1])
+        self.timed = np.broadcast_to(case.timed, len(accepted))
 
     def act(self, q: FloatArray, qd: FloatArray) -> FloatArray:
         """Return the next command (e, 9) from positions and velocities (e, 9) [rad or m]."""
@@ -153,6 +163,8 @@ class Expert:
         """Return in which environments (e,) the present phase has reached its end."""
         near = np.abs(q[:, :ARM] - self.goals[self.phase, self.rows]).max(axis=1) < ARRIVED
         arrived = near & (np.abs(qd[:, :ARM]).max(axis=1) < SLOW)
+        by_time = (self.phase == DESCEND) & (self.timed > 0)
+        arrived = np.where(by_time, self.since >= self.timed, arrived)
         still = (np.abs(qd[:, ARM:]).max(axis=1) < STILL) & (self.since >= CLOSING)
         return np.where(np.isin(self.phase, (CLOSE, OPEN)), still, arrived)
 
@@ -188,6 +200,7 @@ def run(
 
     def place() -> None:
         world.body.set_pos(np.column_stack([case.starts, np.full(n, case.size[2] / 2)]))
+        world.body.set_quat(case.turns)
 
     batch = Batch(world.scene, world.robot, joints, [case.control] * n, (world.body,), place)
     expert = of(case, *plan(world.robot, joints, case, points))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lessons.changed_runs import copied, failed, metric, put, reading, shift, trace
 
-from robo_genesis.lessons.l08 import explorer, ladder, plots, rates, spec, text
+from robo_genesis.lessons.l08 import explorer, metrics, plots, rates, spec, text
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.joint_control import CaseError
 
@@ -37,7 +37,7 @@ def test_the_checks_accept_the_episodes(episodes):
     assert [one for one in episodes.outcomes() if not one.passed] == []
     for figure in (plots.posture, plots.phases, plots.errors, plots.creep):
         assert figure(episodes).axes
-    assert text.rung_table(episodes).count("\n") == len(ladder.RUNGS) + 2
+    assert text.rung_table(episodes).count("\n") == len(metrics.RUNGS) + 2
     assert "of 256" in text.words_table(episodes)
 
 
@@ -54,13 +54,13 @@ LOST = [
 @pytest.mark.parametrize(("rung", "arrays"), LOST, ids=[name for name, _ in LOST])
 def test_an_episode_is_lost_at_its_rung(episodes, rung, arrays):
     run = trace("askew", **arrays)(episodes)
-    level = ladder.reached(run.traces["askew"], spec.ASKEW)[PLACED]
-    assert ladder.RUNGS[level] == rung
+    level = metrics.reached(run.traces["askew"], spec.ASKEW)[PLACED]
+    assert metrics.RUNGS[level] == rung
 
 
 def test_a_refused_plan_fails_the_first_rung(episodes):
     run = trace("askew", phase=put((slice(None), PLACED), picking.DONE))(episodes)
-    assert ladder.reached(run.traces["askew"], spec.ASKEW)[PLACED] == 0
+    assert metrics.reached(run.traces["askew"], spec.ASKEW)[PLACED] == 0
 
 
 def test_the_lowest_point_of_a_tilted_cylinder_and_box(episodes):
@@ -71,7 +71,7 @@ def test_the_lowest_point_of_a_tilted_cylinder_and_box(episodes):
     tilted = replace(one, object_quat=quat, object_pos=np.zeros_like(one.object_pos))
     corner = -(0.025 + 0.035) * np.sqrt(0.5)
     for shape in ("cylinder", "box"):
-        found = ladder.lowest(tilted, replace(spec.ASKEW, shape=shape))
+        found = metrics.lowest(tilted, replace(spec.ASKEW, shape=shape))
         assert found == pytest.approx(np.full_like(found, corner))
 
 
@@ -109,7 +109,7 @@ def test_a_command_moves_by_the_stride_at_most():
 def test_each_cell_shows_its_own_episode(episodes):
     data = explorer.explored(episodes)
     cells = [cell for row in data["maps"][0]["rows"][::-1] for cell in row["cells"]]
-    levels = ladder.reached(episodes.traces["askew"], spec.ASKEW)
+    levels = metrics.reached(episodes.traces["askew"], spec.ASKEW)
     assert [cell["numbers"][0] for cell in cells] == levels.tolist()
     ends = data["traces"]["ends"]
     assert ends.link_pos[1 + PLACED, -1] == pytest.approx(

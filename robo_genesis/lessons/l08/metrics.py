@@ -19,8 +19,8 @@ CENTRED, BELOW = 0.06, 0.01
 """An object is in the bowl if its centre is this near to the axis, and its lowest point this far
 below the rim [m]."""
 
-WINDOW, STILL = 4, 2e-4
-"""Steps at the end in which an object at rest moves by less than this [m], as in L07."""
+WINDOW, STILL = 0.2, 2e-4
+"""Time at the end [s] in which an object at rest moves by less than this [m], as in L07."""
 
 
 def lowest(trace: Episodes, case: PickCase) -> FloatArray:
@@ -46,7 +46,8 @@ def rungs(trace: Episodes, case: PickCase) -> dict[str, np.ndarray]:
     carry = (trace.phase == MOVE) | (trace.phase == LOWER)
     rise = trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
     at_move = (trace.phase >= MOVE).argmax(axis=0)
-    moved = np.linalg.norm(trace.object_pos[-1] - trace.object_pos[-WINDOW - 1 :], axis=2)
+    last = trace.object_pos[-round(WINDOW / trace.dt) - 1 :]
+    moved = np.linalg.norm(last[-1] - last, axis=2)
     inside = off_axis(trace, case)[-1] < CENTRED
     return {
         "planned": trace.phase[0] < DONE,
@@ -84,6 +85,8 @@ class EpisodesMetrics(CaseMetrics):
     raised_once: float = metric("1", "lifted at some time", "object_pos_m")
     over_bowl_once: float = metric("1", "over the bowl at some time", "object_pos_m")
     in_bowl: float = metric("1", "in the bowl at the end", "object_pos_m", "object_quat_wxyz")
+    over_bowl: float = metric("1", "over the bowl at the end", "object_pos_m")
+    hanging: float = metric("1", "of these, touched by the robot", "object_pos_m", "touches")
     upper: float = metric("1", "success among the half with larger y", "phase", "force_N",
                           "object_pos_m", "touches")  # fmt: skip
     off_centre: float = metric("m", "median distance from the bowl's axis", "object_pos_m")
@@ -97,12 +100,15 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
     """Count episodes of one batch."""
     level, passed = reached(trace, case), rungs(trace, case)
     rise, apart = trace.object_pos[..., 2] - trace.object_pos[0, :, 2], off_axis(trace, case)
+    over = apart[-1] < CENTRED
     values = [
         *((level > k).sum() for k in range(len(RUNGS))),
         (trace.phase[-1] == DONE).sum(),
         (rise.max(axis=0) >= RAISED).sum(),
         (apart.min(axis=0) < CENTRED).sum(),
         passed["contained"].sum(),
+        over.sum(),
+        (over & (trace.touches[-1] == 1)).sum(),
         (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
         np.median(apart[-1]),
         np.median(at_closing(trace)[:, 0] - case.beliefs[:, 0]),

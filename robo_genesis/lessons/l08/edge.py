@@ -1,0 +1,81 @@
+"""Batches of the page on rates: a grid of errors, two experts, boxes, a clock."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.experiment import inputs
+from robo_genesis.core.scene import FloatArray, read_only
+from robo_genesis.core.trace import Episodes
+from robo_genesis.lessons.l08 import metrics, spec
+from robo_genesis.sim.arm.picking import PickCase
+
+STEPS: dict[str, Any] = {"dt": 0.1, "substeps": 20, "commands": 10, "steps": 60}
+"""Samples of 0.1 s, for 6 s."""
+
+PLACE, CELLS, MOST = (0.5, -0.1), 16, 0.03
+"""Place of the cylinder, number of errors along each axis, and the largest one [m]."""
+
+NOISE, PAIRS = 0.005, 128
+"""Standard deviation of the error along each axis [m], and number of starts for both experts."""
+
+SAG = read_only((0.0034, -0.0007))
+"""Place of the hand when the fingers close, from its command, with the opposite sign [m]."""
+
+CLOCKS = (10, 20, 30, 0)  # Outer steps after which the descent ends, 0 where it is measured
+
+TIMED = 16  # Episodes with each clock
+
+OBLONG, TURNED = (0.05, 0.07, 0.06), np.pi / 4
+"""Size of the box [m], and its largest yaw [rad]."""
+
+
+def batch(starts: FloatArray, errors: FloatArray | float = 0.0, **more: Any) -> PickCase:
+    """Return episodes with these starts (e, 2) and errors (e, 2) of what the expert believes."""
+    return replace(spec.ASKEW, starts=starts, beliefs=starts + errors, **STEPS, **more)
+
+
+def cases() -> dict[str, PickCase]:
+    """Return the batches that have metrics, by name."""
+    rng = np.random.default_rng(5)
+    line = np.linspace(-MOST, MOST, CELLS)
+    errors = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    least, most = np.transpose(spec.REGION)
+    starts = rng.uniform(least, most, (PAIRS, 2))
+    noise = rng.normal(0.0, NOISE, (PAIRS, 2))
+    yaws = rng.uniform(-TURNED, TURNED, PAIRS)
+    timed = spec.starts(4, seed=6)
+    return {
+        "grid": batch(np.tile(PLACE, (len(errors), 1)), errors),
+        "plain": batch(starts, noise),
+        "corrected": batch(starts, noise + SAG),
+        "timed": batch(np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)),
+        "boxes": batch(starts, shape="box", size=OBLONG, yaws=yaws),
+    }
+
+
+def order(name: str) -> np.ndarray:
+    """Return a permutation of a batch: environment k of its copy has the episode of this number."""
+    return np.random.default_rng(7).permutation(len(COUNTED[name].starts))
+
+
+def permuted(name: str) -> PickCase:
+    """Return a batch in another order."""
+    of, arrays = COUNTED[name], ("starts", "beliefs", "yaws", "timed")
+    found = {n: getattr(of, n)[order(name)] for n in arrays if np.ndim(getattr(of, n))}
+    return replace(of, **found)
+
+
+COUNTED = cases()
+COPIES = {f"{name}_permuted": permuted(name) for name in COUNTED}
+
+
+def good(trace: Episodes, case: PickCase) -> np.ndarray:
+    """Return which episodes (e,) reach the last rung."""
+    return np.asarray(metrics.reached(trace, case) == len(metrics.RUNGS))
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the page as JSON values, for the evidence key."""
+    return inputs(COUNTED | COPIES, counted=list(spec.EXPECTED_MODEL))

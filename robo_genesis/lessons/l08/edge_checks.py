@@ -1,0 +1,95 @@
+"""Named checks of the page on rates; the docstring of each is its claim."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, within
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.lessons.l08 import checks, edge, rates
+from robo_genesis.sim.arm.laws import model_joints
+from robo_genesis.sim.arm.picking import CLOSE
+from robo_genesis.sim.common_checks import stamps
+from robo_genesis.sim.laws import kept
+
+MEASURES = False
+
+BAND = 12.5  # Least difference of two counts that is called a difference
+
+
+def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+    """Each batch begins where its case puts robot and object."""
+    yield from kept("the joint map", model_joints(run.joints))
+    for name, case in run.cases.items():
+        yield from kept(name, checks.begins(run.traces[name], case))
+
+
+def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
+    """A permuted copy of each batch has the same episodes to the last bit, in their new order."""
+    for name in edge.COUNTED:
+        yield from checks.same_episodes(run, f"{name}_permuted", name, edge.order(name))
+
+
+def window_of_errors(run: Experiment) -> Iterator[Finding]:
+    """Of 256 errors 36 to 60 end well. With at most 14 mm across the pads, all with 2 to 6 mm along
+    them do, and none from −10 mm down or from 18 mm up. Of those that end well, the hand touches 5
+    or more before the fingers close, among them each with more than 20 mm across.
+    """
+    case, trace = run.cases["grid"], run.traces["grid"]
+    along, across = 1000 * (case.beliefs - case.starts).T
+    good, inner = edge.good(trace, case), np.abs(across) < 15
+    early = ((trace.touches == 1) & (trace.phase < CLOSE)).any(axis=0)
+    yield within("grid.success", run.metrics["grid"].resting, 48, BAND)
+    core = inner & (along > 1) & (along < 7)
+    yield equal("core.failed", int((~good[core]).sum()), 0)
+    yield above("touched_early", int((good & early).sum()), 4.5)
+    yield equal("far.untouched", int((good & ~early & (np.abs(across) > 20)).sum()), 0)
+    outside = inner & ((along < -9) | (along > 17))
+    yield equal("outside.succeeded", int(good[outside].sum()), 0)
+
+
+def correction_helps(run: Experiment) -> Iterator[Finding]:
+    """The corrected expert succeeds alone at 10 or more starts and fails alone at 4 at most, and by
+    the paired test p is below 0.01.
+    """
+    alone, worse = pairs(run)[1:3]
+    yield above("only_corrected", alone, 9.5)
+    yield at_most("only_plain", worse, 4)
+    yield below("p", rates.paired(alone, worse), 0.01)
+
+
+def pairs(run: Experiment, first: int = edge.PAIRS) -> tuple[int, int, int, int]:
+    """Return at how many of the first starts both experts succeed, only the corrected one, only the
+    plain one, and none.
+    """
+    cases, traces = run.cases, run.traces
+    plain, other = (edge.good(traces[n], cases[n])[:first] for n in ("plain", "corrected"))
+    both, alone = int((plain & other).sum()), int((other & ~plain).sum())
+    return both, alone, int((plain & ~other).sum()), int((~plain & ~other).sum())
+
+
+def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
+    """All episodes finish all phases. With the shortest clock none succeeds; with the longest
+    one and with the measured end all do.
+    """
+    good = edge.good(run.traces["timed"], run.cases["timed"]).reshape(len(edge.CLOCKS), -1)
+    yield equal("timed.finished", run.metrics["timed"].finished, good.size)
+    yield equal("shortest.success", int(good[0].sum()), 0)
+    for row, words in ((-2, "longest"), (-1, "measured")):
+        yield equal(f"{words}.success", int(good[row].sum()), edge.TIMED)
+
+
+def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
+    """At least 13 boxes more are over the bowl at the end than succeed, and at least 10 of them
+    hang in the open hand.
+    """
+    m = run.metrics["boxes"]
+    yield above("boxes.over_bowl", m.over_bowl, m.resting + BAND)
+    yield above("boxes.hanging", m.hanging, 9.5)
+    yield above("boxes.finished", m.finished, 0.95 * edge.PAIRS)
+
+
+RATES = (
+    checks.structure, stamps, laws_of_motion, order_does_not_matter, window_of_errors,
+    correction_helps, clock_hides_failure, hovering_is_a_trap,
+)  # fmt: skip

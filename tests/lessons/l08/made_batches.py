@@ -1,0 +1,37 @@
+"""Episodes without the engine: objects that are carried into the bowl, hang over it, or stay."""
+
+import numpy as np
+
+from robo_genesis.core.trace import Episodes
+from robo_genesis.sim.arm import picking
+from robo_genesis.sim.bodies import bowl
+
+
+def episodes(case, good, hanging=False, early=False, late=False, opening=0.08, moved=0.0):
+    """Return a batch; the hand touches objects `early`, and moves them [m] until it closes.
+
+    Each phase takes six samples, and a `late` descent 13 more.
+    """
+    shape = case.steps + 1, len(case.starts)
+    begin = np.column_stack([case.starts, np.full(shape[1], case.size[2] / 2)])
+    ends = 6 * np.arange(1, 9) + 13 * late * (np.arange(8) > 0)
+    phase = (np.arange(shape[0])[:, None] >= ends).sum(axis=1).astype(np.int8)
+    phase = phase[:, None].repeat(shape[1], axis=1)
+    place = np.tile(begin, (shape[0], 1, 1))
+    place[phase >= picking.CLOSE, 0] += moved
+    held = (phase >= picking.LIFT) & (phase < picking.OPEN) & good
+    place[held, 2] += 0.1
+    hangs = (phase >= picking.MOVE) & hanging
+    place[hangs, 2] += bowl.HEIGHT
+    place[hangs | (phase >= picking.MOVE) & good, :2] = case.bowl_at
+    q = np.tile(np.float32(case.q_start), (*shape, 1))
+    q[..., -2:] = opening / 2
+    return Episodes(
+        t=np.arange(shape[0]) * case.dt,
+        phase=phase,
+        q=q,
+        object_pos=np.float32(place),
+        object_quat=np.float32(np.tile(case.turns, (shape[0], 1, 1))),
+        force=np.float32(12 * np.stack([held, held], axis=-1)),
+        touches=(held | hangs | ((phase == picking.DESCEND) & early)).astype(np.int8),
+    )

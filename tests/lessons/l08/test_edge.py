@@ -1,0 +1,76 @@
+"""The page on rates on made-up batches: its checks and tables, and the clock of a descent."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from lessons.changed_runs import failed, put, trace
+from lessons.l08.made_batches import episodes
+from robot_runs import LINKS
+
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.lessons.l08 import edge, edge_shown, pages, plots, spec
+from robo_genesis.sim.arm import picking
+
+
+def outcomes(name, case):
+    """Return which episodes succeed, hang in the hand, and are touched early."""
+    along, across = 1000 * (case.beliefs - case.starts).T
+    k = np.arange(len(case.starts))
+    inside = (along > -3) & (along < 11) & (abs(across) < 19)
+    good = {"plain": k < 90, "corrected": k < 110, "timed": k >= 24, "boxes": k < 100}
+    return good.get(name, inside), (name == "boxes") & (k >= 108), abs(across) > 15
+
+
+@pytest.fixture(scope="module")
+def run(joints):
+    made = {name: episodes(case, *outcomes(name, case)) for name, case in edge.COUNTED.items()}
+    for name, of in list(made.items()):
+        arrays = {f.name: getattr(of, f.name) for f in fields(of) if f.name != "t"}
+        copy = {array: values[:, edge.order(name)] for array, values in arrays.items()}
+        made[f"{name}_permuted"] = replace(of, **copy)
+    model = {"model": spec.EXPECTED_MODEL}
+    return Experiment(pages.RATES, made, [*LINKS, "object"], model, {}, False, joints)
+
+
+def test_each_check_accepts_the_batches(run):
+    assert [check.detail for check in run.outcomes() if not check.passed] == []
+
+
+ALL = slice(None)
+SPOILED = {
+    "order_does_not_matter": trace("boxes_permuted", force=put((9, 3, 0), 0.5)),
+    "window_of_errors": trace("grid", force=put((ALL, slice(0, 256, 5)), 0)),
+    "correction_helps": trace("corrected", force=put((ALL, slice(95, 128)), 0)),
+    "clock_hides_failure": trace("timed", force=put((ALL, 60), 0)),
+    "hovering_is_a_trap": trace("boxes", object_pos=put((-1, slice(100, 128), 0), 0.3)),
+    "stamps": trace("plain", t=lambda t: 2 * t),
+}
+
+
+@pytest.mark.parametrize("check", SPOILED)
+def test_a_check_fails_for_a_spoiled_run(run, check):
+    assert check in failed(SPOILED[check](run))
+
+
+@pytest.mark.parametrize("array", ["q", "object_pos", "object_quat"])
+def test_a_batch_begins_as_its_case_says(run, array):
+    spoiled = trace("boxes", **{array: put((0, 5), 0.7)})(run)
+    assert "laws_of_motion" in {check.name for check in spoiled.outcomes() if not check.passed}
+
+
+def test_a_clock_ends_the_descent_whatever_is_measured():
+    case = replace(edge.batch(spec.starts(1)), timed=3.0)
+    expert = picking.Expert(case, np.zeros((9, 1, 7)), np.array([True]))
+    expert.phase[:] = picking.DESCEND
+    for _ in range(3):
+        assert expert.phase[0] == picking.DESCEND
+        expert.act(np.ones((1, 9)), np.ones((1, 9)))
+    assert expert.phase[0] == picking.CLOSE
+
+
+def test_tables_and_figure_show_the_batches(run):
+    assert "| 128 |" in edge_shown.pair_table(run)
+    assert "below −8" in edge_shown.side_table(run)
+    assert "100 of 128" in edge_shown.box_table(run)
+    assert plots.errors(run, "grid").axes
