@@ -13,6 +13,7 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from itertools import cycle
 from pathlib import Path
 
 import nbformat
@@ -40,7 +41,7 @@ NOT_SHOWN = "*(your run measures it)*"
 
 CHECKOUT = "robo-genesis"  # Replaces the folder that the site was built in
 
-AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
+AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z"), "finger": ("left", "right")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
 """The field that holds the value before the first step, where it was read."""
 
@@ -208,13 +209,14 @@ def _by_state(trace: TimeSeries, field: str, dims: Sequence[str]) -> list[tuple[
 
 
 def _labels(field: str, variable: bundle.Variable, described: bundle.Arrays) -> list[str]:
-    """Return the head of each column: field, joint or link, axis and unit."""
+    """Return the head of each column: field, environment, joint or link, axis and unit."""
     names = [field]
-    for dim in (dim for dim in variable.dims if dim not in ("state", "step")):
-        parts = described.coords.get(dim, AXES.get(dim, ()))
-        names = [f"{name} {part}" for name in names for part in parts]
-    units = variable.unit if isinstance(variable.unit, list) else [variable.unit] * len(names)
-    return [f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
+    for dim, size in zip(variable.dims, variable.shape, strict=True):
+        if dim not in ("state", "step"):
+            parts = described.coords.get(dim, AXES.get(dim)) or [f"{dim} {k}" for k in range(size)]
+            names = [f"{name} {part}" for name in names for part in parts]
+    units = variable.unit if isinstance(variable.unit, list) else [variable.unit]
+    return [f"{name} [{unit}]" for name, unit in zip(names, cycle(units), strict=False)]
 
 
 def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]:
