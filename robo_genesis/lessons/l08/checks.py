@@ -34,12 +34,12 @@ def turned_camera(run: Experiment) -> Iterator[Finding]:
 
 def words_differ(run: Experiment) -> Iterator[Finding]:
     """On the same episodes, at least 95 % finish all phases, at least 30 more than succeed lift
-    the object at some time, and at least as many as succeed have it in the bowl at the end.
+    the object at some time, and more than succeed have it in the bowl at the end.
     """
     m = run.metrics["askew"]
     yield above("askew.finished", m.finished, 0.95 * len(spec.STARTS) - 0.5)
     yield above("askew.raised_once", m.raised_once, m.resting + 29.5)
-    yield above("askew.in_bowl", m.in_bowl, m.resting - 0.5)
+    yield above("askew.in_bowl", m.in_bowl, m.resting + 0.5)
 
 
 def along_the_pads(run: Experiment) -> Iterator[Finding]:
@@ -54,17 +54,30 @@ def along_the_pads(run: Experiment) -> Iterator[Finding]:
     yield at_most("across_m", float(np.abs(error[:, 1]).max()), 7.1e-3)
 
 
-def hand_is_short(run: Experiment) -> Iterator[Finding]:
-    """When the fingers begin to close, the hand is between 2.5 and 4.5 mm nearer to the base than
-    the expert believes the object.
+def pads_are_short(run: Experiment) -> Iterator[Finding]:
+    """When the fingers begin to close, the middle of the pads is in the median 4 to 5.5 mm nearer
+    to the base than the expert believes the object.
     """
     for name in ("exact", "askew"):
-        yield within(f"{name}.short_m", run.metrics[name].short, -3.5e-3, 1e-3)
+        yield within(f"{name}.short_m", run.metrics[name].short, 4.75e-3, 7.5e-4)
+
+
+def edge_of_the_pads(run: Experiment) -> Iterator[Finding]:
+    """Each episode succeeds in which the object is at most 8 mm from the middle of the pads towards
+    their far end when the fingers begin to close, and none from 9 mm on.
+    """
+    trace = run.traces["askew"]
+    first = metrics.first_closing(trace)
+    places = trace.object_pos[first, np.arange(len(first)), 0]
+    along = places - metrics.at_closing(trace)[:, 0]
+    good = metrics.reached(trace, spec.ASKEW) == len(metrics.RUNGS)
+    yield equal("inside.failed", int((~good[along < 8e-3]).sum()), 0)
+    yield equal("outside.succeeded", int(good[along > 9e-3].sum()), 0)
 
 
 def held_but_sliding(run: Experiment) -> Iterator[Finding]:
-    """In the move each finger presses with 11 to 12.5 N, and the object slides down in the fingers
-    by 0.5 to 2.5 mm/s.
+    """In the move the median force of a finger is 11 to 12.5 N, and the median speed at which the
+    object slides down in the fingers is 0.5 to 2.5 mm/s.
     """
     for name in run.metrics:
         yield within(f"{name}.press_N", run.metrics[name].press, 11.75, 0.75)
@@ -148,6 +161,6 @@ def without_object(trace: Trace, steps: int | None = None) -> Trace:
 CHECKS = (structure, stamps, laws_of_motion, posture)
 LAB = (place_is_enough, held_but_sliding, order_does_not_matter)
 LECTURE = (
-    place_is_enough, turned_camera, words_differ, along_the_pads, hand_is_short, held_but_sliding,
-    shown_episodes, order_does_not_matter,
+    place_is_enough, turned_camera, words_differ, along_the_pads, pads_are_short, edge_of_the_pads,
+    held_but_sliding, shown_episodes, order_does_not_matter,
 )  # fmt: skip

@@ -20,8 +20,8 @@ PLACE, CELLS, MOST = (0.5, -0.1), 16, 0.03
 NOISE, PAIRS = 0.005, 128
 """Standard deviation of the error along each axis [m], and number of starts for both experts."""
 
-SAG = read_only((0.0034, -0.0007))
-"""Place of the hand when the fingers close, from its command, with the opposite sign [m]."""
+SAG = read_only((0.0048, -0.0009))
+"""Place of the pads when the fingers close, from their command, with the opposite sign [m]."""
 
 CLOCKS = (10, 20, 30, 0)  # Outer steps after which the descent ends, 0 where it is measured
 

@@ -7,7 +7,8 @@ import numpy as np
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Episodes
-from robo_genesis.sim.arm.kinematics import hand_pose
+from robo_genesis.sim.arm.kinematics import hand_pose, rotate
+from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 from robo_genesis.sim.arm.picking import CLOSE, DONE, LIFT, LOWER, MOVE, PickCase
 from robo_genesis.sim.bodies import bowl
 
@@ -90,7 +91,7 @@ class EpisodesMetrics(CaseMetrics):
     upper: float = metric("1", "success among the half with larger y", "phase", "force_N",
                           "object_pos_m", "touches")  # fmt: skip
     off_centre: float = metric("m", "median distance from the bowl's axis", "object_pos_m")
-    short: float = metric("m", "hand beyond its believed place, along x", "q_rad_or_m", "phase")
+    short: float = metric("m", "pads nearer to the base than believed", "q_rad_or_m", "phase")
     press: float = metric("N", "force of a finger in the move", "force_N", "phase")
     creep: float = metric("m/s", "slide in the fingers in the move", "q_rad_or_m", "object_pos_m",
                           noun="speed at which the object slides in the fingers")  # fmt: skip
@@ -111,16 +112,21 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         (over & (trace.touches[-1] == 1)).sum(),
         (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
         np.median(apart[-1]),
-        np.median(at_closing(trace)[:, 0] - case.beliefs[:, 0]),
+        np.median(case.beliefs[:, 0] - at_closing(trace)[:, 0]),
         *grip(trace, level > RUNGS.index("carried")),
     ]
     return EpisodesMetrics(*map(float, values))
 
 
 def at_closing(trace: Episodes) -> FloatArray:
-    """Return where the hand is (e, 3) when the fingers begin to close [m]."""
-    first = (trace.phase >= CLOSE).argmax(axis=0)
-    return np.asarray(hand_pose(trace.q[first, np.arange(len(first))]).position)
+    """Return where the middle of the pads is (e, 3) when the fingers begin to close [m]."""
+    hand = hand_pose(trace.q[first_closing(trace), np.arange(trace.phase.shape[1])])
+    return np.asarray(hand.position + rotate(hand.quat, np.array([0.0, 0.0, HAND_TO_PAD])))
+
+
+def first_closing(trace: Episodes) -> np.ndarray:
+    """Return the first sample (e,) at which the fingers close."""
+    return np.asarray((trace.phase >= CLOSE).argmax(axis=0))
 
 
 def grip(trace: Episodes, held: np.ndarray) -> tuple[float, float]:

@@ -55,7 +55,7 @@ def errors(run: Experiment, batch: str = "askew") -> Figure:
     return figure
 
 
-SIGNS = {7: "in the bowl", 3: "lost on the way", 2: "lost in the lift", 1: "never held"}
+SIGNS = {7: "in the bowl", 3: "grip lost on the way", 2: "lost in the lift", 1: "never held"}
 """By number of rungs, the words of the legend."""
 
 

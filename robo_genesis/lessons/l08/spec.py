@@ -116,8 +116,8 @@ VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 """The camera; it shows one environment."""
 
 LABELS = {"exact": "place known", "one": "one episode", "askew": "camera turned by 4°"} | {
-    "placed": "in the bowl", "slipped": "lost on the way", "tipped": "lost in the lift",
-    "pushed": "pushed away", "grid": "grid of errors", "plain": "plain",
+    "placed": "in the bowl", "slipped": "grip lost on the way", "tipped": "lost in the lift",
+    "pushed": "never held", "grid": "grid of errors", "plain": "plain",
     "corrected": "sag corrected", "timed": "descent by a clock", "boxes": "yaw ignored",
 } | creep.LABELS  # fmt: skip
 """Words of a reader for runs."""

@@ -49,6 +49,7 @@ from robo_genesis.site.pages import PageRole
 T = TypeVar("T")
 BACKEND = project.BUILD_BACKEND
 REFERENCE = "amdgpu"
+COUNTED = ("episodes", "cells")  # Units that a page gives to counts
 READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
 """The names of backends in the line below a title."""
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
@@ -75,7 +76,9 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         return predicate.engine.version, origin
     name, _, unit = name.partition(" ")
     value, given, source = value_of(folder, name, unit)
-    if unit:
+    if unit in COUNTED:
+        text = f"{value:.0f} {unit}"
+    elif unit:
         text = format_value(value, unit) if unit == given else scaled_value(value, unit)
     elif given is None:
         text = listed(quoted(value).split(", "))

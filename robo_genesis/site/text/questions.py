@@ -23,7 +23,8 @@ The keys are lower, equal, higher and unknown, or right, low and high. The toler
 it may be below one. With the option `:hides:` the rest of its section, which has the results and
 the text about them, shows after an answer. With `:absent:` a choice asks for a second case that the
 bundle lacks, so that unknown is right; its cause says which measurement would tell. `:unit: mm`
-asks for a length in millimetres, and other units for their thousandths.
+asks for a length in millimetres, other units for their thousandths, and `:unit: episodes` for a
+count.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
 
@@ -44,7 +45,7 @@ from robo_genesis.core.text import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs
-from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.evidence.measured import BACKEND, COUNTED, measured
 from robo_genesis.site.evidence.plain_nodes import WRITERS, between, html
 from robo_genesis.site.figures.case_labels import label
 from robo_genesis.site.pages import PageDirective
@@ -203,7 +204,7 @@ def asked_number(
     verdicts = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
     verdicts |= {key: "No." for key in causes if key not in JUDGED}
     feedback = [(key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()]
-    value = 1000 * record.value if unit else record.value
+    value = 1000 * record.value if unit and unit not in COUNTED else record.value
     return {
         "value": value, "tolerance": abs(value) * percent / 100,
         "unit": unit or ("" if record.unit == "1" else record.unit), "feedback": feedback,
@@ -250,7 +251,7 @@ def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
         return comparison_sentence(names, found)
     values, unit = (found.first, found.second), found.unit
     texts = [format_value(value, unit) for value in values]
-    if unit in ("m", "rad") and any(0 < abs(value) < 0.1 for value in values):
+    if unit in ("m", "rad", "m/s") and any(0 < abs(value) < 0.1 for value in values):
         texts = [f"{round(1000 * value, 3) + 0.0:.3g} {SCALED[unit]}" for value in values]
     pairs = ", ".join(f"{text} for {name}" for name, text in zip(names, texts, strict=True))
     sentence = f"{found.label[0].upper()}{found.label[1:]}: {pairs}."

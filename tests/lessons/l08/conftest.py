@@ -1,6 +1,7 @@
-"""Episodes without Genesis: one arm by MuJoCo's mechanics for all, objects moved by hand."""
+"""Episodes without Genesis: arms by MuJoCo's mechanics, objects moved by hand."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Episodes, Trace
 from robo_genesis.lessons.l08 import spec
 from robo_genesis.lessons.l08.pages import LAB, LECTURE
-from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm import kinematics, picking
 from robo_genesis.sim.arm.kinematics import hand_pose
 
 LENGTHS = (90, 45, 10, 60, 100, 45, 20, 60)
@@ -20,56 +21,72 @@ LENGTHS = (90, 45, 10, 60, 100, 45, 20, 60)
 SLIDE = 1.6e-3  # Speed of the object in the fingers [m/s]
 
 
-@pytest.fixture(scope="session")
-def arm():
-    """The arm's run, and the phase at each of its states."""
-    case = replace(spec.ASKEW, beliefs=np.array([[0.5, -0.1]]))
-    q, ends = case.q_start, [case.q_start]
+PADS = 4.75e-3  # How far the pads are from their command, towards the base [m]
+
+DOWN = np.array([0.0, 1.0, 0.0, 0.0])
+
+PHASES = np.concatenate([[0], np.repeat(range(8), LENGTHS)])
+
+
+@cache
+def arm(x: float, y: float) -> tuple[Trace, np.ndarray]:
+    """Return the run of an arm that believes the object at (x, y), and the phase at each state."""
+    case = replace(spec.ASKEW, beliefs=np.array([[x, y]]))
+    q, ends = case.q_start, []
     for point in case.waypoints:
         q = answer(point[0], q, 60).q.astype(float)
         ends.append(np.concatenate([q[:7], case.q_start[7:]]))
-    phase = np.repeat(range(8), LENGTHS)
-    goals = np.array(ends[1:])[list(picking.OF_GOAL)]
+    goals = np.array(ends)[list(picking.OF_GOAL)]
     command = [case.q_start]
-    for k in phase:
+    for k in PHASES[1:]:
         way = goals[k] - command[-1]
         command.append(command[-1] + way * min(1, 0.012 / max(np.abs(way).max(), 1e-12)))
         command[-1][7:] = 0.0235 if 2 <= k < 6 else 0.04  # where the object would stop the fingers
-    rest = case.control.steps - len(phase)
+    rest = case.control.steps + 1 - len(PHASES)
     commands = np.vstack([command[1:], np.tile(command[-1], (rest, 1))])
     run = driven(replace(case.control, q_target=commands), LINKS)
-    return run, np.concatenate([[0], phase, np.full(rest, picking.DONE)])
+    return run, np.concatenate([PHASES, np.full(rest, picking.DONE)])
 
 
 def level_of(error: float) -> int:
     """Return the rungs of an episode by the error along the pads [m]."""
-    return 7 if error > -4e-3 else 3 if error > -6.5e-3 else 2 if error > -9.5e-3 else 1
+    return 7 if error > -3.75e-3 else 3 if error > -6.5e-3 else 2 if error > -9.5e-3 else 1
 
 
-def path(start, level, arm, phase, dt) -> np.ndarray:
+def path(start, level, arm, falls_in=False) -> np.ndarray:
     """Return places of an object that follows the hand until it is lost."""
-    hand = hand_pose(arm.q).position
+    run, phase = arm
+    hand = hand_pose(run.q).position
     at = np.tile([*start, 0.035], (len(hand), 1))
     held = (phase >= picking.LIFT) & (phase < picking.OPEN)
     first, last = np.flatnonzero(held)[[0, -1]]
     if level > 2:
         moved = hand - hand[first]
-        moved[:, 2] -= SLIDE * dt * (np.arange(len(hand)) - first)
+        moved[:, 2] -= SLIDE * run.dt * (np.arange(len(hand)) - first)
         at[held] += moved[held]
-        at[last + 1 :] = at[last] if level == 7 else [*start, 0.035]
-        if level == 7:
-            at[last + 1 :] = [*spec.ASKEW.bowl_at, 0.039]
+        in_bowl = level == 7 or falls_in
+        at[last + 1 :] = [*spec.ASKEW.bowl_at, 0.039] if in_bowl else [*start, 0.035]
     return np.float32(at)
 
 
-def batch(case, arm) -> Episodes:
-    """Return all episodes of a case."""
-    (run, phase), every, n = arm, case.commands, len(case.starts)
+def batch(case, own) -> Episodes:
+    """Return all episodes of a case; `own` are arms of some of them, by number."""
+    every, n = case.commands, len(case.starts)
+    arms = [own.get(k, next(iter(own.values()))) for k in range(n)]
     errors = (case.beliefs - case.starts)[:, 0]
     levels = [level_of(error) for error in errors]
-    paths = [path(*of, run, phase, run.dt) for of in zip(case.starts, levels, strict=True)]
-    at = np.stack(paths, axis=1)[::every]
-    sampled = phase[::every]
+    falls = (errors < -3.75e-3) & (errors > -4.5e-3)
+    at = np.stack([path(*of) for of in zip(case.starts, levels, arms, falls, strict=True)], axis=1)
+    sampled = arms[0][1][::every]
+    q = np.stack([run.q[::every] for run, _ in arms], axis=1)
+    others = [k for k in range(n) if k not in own]
+    closing = int((sampled >= picking.CLOSE).argmax())
+    hand = hand_pose(q[closing, others]).position
+    hand[:, :2] = case.beliefs[others] - [PADS, 0]
+    target = kinematics.Pose(hand, np.tile(DOWN, (len(others), 1)))
+    limits = (np.full(7, -3.0), np.full(7, 4.0))
+    solved = kinematics.solve(target, q[closing, others, :7], *limits, iterations=60, damping=0.01)
+    q[closing, others, :7] = solved
     pressed = np.zeros((len(sampled), n, 2), np.float32)
     for k, level in enumerate(levels):
         until = {1: picking.CLOSE, 2: picking.MOVE, 3: picking.LOWER}.get(level, picking.OPEN)
@@ -77,9 +94,9 @@ def batch(case, arm) -> Episodes:
     return Episodes(
         t=np.arange(case.steps + 1) * case.dt,
         phase=np.tile(sampled[:, None], n).astype(np.int8),
-        q=np.repeat(run.q[::every, None], n, axis=1),
-        object_pos=at,
-        object_quat=np.tile(np.float32([1, 0, 0, 0]), (*at.shape[:2], 1)),
+        q=np.float32(q),
+        object_pos=at[::every],
+        object_quat=np.tile(np.float32([1, 0, 0, 0]), (*at[::every].shape[:2], 1)),
         force=pressed,
         touches=(pressed.max(axis=2) > 0).astype(np.int8),
     )
@@ -87,7 +104,7 @@ def batch(case, arm) -> Episodes:
 
 def whole(arm, start, level) -> Trace:
     """Return an episode at all its steps."""
-    at = path(start, level, *arm, arm[0].dt)[:, None]
+    at = path(start, level, arm)[:, None]
     quat = np.tile(np.float32([1, 0, 0, 0]), (*at.shape[:2], 1))
     return replace(
         arm[0],
@@ -97,10 +114,14 @@ def whole(arm, start, level) -> Trace:
 
 
 @pytest.fixture(scope="session")
-def episodes(arm, joints) -> Experiment:
+def episodes(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
-    traces = {name: batch(case, arm) for name, case in spec.BATCHES.items()}
-    traces |= {n: whole(arm, spec.STARTS[row], spec.REACH[n]) for n, row in spec.SHOWN.items()}
+    own = {row: arm(*spec.ASKEW.beliefs[row].tolist()) for row in spec.SHOWN.values()}
+    askew, exact = batch(spec.ASKEW, own), batch(spec.EXACT, {0: arm(*spec.FEW[0].tolist())})
+    names = [of.name for of in fields(askew) if of.name != "t"]
+    permuted = replace(askew, **{name: getattr(askew, name)[:, spec.ORDER] for name in names})
+    traces = {"exact": exact, "again": exact, "askew": askew, "permuted": permuted}
+    traces |= {n: whole(own[k], spec.STARTS[k], spec.REACH[n]) for n, k in spec.SHOWN.items()}
     return Experiment(
         page=LECTURE, traces=traces, links=[*LINKS, "object"],
         readings={"model": spec.EXPECTED_MODEL}, frames={}, rendered=False, joints=joints,
@@ -108,13 +129,13 @@ def episodes(arm, joints) -> Experiment:
 
 
 @pytest.fixture(scope="session")
-def lab(arm, episodes) -> Experiment:
+def lab(episodes) -> Experiment:
     """A run of the lab that passes its checks."""
     traces = {name: episodes.traces[name] for name in spec.LAB}
     passed = {FUNCTIONS: dict.fromkeys(LAB.readings[FUNCTIONS].units, 1)}
     return replace(
         episodes,
         page=LAB,
-        traces=traces | {"one": whole(arm, spec.FEW[0], 7)},
+        traces=traces | {"one": whole(arm(*spec.FEW[0].tolist()), spec.FEW[0], 7)},
         readings=episodes.readings | passed,
     )

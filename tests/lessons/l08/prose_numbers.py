@@ -34,4 +34,5 @@ CONFIGURED = {
     "seconds to slide by 10 mm, by hand [s]": round(10 / 1.2, 1),
     "error of the reader's own task [m]": 0.008,
     "z of a 95 % interval": rates.Z,
+    "half of the length of a pad [mm]": 8.5,
 }

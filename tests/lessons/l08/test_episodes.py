@@ -124,11 +124,11 @@ SPOILED = {
     ),
     "a rate of one half": (metric("askew", resting=128.0), {"turned_camera"}),
     "no more lifted than placed": (metric("askew", raised_once=180.0), {"words_differ"}),
-    "a hand at its command": (metric("exact", short=0.0), {"hand_is_short"}),
+    "a hand at its command": (metric("exact", short=0.0), {"pads_are_short"}),
     "a grip that does not slide": (metric("exact", creep=0.0), {"held_but_sliding"}),
     "another episode in the replay": (
         trace("askew", touches=put((-1, PLACED), 1)),
-        {"along_the_pads", "order_does_not_matter", "shown_episodes"},
+        {"along_the_pads", "edge_of_the_pads", "order_does_not_matter", "shown_episodes"},
     ),
     "a batch in the order of another": (copied("permuted", "askew"), {"order_does_not_matter"}),
 }  # fmt: skip
