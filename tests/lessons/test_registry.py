@@ -30,7 +30,7 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
     assert lesson.replays
     assert lesson.metrics.keys() >= lesson.spec.CASES.keys()
     marks = getattr(lesson.spec, "CASE_MARKS", {})
-    assert marks.keys() <= lesson.spec.CASES.keys()
+    assert marks.keys() <= {name for page in lesson.pages.values() for name in page.runs}
     assert {*marks.values()} <= CASE_CLASSES.keys()
     for (first, second), metric, order, margin in lesson.spec.RELATIONS:
         assert {first, second} <= {*lesson.spec.CASES}

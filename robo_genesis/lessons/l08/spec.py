@@ -109,8 +109,8 @@ LAB_EPISODE = {"one": one(0, EXACT)}
 ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact", 0)}
 """By episode, its batch and its environment there."""
 
-CASES = BATCHES | EPISODES | LAB_EPISODE
-"""The batches, and the episodes at all their steps."""
+CASES = {name: BATCHES[name] for name in COUNTED}
+"""The batches of lecture and lab that have metrics."""
 
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 """The camera; it shows one environment."""
