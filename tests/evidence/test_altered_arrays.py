@@ -41,7 +41,11 @@ SCALES = ("× 1.02", "× 0.98", "sample", "zero")
 
 ACCEPTED = {
     **{("l07", name, how): TOUCHING for name in ("link_ang", "link_vel") for how in SCALES},
-    **{("l07", name, "sample"): TOUCHING for name in ("internal_force", "link_pos")},
+    **{
+        (of, name, "sample"): TOUCHING
+        for of in ("l07", "l08")
+        for name in ("internal_force", "link_pos")
+    },
     ("l07", "contacts", "sample"): ON_EDGE,
     ("l07", "penetration", "× 1.02"): ROUNDING,
     **{("l03", "link_ang", how): f"{NOISE} {SCHEME}" for how in ("× 1.02", "× 0.98", "sample")},

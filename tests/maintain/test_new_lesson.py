@@ -85,8 +85,7 @@ def test_the_lists_stay_in_order(lesson, before):
     assert len(names) == len(yaml.safe_load(TOC.read_text())["chapters"]) + 1
 
     rows, before = (
-        {row["id"]: row for row in yaml.safe_load(text)}
-        for text in (with_entry(MAP, lesson), MAP)
+        {row["id"]: row for row in yaml.safe_load(text)} for text in (with_entry(MAP, lesson), MAP)
     )
     name = lesson.upper()
     assert [*rows] == sorted(rows)

@@ -233,7 +233,10 @@ CHANGES = [
 ]
 CHANGES += [  # a lesson can be removed with the folder of its tests alone
     (file, CONSTANT, using, using)
-    for file, using in (("sim/bodies/contacts", ("l03", "l07", "l08")), ("lessons/l03/metrics", ("l03",)))
+    for file, using in (
+        ("sim/bodies/contacts", ("l03", "l07", "l08")),
+        ("lessons/l03/metrics", ("l03",)),
+    )
     if {*using} <= {*LESSONS}
 ]
 
