@@ -75,7 +75,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     if name == "engine":
         return predicate.engine.version, origin
     name, _, unit = name.partition(" ")
-    value, given, source = value_of(folder, name, unit)
+    value, given, source = value_of(folder, name, "" if unit in COUNTED else unit)
     if unit in COUNTED:
         text = f"{value:.0f} {unit}"
     elif unit:
