@@ -58,6 +58,14 @@ def correction_helps(run: Experiment) -> Iterator[Finding]:
     yield below("p", rates.paired(alone, worse), 0.01)
 
 
+def window_is_centred(run: Experiment) -> Iterator[Finding]:
+    """The corrected expert succeeds at all starts with noise of at most 7 mm along the pads."""
+    case = run.cases["corrected"]
+    along = (case.beliefs - case.starts - edge.SAG)[:, 0]
+    good = edge.good(run.traces["corrected"], case)
+    yield equal("small_noise.failed", int((~good[np.abs(along) <= 7e-3]).sum()), 0)
+
+
 def pairs(run: Experiment, first: int = edge.PAIRS) -> tuple[int, int, int, int]:
     """Return at how many of the first starts both experts succeed, only the corrected one, only the
     plain one, and none.
@@ -91,5 +99,5 @@ def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
 
 RATES = (
     checks.structure, stamps, laws_of_motion, order_does_not_matter, window_of_errors,
-    correction_helps, clock_hides_failure, hovering_is_a_trap,
+    correction_helps, window_is_centred, clock_hides_failure, hovering_is_a_trap,
 )  # fmt: skip

@@ -18,7 +18,13 @@ def outcomes(name, case):
     along, across = 1000 * (case.beliefs - case.starts).T
     k = np.arange(len(case.starts))
     inside = (along > -3) & (along < 11) & (abs(across) < 19)
-    good = {"plain": k < 90, "corrected": k < 110, "timed": k >= 24, "boxes": k < 100}
+    noise = along - 1000 * edge.SAG[0] * (name == "corrected")
+    good = {
+        "plain": noise > -3.7,
+        "corrected": abs(noise) < 8.5,
+        "timed": k >= 24,
+        "boxes": k < 100,
+    }
     return good.get(name, inside), (name == "boxes") & (k >= 108), abs(across) > 15
 
 
@@ -42,6 +48,7 @@ SPOILED = {
     "order_does_not_matter": trace("boxes_permuted", force=put((9, 3, 0), 0.5)),
     "window_of_errors": trace("grid", force=put((ALL, slice(0, 256, 5)), 0)),
     "correction_helps": trace("corrected", force=put((ALL, slice(95, 128)), 0)),
+    "window_is_centred": trace("corrected", force=put((ALL, slice(0, 9)), 0)),
     "clock_hides_failure": trace("timed", force=put((ALL, 60), 0)),
     "hovering_is_a_trap": trace("boxes", object_pos=put((-1, slice(100, 128), 0), 0.3)),
     "stamps": trace("plain", t=lambda t: 2 * t),
