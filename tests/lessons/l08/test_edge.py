@@ -20,7 +20,7 @@ def outcomes(name, case):
     inside = (along > -3) & (along < 11) & (abs(across) < 19)
     noise = along - 1000 * edge.SAG[0] * (name == "corrected")
     good = {
-        "plain": noise > -3.7,
+        "plain": noise > -3,
         "corrected": abs(noise) < 8.5,
         "timed": k >= 24,
         "boxes": k < 100,
