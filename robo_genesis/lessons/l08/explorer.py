@@ -28,14 +28,14 @@ def explored(found: Experiment) -> dict[str, Any]:
     y = np.linspace(*spec.REGION[1], n + 1)
     rows = [{"label": decimal(1000 * (y[k] + y[k + 1]) / 2, 0), "cells": cells[k * n :][:n]}
             for k in range(n)]  # fmt: skip
-    x = 1000 * np.linspace(*spec.REGION[0], 2 * n + 1)[1::2]
-    caption = "Starts from above, x to the right, y upwards [mm]. A cell is an episode."
+    x = 100 * np.linspace(*spec.REGION[0], 2 * n + 1)[1::2]
+    caption = "Starts from above, x [cm] to the right, y [mm] upwards. A cell is an episode."
     return {
         "thing": "robot",
         "around": True,
         "choices": ("Map", "Cells show"),
         "maps": [{"run": "ends", "label": "Starts", "caption": caption, "rows": rows[::-1],
-                  "columns": [str(round(v)) if k % 4 == 0 else "" for k, v in enumerate(x)]}],
+                  "columns": [str(round(value)) for value in x]}],
         "measures": [{"label": "rungs passed"}, {"label": "error along the pads [mm]"}],
         "columns": COLUMNS,
         "notes": {},

@@ -125,7 +125,7 @@ LABELS = {"exact": "place known", "one": "one episode", "askew": "camera turned 
 CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=True))
 """The mark of each case in the palette."""
 
-RESOLUTION = {"1": 0.5, "m": 1e-4} | creep.RESOLUTION
+RESOLUTION = {"1": 0.5, "m": 1e-4, "N": 0.05} | creep.RESOLUTION
 """By unit, the difference below which two values are equal."""
 
 TOLERANCES = check_spec.TOLERANCES | creep.TOLERANCES | {"off_centre": (0.02, 0.0)}
