@@ -8,7 +8,7 @@ import pytest
 from robo_genesis.core.comparison import HELD_BY
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.core.trace import BodyTrace, ContactTrace, Trace
+from robo_genesis.core.trace import BodyTrace, ContactTrace, Episodes, Trace
 from robo_genesis.lessons import LESSONS, find_lesson, find_page, find_replay
 from robo_genesis.pipeline.pages.book import find_pages
 
@@ -40,7 +40,7 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
         assert not units
     assert {*lesson.about_metrics("unit").values()} <= lesson.spec.RESOLUTION.keys()
     sources = {name for of in lesson.about_metrics("sources").values() for name in of}
-    kinds = (Trace, BodyTrace, ContactTrace)
+    kinds = (Trace, BodyTrace, ContactTrace, Episodes)
     assert sources <= {of.name for kind in kinds for of in kind.arrays().values()}
 
 
