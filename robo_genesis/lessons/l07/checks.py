@@ -1,7 +1,6 @@
 """Named checks of L07; the docstring of each is its claim."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import chain
 
 import numpy as np
@@ -71,16 +70,6 @@ def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
         yield above(f"{name}.descending", run.readings["contacts"][f"{name}_descending"], 0)
 
 
-def robot_of(trace: Trace, steps: int) -> Trace:
-    """Return the first steps of a run, without the links of the bodies."""
-    lengths = {"state": steps + 1, "step": steps}
-    cut = {
-        name: getattr(trace, name)[: lengths.get(of.dims[0])] for name, of in trace.arrays().items()
-    }
-    links = {name: cut[name][:, :OBJECT] for name in ("link_pos", "link_quat")}
-    return replace(trace, **cut | links)
-
-
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """At each sample links and control forces are those of the driven robot, and until the hand is
     above an object all forces and velocities. Bodies begin where their case puts them. Answers of
@@ -88,13 +77,15 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """
     yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
-        trace, robot = run.traces[name], robot_of(run.traces[name], run.traces[name].steps)
+        trace, robot = run.traces[name], lifting.without_bodies(run.traces[name], 2)
         if not isinstance(case, table.SceneCase):
             found = assigned_postures(robot, case.start, run.links[:OBJECT], run.traces.values())
             yield from kept(name, found)
             continue
         free = lifting.ENDS["approach"] if isinstance(case, LiftCase) else trace.steps
-        alone = robot_of(trace, free)  # then the hand touches the object, which `dynamics` ignores
+        alone = lifting.without_bodies(
+            trace, 2, free
+        )  # then the hand touches the object, which `dynamics` ignores
         moves = dynamics(alone, case.commanding(alone.target))
         driven = commanded(robot, case.commanding(robot.target), run.links[:OBJECT])
         yield from kept(name, chain(driven, moves))

@@ -89,7 +89,7 @@ def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
 
 def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
     """At least 13 boxes more are over the bowl at the end than succeed, and at least 10 of them
-    touch the hand. At least 95 % of the episodes finish all phases.
+    hang above the rim in the hand. At least 95 % of the episodes finish all phases.
     """
     m = run.metrics["boxes"]
     yield above("boxes.over_bowl", m.over_bowl, m.resting + BAND)

@@ -26,13 +26,12 @@ WINDOW, STILL = 0.2, 2e-4
 
 def lowest(trace: Episodes, case: PickCase) -> FloatArray:
     """Return the height (n+1, e) of the lowest point of a cylinder or box [m]."""
-    w, x, y, z = np.moveaxis(trace.object_quat.astype(np.float64), -1, 0)
-    up = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
-    length, width, height = np.array(case.size) / 2
+    back = trace.object_quat * np.array([1.0, -1.0, -1.0, -1.0])
+    up, half = np.abs(rotate(back, np.array([0.0, 0.0, 1.0]))), np.array(case.size) / 2
     if case.shape == "cylinder":
-        reach = np.hypot(up[0], up[1]) * length + np.abs(up[2]) * height
+        reach = np.hypot(up[..., 0], up[..., 1]) * half[0] + up[..., 2] * half[2]
     else:
-        reach = np.abs(up.T @ np.array([length, width, height])).T
+        reach = up @ half
     return np.asarray(trace.object_pos[..., 2] - reach)
 
 
@@ -87,7 +86,7 @@ class EpisodesMetrics(CaseMetrics):
     over_bowl_once: float = metric("1", "over the bowl at some time", "object_pos_m")
     in_bowl: float = metric("1", "in the bowl at the end", "object_pos_m", "object_quat_wxyz")
     over_bowl: float = metric("1", "over the bowl at the end", "object_pos_m")
-    hanging: float = metric("1", "of these, touched by the robot", "object_pos_m", "touches")
+    hanging: float = metric("1", "of these, above the rim and touched", "object_pos_m", "touches")
     upper: float = metric("1", "success among the half with larger y", "phase", "force_N",
                           "object_pos_m", "touches")  # fmt: skip
     off_centre: float = metric("m", "median distance from the bowl's axis", "object_pos_m")
@@ -109,7 +108,7 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         (apart.min(axis=0) < CENTRED).sum(),
         passed["contained"].sum(),
         over.sum(),
-        (over & (trace.touches[-1] == 1)).sum(),
+        (over & (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)).sum(),
         (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
         np.median(apart[-1]),
         np.median(case.beliefs[:, 0] - at_closing(trace)[:, 0]),

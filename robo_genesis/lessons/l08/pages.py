@@ -38,13 +38,10 @@ LECTURE = MeasuringPage(
 )
 
 LAB = with_functions(
-    MeasuringPage(
+    replace(
+        LECTURE,
         runs={name: Run(case, False, ONE) for name, case in spec.LAB_EPISODE.items()}
         | batches(spec.LAB),
-        kind=Trace,
-        joints=JOINT_NAMES,
-        readings={"model": counts(MODEL_COUNTS)},
-        measure=metrics.episodes_metrics,
         checks=(*checks.CHECKS, *checks.LAB),
         parameters=spec.lab_parameters,
     ),

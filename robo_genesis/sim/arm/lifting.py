@@ -4,12 +4,14 @@ The fingers close along y of the world. A support is at z = 0, the height of the
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray, read_only
+from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
@@ -91,6 +93,16 @@ def lift_command(q_start: FloatArray, answers: Sequence[IkAnswer]) -> FloatArray
         np.tile(b, (n, 1)) if phase == "close" else np.linspace(a, b, n + 1)[1:]
         for (a, b), (phase, n) in ways
     ])  # fmt: skip
+
+
+def without_bodies(trace: Trace, bodies: int, steps: int | None = None) -> Trace:
+    """Return the first steps of a run, or all, without the links of its last bodies."""
+    lengths = {"state": (trace.steps if steps is None else steps) + 1}
+    lengths["step"] = lengths["state"] - 1
+    cut = {
+        name: getattr(trace, name)[: lengths.get(of.dims[0])] for name, of in trace.arrays().items()
+    }
+    return replace(trace, **cut | {n: cut[n][:, :-bodies] for n in ("link_pos", "link_quat")})
 
 
 def contact_counter(robot: Any, body: Any) -> tuple[dict[str, int], Callable[[int], None]]:

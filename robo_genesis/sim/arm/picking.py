@@ -18,7 +18,7 @@ from robo_genesis.sim.arm.joint_control import CaseError, ControlCase
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.arm.lifting import DOWN, FINGERS, HAND_TO_PAD
-from robo_genesis.sim.bodies import bowl
+from robo_genesis.sim.bodies import bowl, table
 from robo_genesis.sim.bodies.table import SceneCase, World
 
 PHASES = ("pregrasp", "descend", "close", "lift", "move", "lower", "open", "retreat", "done")
@@ -68,8 +68,7 @@ class PickCase(SceneCase):
     @property
     def turns(self) -> FloatArray:
         """Orientations (e, 4) in which the objects begin, (w, x, y, z)."""
-        half = np.broadcast_to(self.yaws, len(self.starts)) / 2
-        return np.column_stack([np.cos(half), 0 * half, 0 * half, np.sin(half)])
+        return kinematics.about_z(np.broadcast_to(self.yaws, len(self.starts)))
 
     @property
     def control(self) -> ControlCase:
@@ -95,8 +94,6 @@ def build(gs: Any, case: PickCase, view: dict[str, Any] | None = None, **options
     Raises:
         CaseError: an object begins over the bowl, where its episode would be solved already.
     """
-    from robo_genesis.sim.bodies import table
-
     solved = np.hypot(*(case.starts - case.bowl_at).T) < bowl.RIM + max(case.size[:2]) / 2
     if solved.any():
         raise CaseError(

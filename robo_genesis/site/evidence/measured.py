@@ -77,6 +77,8 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     name, _, unit = name.partition(" ")
     value, given, source = value_of(folder, name, "" if unit in COUNTED else unit)
     if unit in COUNTED:
+        if given != "1":
+            raise LookupError(f"{name} is in {given}, so it does not count {unit}. Valid: {given}.")
         text = f"{value:.0f} {unit}"
     elif unit:
         text = format_value(value, unit) if unit == given else scaled_value(value, unit)

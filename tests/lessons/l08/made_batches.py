@@ -22,7 +22,7 @@ def episodes(case, good, hanging=False, early=False, late=False, opening=0.08, m
     held = (phase >= picking.LIFT) & (phase < picking.OPEN) & good
     place[held, 2] += 0.1
     hangs = (phase >= picking.MOVE) & hanging
-    place[hangs, 2] += bowl.HEIGHT
+    place[hangs, 2] += 2 * bowl.HEIGHT
     place[hangs | (phase >= picking.MOVE) & good, :2] = case.bowl_at
     q = np.tile(np.float32(case.q_start), (*shape, 1))
     q[..., -2:] = opening / 2

@@ -20,6 +20,7 @@ ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
     [
         ("G2.overshoot", "{:.4f} rad", "from q_rad_or_m, target_rad_or_m"),
         ("model.links", "11", "from "),
+        ("model.links episodes", "11 episodes", "from "),
         ("engine", project.engine_pin(), ""),
         ("control_law:G1.distance_to_control_law N·m", r"\S+ N·m",
          "found by the check control_law"),
@@ -37,6 +38,7 @@ def test_a_value_comes_with_unit_and_origin(outputs, experiment, name, text, sou
     [
         ("G2.overshot", r"no metric 'G2.overshot'. Known: .*G2\.overshoot"),
         ("overshoot", "no metric 'overshoot'. Known: "),
+        ("G2.overshoot episodes", "is in rad, so it does not count episodes. Valid: rad"),
         ("control_law:x", "no finding 'control_law:x'. Known: .*control_law:G1"),
     ],
 )
