@@ -191,6 +191,18 @@ class Episodes(TimeSeries):
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Demonstrations(Episodes):
+    """Episodes with what a policy would learn from them.
+
+    `target`: (n, e, d), the last position command before each sample but the first [rad or m].
+    """
+
+    target: FloatArray = array(
+        "target_rad_or_m", "step env dof", None, "last position command before the next sample"
+    )
+
+
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:
     """Return the first t (n,) [s] at which `reached` (n,) is true, None if it never is."""
     return float(t[int(reached.argmax())]) if reached.any() else None

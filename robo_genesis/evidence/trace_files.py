@@ -13,6 +13,7 @@ import numpy as np
 from robo_genesis.core.trace import (
     BodyTrace,
     ContactTrace,
+    Demonstrations,
     Episodes,
     TimeSeries,
     Trace,
@@ -125,7 +126,7 @@ def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Any:
     Verification does not use it, because a bundle must not choose the kind of its own runs.
     """
     names = {*arrays.cases[case].variables}
-    kinds = (Episodes, Trace, ContactTrace, BodyTrace)
+    kinds = (Demonstrations, Episodes, Trace, ContactTrace, BodyTrace)
     kind = next((of for of in kinds if {one.name for one in of.arrays().values()} <= names), Trace)
     return read_run(folder, arrays, case, kind)
 
@@ -137,7 +138,7 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
         folder: of the bundle.
         arrays: its description.
         case: the name of the run.
-        kind: `Trace`, `Episodes`, `BodyTrace` or `ContactTrace`.
+        kind: a class of `core/trace.py`.
 
     Raises:
         BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the arrays do not
@@ -145,7 +146,7 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     """
     described, fields, place = arrays.cases[case], kind.arrays(), f"arrays.json {case}"
     expect("path", place, "file", described.file, f"arrays/{case}.npz")
-    if kind not in (Trace, Episodes):
+    if not issubclass(kind, (Trace, Episodes)):
         expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
     types = read_joints(arrays).types if arrays.joints else ()
     dtypes = {of.name: of.dtype for of in fields.values()}

@@ -116,6 +116,15 @@ def same_episodes(run: Experiment, name: str, other: str, order: Any) -> Iterato
         yield equal(f"{name}.{array}", differ, 0)
 
 
+def commands_come_first(run: Experiment) -> Iterator[Finding]:
+    """A command belongs to the sample before it: the fingers move by less than 0.1 mm until the
+    sample whose command closes them, and by more until the next one.
+    """
+    before, after = metrics.finger_motion(run.traces["exact"])
+    yield at_most("before_m", float(before.max()), 1e-4)
+    yield above("after_m", float(after.min()), 1e-4)
+
+
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """Each batch begins where its case puts robot and object. In the episodes that are recorded at
     all steps, links and control forces are those of the driven robot at each sample, until the hand
@@ -155,7 +164,7 @@ def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Findi
 
 
 CHECKS = (structure, stamps, laws_of_motion, posture)
-LAB = (place_is_enough, held_but_sliding, order_does_not_matter)
+LAB = (place_is_enough, held_but_sliding, order_does_not_matter, commands_come_first)
 LECTURE = (
     place_is_enough, turned_camera, words_differ, along_the_pads, pads_are_short, edge_of_the_pads,
     held_but_sliding, shown_episodes, order_does_not_matter,

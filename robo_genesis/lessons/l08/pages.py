@@ -7,17 +7,21 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Run, counts
-from robo_genesis.core.trace import Episodes, Trace
+from robo_genesis.core.trace import Demonstrations, Episodes, Trace
 from robo_genesis.lessons.l08 import checks, edge, edge_checks, metrics, spec
 from robo_genesis.lessons.l08.creep import HeldMetrics
 from robo_genesis.lessons.l08.creep_checks import CREEP
 from robo_genesis.lessons.l08.metrics import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
+from robo_genesis.sim.camera import film
 
 MEASURES = False
 
 COPY = "repeats the episodes of another run of this page, and has no metrics"
 ONE = "one episode of a batch, at all its steps"
+
+
+SHEETS = [of for name in spec.FILMS for of in film.sheet_names(name, spec.EXACT.steps + 1)]
 
 
 def batches(cases: dict[str, Any]) -> dict[str, Run]:
@@ -41,9 +45,11 @@ LAB = with_functions(
     replace(
         LECTURE,
         runs={name: Run(case, False, ONE) for name, case in spec.LAB_EPISODE.items()}
-        | batches(spec.LAB),
+        | batches(spec.LAB)
+        | {"exact": Run(spec.EXACT, kind=Demonstrations)},
         checks=(*checks.CHECKS, *checks.LAB),
         parameters=spec.lab_parameters,
+        frames=("initial", "final", *SHEETS),
     ),
     "grasp_pose", "ended", "rungs", "wilson", "creep",
 )  # fmt: skip

@@ -1,12 +1,17 @@
 """What the pages of L08 record of their batches."""
 
+from dataclasses import fields
 from typing import Any
 
+import numpy as np
+
+from robo_genesis.core.trace import Demonstrations, Episodes
 from robo_genesis.lessons.l08 import spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.batch import Batch
 from robo_genesis.sim.arm.joints import describe
 from robo_genesis.sim.bodies.table import World
+from robo_genesis.sim.camera import film, frames
 
 
 def episodes(
@@ -36,3 +41,21 @@ def keep(page: Any, batch: Batch) -> None:
     """Give a page all states of the episodes that its replay or its schematic shows."""
     rows = {name: row for name, (_, row) in spec.ROWS.items() if name in page.experiment.cases}
     page.traces |= {name: batch.trace(row) for name, row in rows.items()}
+
+
+def demonstrate(page: Any, world: World, batch: Batch) -> None:
+    """Keep the commands of the lab's batch, and film some of its episodes.
+
+    For the films, the first environment takes the recorded states one after the other.
+    """
+    trace, every = page.traces["exact"], spec.EXACT.commands
+    parts = {of.name: getattr(trace, of.name) for of in fields(Episodes)}
+    target = np.stack(batch.sent)[every - 1 :: every].astype(np.float32)
+    page.traces["exact"] = Demonstrations(**parts, target=target)
+    for name, row in spec.FILMS.items() if page.render else ():
+        pictures = []
+        for k in range(len(trace.t)):
+            picking.pose(world, page.joints, *(of[k, row] for of in (
+                trace.q, trace.object_pos, trace.object_quat)))  # fmt: skip
+            pictures.append(film.shrunk(frames.capture(world.cameras["world"])))
+        page.frames |= film.sheets(name, np.stack(pictures))

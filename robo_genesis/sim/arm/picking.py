@@ -185,6 +185,15 @@ def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
     return np.stack(forces, axis=1), np.asarray(valid.any(axis=1))
 
 
+def pose(
+    world: World, joints: JointMap, q: FloatArray, place: FloatArray, quat: FloatArray
+) -> None:
+    """Put robot and object of the first environment where they were: q (9,), (3,) and (4,)."""
+    world.robot.set_dofs_position(q[None], joints.dofs_idx_local.tolist(), envs_idx=[0])
+    world.body.set_pos(place[None], envs_idx=[0])
+    world.body.set_quat(quat[None], envs_idx=[0])
+
+
 def run(
     world: World, joints: JointMap, case: PickCase, of: Callable[..., Expert] = Expert,
     points: list[FloatArray] | None = None,

@@ -44,7 +44,7 @@ def capture(camera: Any) -> np.ndarray:
     Raises:
         FrameError: the frame is not usable.
     """
-    rgb = camera.render()[0]
+    rgb = camera.render(force_render=True)[0]  # also where no step has changed the scene
     require_frame(rgb)
     return np.array(rgb)
 
