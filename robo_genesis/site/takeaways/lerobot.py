@@ -30,7 +30,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.util.osutil import relative_uri
 
+from robo_genesis.core.files import write_whole
 from robo_genesis.core.shown import find
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.site.evidence.measured import measured
@@ -39,6 +41,7 @@ from robo_genesis.site.figures.explorer import Recorded
 from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import bundle_of
+from robo_genesis.site.takeaways.directive import link
 from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
 FILE = "chunk-000/file-000"  # The only file of each kind
@@ -67,21 +70,13 @@ class DatasetDownload(PageDirective):
         writer = Writer(source.parent, lambda value: measured(*value.split(" ", 1))[0], address)
         text = plain(source.read_text("utf8"), writer)
         made = archive(find(f"robo_genesis.lessons.{lesson}.dataset.recorded")(run), text)
-        name = f"{lesson_page.replace('/', '-')}-lerobot.zip"
-        file = Path(self.env.app.outdir) / TAKEAWAYS / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(made)
+        files = Path(self.env.app.outdir) / TAKEAWAYS
+        file = files / f"{lesson}-dataset" / f"{lesson_page.replace('/', '-')}-lerobot.zip"
+        write_whole(file, made)
         note_files(self.env, file)
-        up = "../" * self.env.docname.count("/")
-        link = nodes.reference(
-            "", name, internal=True, refuri=f"{up}{TAKEAWAYS}/{name}", classes=["takeaway"]
-        )
+        base = relative_uri(f"{self.env.docname}.html", TAKEAWAYS)
         digest = hashlib.sha256(made).hexdigest()
-        return [
-            bullets(
-                (link, f" ({len(made) / 1e6:.1f} MB)"), ("SHA-256: ", nodes.literal("", digest))
-            )
-        ]
+        return [bullets((*link(base, files, file), ", SHA-256 ", nodes.literal("", digest)))]
 
 
 def archive(data: Mapping[str, Any], readme: str) -> bytes:

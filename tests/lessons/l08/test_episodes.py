@@ -143,3 +143,10 @@ def test_a_check_fails_for_its_own_fault(episodes, name):
 def test_a_replayed_episode_that_is_not_of_the_batch_breaks_its_law(episodes):
     run = trace("placed", link_pos=shift((300, -1, 0), 1e-4))(episodes)
     assert [one.name for one in run.outcomes() if not one.passed] == ["laws_of_motion"]
+
+
+@pytest.mark.parametrize("rows", [-1, 1])
+def test_commands_that_are_shifted_by_one_row_are_found(lab, rows):
+    assert failed(lab) == set()
+    shifted = trace("exact", target=lambda values: np.roll(values, rows, axis=0))(lab)
+    assert failed(shifted) == {"commands_come_first"}

@@ -35,11 +35,11 @@ SKY = np.broadcast_to(np.array([10, 20, 31], np.uint8), FRAME_SHAPE)
 )
 def test_a_frame_that_is_not_usable_is_refused(frame, message):
     with pytest.raises(FrameError, match=message):
-        capture(SimpleNamespace(render=lambda: (frame, None, None, None)))
+        capture(SimpleNamespace(render=lambda **_: (frame, None, None, None)))
 
 
 def test_capture_returns_its_own_copy_of_the_colours(picture):
     buffer = picture.copy()
-    frame = capture(SimpleNamespace(render=lambda: (buffer, None, None, None)))
+    frame = capture(SimpleNamespace(render=lambda **_: (buffer, None, None, None)))
     buffer[:] = 0
     assert (frame == picture).all()
