@@ -181,6 +181,11 @@ CREEP = MeasuringPage(
         "friction": Readings(dict.fromkeys(creep.CASES, "1")),
         "time_constant": Readings(dict.fromkeys(creep.CASES, "s")),
         "contacts": Readings(dict.fromkeys(creep.CASES, "1"), "exact"),
+        "step": Readings(
+            dict.fromkeys(creep.CASES, "s"),
+            "performance",
+            dict.fromkeys(creep.CASES, (1e-5, 60.0)),
+        ),
     },
     measure=creep.held_metrics,
     checks=CHECKS,

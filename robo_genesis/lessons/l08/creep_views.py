@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting, tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import look
-from robo_genesis.core.text import scaled_value
+from robo_genesis.core.text import decimal, scaled_value
 from robo_genesis.lessons.l08 import creep
 from robo_genesis.lessons.l08.creep_checks import share_of
 from robo_genesis.sim.bodies.grippers import HeldCase
@@ -50,4 +50,12 @@ def changes(run: Experiment) -> Iterator[dict[str, str]]:
             for head, engine in (("Genesis", ""), ("MuJoCo", "mujoco_"))
         }
         depth = scaled_value(run.metrics[name].depth, "µm").removesuffix(" µm")
-        yield {"change": words} | shares | {"depth [µm]": depth, "price": price}
+        times = {"time [ms]": time_of(run, name), "price": price}
+        yield {"change": words} | shares | {"depth [µm]": depth} | times
+
+
+def time_of(run: Experiment, name: str) -> str:
+    """Return the time of an outer step of a run's scene [ms], if it has the boxes of `ROW`."""
+    name = "plain_base" if name == "base" else name
+    (boxes,) = (cases for cases in creep.SCENES.values() if name in cases)
+    return decimal(1000 * run.readings["step"][name], 1) if len(boxes) == len(creep.ROW) else "–"

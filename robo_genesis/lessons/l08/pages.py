@@ -63,19 +63,25 @@ RATES = replace(
 )
 MISTAKES = replace(RATES, runs={}, checks=(checks.structure,))
 
+EPISODES = Replay(
+    tuple(spec.SHOWN),
+    follows="object",
+    thing="object",
+    credit=CREDIT,
+    view="The robot picks the object and places it in the bowl.",
+    filmed="the first episode",
+)
+TOGETHER = replace(
+    EPISODES,
+    places=spec.PLACES,
+    repeats=True,
+    view="Four robots pick their objects. One of them places its object in its bowl.",
+)
+
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys((*spec.COUNTED, *edge.COUNTED), EpisodesMetrics)
     | dict.fromkeys(CREEP.cases, HeldMetrics),
     pages={"lecture": LECTURE, "lab": LAB, "mistakes": MISTAKES, "rates": RATES, "creep": CREEP},
-    replays={
-        "episodes": Replay(
-            tuple(spec.SHOWN),
-            follows="object",
-            thing="object",
-            credit=CREDIT,
-            view="The robot picks the object and places it in the bowl.",
-            filmed="the first episode",
-        )
-    },
+    replays={"episodes": EPISODES, "together": TOGETHER},
 )

@@ -1,5 +1,6 @@
 """Boxes that two pads hold in the air: build grippers side by side, run them, record the motion."""
 
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -120,14 +121,18 @@ def record_world(
 ) -> None:
     """Reset a world, press, settle and step; add its traces and readings to those of others.
 
-    Readings are the friction of each box, the time constant of its contacts, and their number.
+    Readings are the friction of each box, the time constant of its contacts, their number, and the
+    median time of an outer step of the scene while it settles [s].
     """
     common, scene = shared_case(world.cases, SHARED), world.scene
     scene.reset()
     for name, (hand, _) in world.grippers.items():
         hand.control_dofs_force(np.full(2, world.cases[name].force, np.float32))
+    taken = []
     for _ in range(round(common.settle / common.dt)):
+        start = time.perf_counter()
         scene.step()
+        taken.append(time.perf_counter() - start)
     states = record_states(
         scene.step, common.steps, lambda: {n: read(*of) for n, of in world.grippers.items()}
     )
@@ -137,6 +142,7 @@ def record_world(
         found = {
             "friction": float(to_numpy(scene.rigid_solver.get_geoms_friction([geom.idx]))[0]),
             "time_constant": float(contact_constants(scene, geom)[0]),
+            "step": float(np.median(taken)),
             "contacts": len(to_numpy(box.get_contacts()["penetration"])),
         }
         for group, value in found.items():

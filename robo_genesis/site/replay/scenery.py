@@ -249,7 +249,8 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
 
     Args:
         runs: the runs, each with the links of one robot; their replay has a place for each.
-        shape: of the robot; parts of the world remain where they are.
+        shape: of the robot; parts of the world remain where they are, unless the replay repeats
+            them.
 
     Raises:
         ValueError: there is not one place for each run.
@@ -275,5 +276,11 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
         if part.link != WORLD
     ]
     still = [part for part in shape if part.link == WORLD]
+    if runs.replay.repeats:
+        still = [
+            replace(part, vertices=part.vertices + np.array([x, y, 0.0], np.float32))
+            for x, y in places
+            for part in still
+        ]
     together = {case: replace(trace, **arrays) for case, trace in traces}
     return replace(runs, traces=together, links=links), [*parts, *still]

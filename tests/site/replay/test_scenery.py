@@ -157,6 +157,10 @@ def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_pla
             moved = trace.link_pos[:, 2 * k + 1] - source.link_pos[:, 1]
             assert moved == pytest.approx(np.tile([x, y, 0], (len(moved), 1)), abs=1e-6)
     assert found.channels == runs.channels
+    again = replace(runs, replay=replace(replay, repeats=True))
+    floors = [part for part in scenery.side_by_side(again, SHAPE)[1] if part.link == WORLD]
+    for part, (x, y) in zip(floors, PLACES, strict=True):
+        assert part.vertices - SHAPE[1].vertices == pytest.approx(np.tile([x, y, 0], (4, 1)))
     around = scenery.scenery(parts, found)
     assert not around.axis
     assert around.followed is None
