@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, within
+from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, noted, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Episodes
-from robo_genesis.lessons.l08 import metrics, spec
+from robo_genesis.lessons.l08 import dataset, metrics, spec
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.laws import commanded, dynamics, model_joints
 from robo_genesis.sim.bodies.free_fall import GRAVITY
+from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept, unit_quaternions
 
@@ -117,12 +118,26 @@ def same_episodes(run: Experiment, name: str, other: str, order: Any) -> Iterato
 
 
 def commands_come_first(run: Experiment) -> Iterator[Finding]:
-    """A command belongs to the sample before it: the fingers move by less than 0.1 mm until the
-    sample whose command closes them, and by more until the next one.
+    """In the dataset a command belongs to the sample before it: up to the row whose action closes
+    the fingers, no finger has moved by 1 mm, and one row later each finger has.
     """
-    before, after = metrics.finger_motion(run.traces["exact"])
-    yield at_most("before_m", float(before.max()), 1e-4)
-    yield above("after_m", float(after.min()), 1e-4)
+    before, after = dataset.finger_motion(run)
+    yield at_most("before_m", float(before.max()), 1e-3)
+    yield above("after_m", float(after.min()), 1e-3)
+
+
+def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
+    """In a run with a camera, the last picture of the first film is the frame at the end of the
+    run, within one of 255 levels in the mean. The picture at the beginning of the move is not.
+    """
+    yield noted("films", len(spec.FILMS) * run.rendered)
+    if run.rendered:
+        trace = run.traces["exact"]
+        shown = film.pictures_of(run.frames, spec.FILMS[0], len(trace.t)).astype(float)
+        apart = np.abs(shown - film.shrunk(run.frames["final"])).mean(axis=(1, 2, 3))
+        move = int((trace.phase[:, 0] == picking.MOVE).argmax())
+        yield at_most("end.levels", float(apart[-1]), 1.0)
+        yield above("move.levels", float(apart[move]), 1.0)
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
@@ -164,7 +179,13 @@ def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Findi
 
 
 CHECKS = (structure, stamps, laws_of_motion, posture)
-LAB = (place_is_enough, held_but_sliding, order_does_not_matter, commands_come_first)
+LAB = (
+    place_is_enough,
+    held_but_sliding,
+    order_does_not_matter,
+    commands_come_first,
+    pictures_show_the_states,
+)
 LECTURE = (
     place_is_enough, turned_camera, words_differ, along_the_pads, pads_are_short, edge_of_the_pads,
     held_but_sliding, shown_episodes, order_does_not_matter,

@@ -56,6 +56,9 @@ SCENES: dict[str, dict[str, HeldCase]] = (
 """The runs in Genesis, by scene."""
 
 CASES = {n: case for of in SCENES.values() for n, case in of.items()}
+TIMED = [name for name, cases in SCENES.items() if len(cases) == len(ROW)]
+"""Scenes whose steps are timed: they have the same boxes."""
+
 TWINS = {f"mujoco_{name}": case for name, case in CASES.items()}
 """The same runs in MuJoCo, in float64."""
 

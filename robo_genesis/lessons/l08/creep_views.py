@@ -8,10 +8,11 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting, tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import look
-from robo_genesis.core.text import decimal, scaled_value
+from robo_genesis.core.text import scaled_value
 from robo_genesis.lessons.l08 import creep
 from robo_genesis.lessons.l08.creep_checks import share_of
 from robo_genesis.sim.bodies.grippers import HeldCase
+from robo_genesis.sim.throughput import KEPT
 
 MEASURES = False
 
@@ -55,7 +56,10 @@ def changes(run: Experiment) -> Iterator[dict[str, str]]:
 
 
 def time_of(run: Experiment, name: str) -> str:
-    """Return the time of an outer step of a run's scene [ms], if it has the boxes of `ROW`."""
+    """Write median, least and largest time of an outer step of a run's scene, if it is timed."""
     name = "plain_base" if name == "base" else name
-    (boxes,) = (cases for cases in creep.SCENES.values() if name in cases)
-    return decimal(1000 * run.readings["step"][name], 1) if len(boxes) == len(creep.ROW) else "–"
+    (scene,) = (one for one, cases in creep.SCENES.items() if name in cases)
+    if scene not in creep.TIMED:
+        return "–"
+    step, least, most = (f"{1000 * run.readings['step'][f'{of}_{scene}']:.1f}" for of in KEPT)
+    return f"{step} ({least} to {most})"

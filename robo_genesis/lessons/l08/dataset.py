@@ -5,39 +5,70 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l08 import metrics, spec
+from robo_genesis.sim.arm.franka import CREDIT
+from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.camera import film
 
-MEASURES = False
+TASK = "Pick up the cylinder and place it in the bowl."
 
 PLACE = tuple(f"object_{of}" for of in ("x", "y", "z", "qw", "qx", "qy", "qz"))
-FORCES = ("left_finger", "right_finger")
 
-TASK = "Pick up the cylinder and place it in the bowl."
+PRIVILEGED = ("observation.environment_state", "finger_force", "phase")
+"""Columns that a robot outside a simulator does not have."""
+
+
+def columns(run: Experiment) -> dict[str, tuple[np.ndarray, tuple[str, ...] | None]]:
+    """Return by name the values (episodes, rows, …), and the names of their last axis.
+
+    Row k has sample k, and the last command before sample k + 1.
+    """
+    trace, case, joints = run.traces["exact"], run.cases["exact"], run.joints.names
+    good = metrics.reached(trace, case) == len(metrics.RUNGS)
+    last = (np.arange(trace.steps) == trace.steps - 1)[:, None]
+    pose = np.concatenate([trace.object_pos, trace.object_quat], axis=2)
+    by_time: dict[str, tuple[np.ndarray, tuple[str, ...] | None]] = {
+        "observation.state": (trace.q[:-1], joints),
+        "observation.environment_state": (pose[:-1], PLACE),
+        "action": (trace.target, joints),
+        "finger_force": (trace.force[:-1], ("left", "right")),
+        "phase": (trace.phase[1:].astype(np.int64), None),
+        "next.success": (last & good, None),
+        "next.done": (last & np.ones_like(good), None),
+    }
+    return {name: (values.swapaxes(0, 1), names) for name, (values, names) in by_time.items()}
 
 
 def recorded(run: Experiment) -> dict[str, Any]:
     """Return the data as `site/takeaways/lerobot.py` writes them."""
-    trace, case = run.traces["exact"], run.cases["exact"]
-    rows, episodes = trace.target.shape[:2]
-    good = metrics.reached(trace, case) == len(metrics.RUNGS)
-    last = np.arange(rows) == rows - 1
-    pose = np.concatenate([trace.object_pos, trace.object_quat], axis=2)
-    by_time = {
-        "observation.state": (trace.q[:-1], run.joints.names),
-        "observation.environment_state": (pose[:-1], PLACE),
-        "observation.force": (trace.force[:-1], FORCES),
-        "action": (trace.target, run.joints.names),
-        "phase": (trace.phase[1:].astype(np.int64), None),
-        "next.success": (last[:, None] & good, None),
-        "next.done": (last[:, None] & np.ones(episodes, bool), None),
-    }
-    names = spec.FILMS if run.rendered else ()
-    shown = [film.pictures_of(run.frames, name, rows + 1)[:-1] for name in names]
+    trace, count = run.traces["exact"], len(spec.FILMS) * run.rendered
+    shown = [film.pictures_of(run.frames, name, trace.steps) for name in spec.FILMS[:count]]
     return {
         "task": TASK,
         "robot": "franka_panda",
         "fps": round(1 / trace.dt),
-        "columns": {name: (v.swapaxes(0, 1), of) for name, (v, of) in by_time.items()},
+        "columns": columns(run),
+        "privileged": PRIVILEGED,
         "pictures": np.stack(shown) if shown else None,
+        "parameters": run.page.parameters(),
+        "credit": CREDIT,
     }
+
+
+def finger_motion(run: Experiment) -> tuple[FloatArray, FloatArray]:
+    """Return by episode (e,) the largest distance of a finger from its start until the row whose
+    action closes the fingers, and the least motion of a finger from there to the next row [m].
+
+    Raises:
+        ValueError: an episode has no such row, or it is the first.
+    """
+    found, used = columns(run), ("observation.state", "action")
+    q, action = (found[name][0][..., ARM:].astype(np.float64) for name in used)
+    closing = (action == 0).all(axis=2).argmax(axis=1)
+    if not closing.all():
+        raise ValueError("The fingers of an episode are never closed, or from its first row on.")
+    until = np.arange(q.shape[1]) <= closing[:, None]
+    before = np.where(until[..., None], np.abs(q - q[:, :1]), 0).max(axis=(1, 2))
+    rows = np.arange(len(q))
+    return before, np.abs(q[rows, closing + 1] - q[rows, closing]).min(axis=1)

@@ -6,8 +6,8 @@ import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.trace import Demonstrations, Episodes
-from robo_genesis.sim.arm.kinematics import ARM, hand_pose, rotate
+from robo_genesis.core.trace import Episodes
+from robo_genesis.sim.arm.kinematics import hand_pose, rotate
 from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 from robo_genesis.sim.arm.picking import CLOSE, DONE, LIFT, LOWER, MOVE, PickCase
 from robo_genesis.sim.bodies import bowl
@@ -143,14 +143,3 @@ def inside_move(trace: Episodes) -> np.ndarray:
     """Return the samples (n+1, e) of the move without its first and its last one."""
     moving = trace.phase == MOVE
     return np.asarray(moving & np.roll(moving, 1, 0) & np.roll(moving, -1, 0))
-
-
-def finger_motion(trace: Demonstrations) -> tuple[FloatArray, FloatArray]:
-    """Return how far the left finger moves in the step before its closing is commanded, and in the
-    step after it, by episode (e,) [m].
-    """
-    closing = (trace.target[..., ARM] == 0).argmax(axis=0)
-    q = trace.q[..., ARM].astype(np.float64)
-    rows = np.arange(q.shape[1])
-    before, at, after = (q[closing + k, rows] for k in (-1, 0, 1))
-    return np.abs(at - before), np.abs(after - at)

@@ -21,6 +21,7 @@ COPY = "repeats the episodes of another run of this page, and has no metrics"
 ONE = "one episode of a batch, at all its steps"
 
 
+# The frames that hold the films
 SHEETS = [of for name in spec.FILMS for of in film.sheet_names(name, spec.EXACT.steps + 1)]
 
 

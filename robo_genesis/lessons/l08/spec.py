@@ -109,8 +109,8 @@ LAB = {"exact": EXACT, "again": EXACT}
 LAB_EPISODE = {"one": one(0, EXACT)}
 """The episode of `EXACT` that the lab has at all its outer steps."""
 
-FILMS = {"film_0": 0, "film_1": 1, "film_2": 2}
-"""Films of the lab, and their environments in `EXACT`."""
+FILMS = ("film_0", "film_1", "film_2")
+"""Films of the lab; they show the first environments of `EXACT` in their order."""
 
 ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact", 0)}
 """By episode, its batch and its environment there."""

@@ -52,7 +52,7 @@ def demonstrate(page: Any, world: World, batch: Batch) -> None:
     parts = {of.name: getattr(trace, of.name) for of in fields(Episodes)}
     target = np.stack(batch.sent)[every - 1 :: every].astype(np.float32)
     page.traces["exact"] = Demonstrations(**parts, target=target)
-    for name, row in spec.FILMS.items() if page.render else ():
+    for row, name in enumerate(spec.FILMS if page.render else ()):
         pictures = []
         for k in range(len(trace.t)):
             picking.pose(world, page.joints, *(of[k, row] for of in (

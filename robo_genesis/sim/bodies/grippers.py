@@ -9,6 +9,7 @@ import numpy as np
 
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.contacts import contact_constants, rigid_options, shared_case
 from robo_genesis.sim.bodies.free_fall import GRAVITY
@@ -121,18 +122,14 @@ def record_world(
 ) -> None:
     """Reset a world, press, settle and step; add its traces and readings to those of others.
 
-    Readings are the friction of each box, the time constant of its contacts, their number, and the
-    median time of an outer step of the scene while it settles [s].
+    Readings are the friction of each box, the time constant of its contacts, and their number.
     """
     common, scene = shared_case(world.cases, SHARED), world.scene
     scene.reset()
     for name, (hand, _) in world.grippers.items():
         hand.control_dofs_force(np.full(2, world.cases[name].force, np.float32))
-    taken = []
     for _ in range(round(common.settle / common.dt)):
-        start = time.perf_counter()
         scene.step()
-        taken.append(time.perf_counter() - start)
     states = record_states(
         scene.step, common.steps, lambda: {n: read(*of) for n, of in world.grippers.items()}
     )
@@ -142,7 +139,6 @@ def record_world(
         found = {
             "friction": float(to_numpy(scene.rigid_solver.get_geoms_friction([geom.idx]))[0]),
             "time_constant": float(contact_constants(scene, geom)[0]),
-            "step": float(np.median(taken)),
             "contacts": len(to_numpy(box.get_contacts()["penetration"])),
         }
         for group, value in found.items():
@@ -153,3 +149,10 @@ def read(hand: Any, box: Any) -> tuple[FloatArray, ...]:
     """Return position, orientation, velocity and angular velocity of `LINKS`, now."""
     both = zip(read_body(box), read_body(hand), strict=True)
     return tuple(np.concatenate([of_box, of_hand[-2:]]) for of_box, of_hand in both)
+
+
+def step_times(worlds: Mapping[str, World]) -> dict[str, float]:
+    """Return times of an outer step of worlds that hold their boxes, as `throughput.in_turn`."""
+    hands = {name: next(iter(world.grippers.values()))[0] for name, world in worlds.items()}
+    timed = {name: throughput.calls_of(worlds[name].scene, hand) for name, hand in hands.items()}
+    return throughput.in_turn(timed, warm_up=5, steps=10, repeats=5, clock=time.perf_counter)

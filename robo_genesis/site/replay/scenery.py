@@ -176,16 +176,22 @@ def rod(link: str, hinge: Hinge) -> Part:
 
 
 def floor_of(shape: Sequence[Part]) -> list[Part]:
-    """Return the tiles on the widest still part of a shape, with a floor at z = 0 if it has none.
+    """Return tiles on the widest still parts of a shape, with a floor at z = 0 if it has none.
 
     A still part that is smaller than a tile, such as a marker, has no tiles.
     """
     sizes = [np.ptp(part.vertices[:, :2], axis=0) for part in shape]
     pairs = zip(shape, sizes, strict=True)
-    wide = {float(size.prod()): p for p, size in pairs if p.link == WORLD and size.min() > TILE}
+    wide = [(size.prod(), p) for p, size in pairs if p.link == WORLD and size.min() > TILE]
     added = [] if wide else [floor(2.0)]
-    still = (wide[max(wide)] if wide else added[0]).vertices
-    low, high = still.min(axis=0), still.max(axis=0)
+    widest = max((area for area, _ in wide), default=0.0)
+    alike = [part for area, part in wide if area > 0.99 * widest]  # the same table at each place
+    return [*added, *map(tiles_on, alike or added)]
+
+
+def tiles_on(still: Part) -> Part:
+    """Return the tiles on the top of a part."""
+    low, high = still.vertices.min(axis=0), still.vertices.max(axis=0)
     columns, rows = (np.arange(low[k], high[k] - TILE / 2, TILE) for k in (0, 1))
     dark = [
         (x, y) for (i, x), (j, y) in product(enumerate(columns), enumerate(rows)) if (i + j) % 2
@@ -194,7 +200,7 @@ def floor_of(shape: Sequence[Part]) -> list[Part]:
     corners = (np.array(dark)[:, None] + square).reshape(-1, 2)
     vertices = np.column_stack([corners, np.full(len(corners), high[2] + RAISED)])
     halves = np.array([[0, 1, 2], [0, 2, 3]]) + 4 * np.arange(len(dark))[:, None, None]
-    return [*added, Part(WORLD, TILE_RGB, vertices, halves.reshape(-1, 3))]
+    return Part(WORLD, TILE_RGB, vertices, halves.reshape(-1, 3))
 
 
 def swept(shape: Sequence[Part], runs: Runs, followed: int | None) -> FloatArray:

@@ -9,10 +9,14 @@ the lesson's `dataset.recorded`, which gets the experiment of the page's bundle:
 | `robot` | its type |
 | `fps` | rows in a second |
 | `columns` | by name the values (episodes, rows, …), and names of their last axis or None |
+| `privileged` | the columns that a robot outside a simulator does not have |
 | `pictures` | (k, rows, height, width, 3) of the first k episodes, None without a camera |
+| `parameters` | every configured input, JSON values |
+| `credit` | authors of the shape that the pictures show |
 
 In this layout either all episodes have pictures or none has. So the archive holds two datasets:
-`state` with all episodes, and `camera` with those that have pictures. Layout and names are those of
+`state` with all episodes and columns, and `camera` with the episodes that have pictures, without
+the privileged columns. Layout and names are those of
 `lerobot/datasets/utils.py` in https://github.com/huggingface/lerobot, which a slow test reads with.
 """
 
@@ -33,6 +37,7 @@ from sphinx.application import Sphinx
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.files import write_whole
+from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.site.evidence.measured import measured
@@ -68,7 +73,8 @@ class DatasetDownload(PageDirective):
         run = Recorded(lesson, bundle_of(lesson_page)).experiment
         address = f"{site_address()}{self.env.docname}.html" if site_address() else ""
         writer = Writer(source.parent, lambda value: measured(*value.split(" ", 1))[0], address)
-        text = plain(source.read_text("utf8"), writer)
+        title = f"> {self.config.html_title}. © {self.config.author}. {address}".rstrip()
+        text = f"{title}\n\n{plain(source.read_text('utf8'), writer)}"
         made = archive(find(f"robo_genesis.lessons.{lesson}.dataset.recorded")(run), text)
         files = Path(self.env.app.outdir) / TAKEAWAYS
         file = files / f"{lesson}-dataset" / f"{lesson_page.replace('/', '-')}-lerobot.zip"
@@ -80,13 +86,17 @@ class DatasetDownload(PageDirective):
 
 
 def archive(data: Mapping[str, Any], readme: str) -> bytes:
-    """Return the zip with both datasets, their digests, and the datasheet."""
+    """Return the zip with both datasets, the datasheet, settings, licence, and all digests."""
     found = {f"state/{path}": content for path, content in files(data).items()}
     if data["pictures"] is not None:
-        few = files(data, data["pictures"])
+        seen = {n: of for n, of in data["columns"].items() if n not in data["privileged"]}
+        few = files({**data, "columns": seen}, data["pictures"])
         found |= {f"camera/{path}": content for path, content in few.items()}
-    sums = (f"{hashlib.sha256(content).hexdigest()}  {path}" for path, content in found.items())
-    found |= {"README.md": f"{readme}\n".encode(), "SHA256SUMS": "\n".join([*sums, ""]).encode()}
+    found["parameters.json"] = json.dumps(data["parameters"], indent=1).encode()
+    found["LICENSE"] = (ROOT / "LICENSE").read_bytes() + f"\n{data['credit']}\n".encode()
+    found["README.md"] = f"{readme}\n".encode()
+    sums = (f"{hashlib.sha256(content).hexdigest()}  {path}\n" for path, content in found.items())
+    found["SHA256SUMS"] = "".join(sums).encode()
     target = BytesIO()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as whole:
         for path, content in found.items():
@@ -169,8 +179,12 @@ def parquet(columns: Mapping[str, Any], index: str = "") -> bytes:
     }
     table = pa.table(arrays)
     if index:
-        kinds = {"pandas_type": None, "numpy_type": None}
-        names = [{"name": name, "field_name": name} | kinds for name in arrays]
+        kinds = {True: ("int64", "int64"), False: ("unicode", "object")}
+        names = [
+            {"name": name, "field_name": name, "metadata": None}
+            | dict(zip(("pandas_type", "numpy_type"), kinds[of.type == pa.int64()], strict=True))
+            for name, of in arrays.items()
+        ]
         about = {"index_columns": [index], "columns": names, "column_indexes": []}
         table = table.replace_schema_metadata({"pandas": json.dumps(about)})
     target = pa.BufferOutputStream()

@@ -27,6 +27,9 @@ DATA = {
         "phase": (RNG.integers(0, 9, (EPISODES, ROWS)), None),
         "next.done": (np.arange(ROWS) == np.full((EPISODES, 1), ROWS - 1), None),
     },
+    "privileged": ("phase",),
+    "parameters": {"dt": 0.05},
+    "credit": "Shape by others.",
     "pictures": np.kron(COARSE, np.ones((1, 1, 18, 18, 1))).astype(np.uint8),
 }
 STATE, ACTION = (DATA["columns"][name][0] for name in ("observation.state", "action"))
@@ -77,6 +80,7 @@ def test_episodes_with_pictures_are_a_dataset_of_their_own(folder):
         shown = [picture.to_ndarray(format="rgb24") for picture in file.decode(video=0)]
     assert np.shape(shown) == (FEW * ROWS, 108, 144, 3)
     assert np.abs(np.float64(shown) - DATA["pictures"].reshape(np.shape(shown))).mean() < 5
+    assert "phase" not in json.loads((folder / "camera/meta/info.json").read_text())["features"]
     without = zipfile.ZipFile(io.BytesIO(lerobot.archive(DATA | {"pictures": None}, "")))
     assert not [name for name in without.namelist() if "camera" in name]
 
@@ -84,7 +88,7 @@ def test_episodes_with_pictures_are_a_dataset_of_their_own(folder):
 def test_the_archive_is_the_same_each_time_and_lists_its_digests(folder):
     assert lerobot.archive(DATA, "a") == lerobot.archive(DATA, "a")
     sums = [line.split("  ") for line in (folder / "SHA256SUMS").read_text().splitlines()]
-    listed = {name for _, name in sums} | {"README.md", "SHA256SUMS"}
+    listed = {name for _, name in sums} | {"SHA256SUMS"}
     assert listed == {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()}
     assert all(sha256((folder / name).read_bytes()).hexdigest() == digest for digest, name in sums)
 
@@ -99,6 +103,7 @@ for name in ("state", "camera"):
 print(tuple(row["observation.images.world"].shape), row["observation.images.world"].mean().item())
 later = LeRobotDataset("l08", root=f"{sys.argv[1]}/state", delta_timestamps={"action": [0, 0.1]})
 print(later[33]["action"][1].tolist())
+print(later[28]["action"][1].tolist(), later[28]["action_is_pad"].tolist())
 """
 
 
@@ -111,7 +116,7 @@ def test_lerobot_reads_it(folder, tmp_path):
     command = [python, "-c", READER, folder]
     done = subprocess.run(command, env=isolated, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-3000:]
-    state, camera, picture, later = done.stdout.splitlines()
+    state, camera, picture, later, edge = done.stdout.splitlines()
     row = STATE[1, 3].tolist()
     assert state == f"120 4 {row} Pick it up."
     assert camera == f"60 2 {row} Pick it up."
@@ -119,3 +124,4 @@ def test_lerobot_reads_it(folder, tmp_path):
     assert shape == "(3, 108, 144)"
     assert float(mean) == pytest.approx(DATA["pictures"][1, 3].mean() / 255, abs=0.02)
     assert later == str(ACTION[1, 5].tolist())
+    assert edge == f"{ACTION[0, 29].tolist()} [False, True]"
