@@ -135,6 +135,7 @@ def build(
         sim_options=gs.options.SimOptions(dt=case.dt, substeps=case.substeps),
         rigid_options=gs.options.RigidOptions(**options) if options else None,
         profiling_options=gs.options.ProfilingOptions(show_FPS=False),
+        vis_options=gs.options.VisOptions(rendered_envs_idx=[0]) if n_envs else None,
         show_viewer=False,
     )
 
