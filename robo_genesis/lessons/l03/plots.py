@@ -79,16 +79,11 @@ def contact_counts(run: Experiment) -> Figure:
 
 
 def pushed(run: Experiment) -> Figure:
-    """Draw speed, clearance and angular speed of the lab's pushed cubes."""
-    below = SLIDES["high_on_050"] | {"linewidth": 4.0, "alpha": 0.45}  # It lies below an equal one
-    return slides(run, SLIDES | {"high_on_050": below})
-
-
-def slides(run: Experiment, styles: Styles) -> Figure:
-    """Draw speed along x, clearance and angular speed of pushed cubes."""
+    """Draw speed along x, clearance and angular speed of the lab's pushed cubes."""
     figure = plotting.figure(7)
     axes = figure.subplots(3, 1, sharex=True)
-    for name, style in styles.items():
+    below = SLIDES["high_on_050"] | {"linewidth": 4.0, "alpha": 0.45}  # It lies below an equal one
+    for name, style in (SLIDES | {"high_on_050": below}).items():
         trace = run.traces[name]
         clear = 1000 * metrics.clearance(trace, run.cases[name])
         curves = trace.link_vel[:, 0, 0], clear, trace.link_ang[:, 0, 1]
