@@ -50,23 +50,6 @@ def bounces(run: Experiment) -> str:
 # The lecture
 
 
-@as_table
-def depths(run: Experiment) -> Iterator[Row]:
-    """Return depth by hand and measured from the lab's height, for both time constants."""
-    for scene in (study.FINEST_SCENE, study_spec.STIFF):
-        name = f"{scene}_10000"
-        case = run.cases[name]
-        yield {
-            "T": milliseconds(theory.contact_seconds(case)),
-            "h": milliseconds(case.h),
-            "v": f"{theory.impact_speed(case):.2f} m/s",
-            "v T / e": millimetres(theory.depth(case)),
-            "measured": millimetres(run.metrics[name].penetration),
-            "rebound": millimetres(run.metrics[name].rebound),
-            "nine heights, measured / (v T / e)": span(study.depth_shares(run, scene)),
-        }
-
-
 def stop(run: Experiment, name: str) -> str:
     """Write a stopping distance."""
     return format_value(run.metrics[name].stop_distance, "m")

@@ -139,20 +139,6 @@ def stepped_table(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def first_step_table(run: Experiment) -> Iterator[Row]:
-    """Return for each compared case the stepped joint's speed after the first step, by engine."""
-    for case, settings in study_spec.COMPARED.items():
-        speeds = {
-            "alone, with the term": study.first_speed(run, case, float(settings.kv[spec.ENTRY])),
-            "alone, without it": study.first_speed(run, case, 0.0),
-        } | {
-            ENGINE_LABELS[engine]: float(trace.qd[0, spec.ENTRY])
-            for engine, trace in study.by_engine(run, case).items()
-        }
-        yield {"case": case} | {n: format_value(v, "rad/s") for n, v in speeds.items()}
-
-
-@as_table
 def relation_table(run: Experiment) -> Iterator[Row]:
     """Return for each ordering that the lesson claims its state and values in each engine."""
     for relation in spec.RELATIONS:
