@@ -13,14 +13,17 @@ from robo_genesis.sim.bodies.contacts import TOP
 
 MEASURES = False
 
+Styles = dict[str, dict[str, Any]]
+"""By run, the style of its line and the line's label in the legend."""
 
-def styles(**marks: str) -> dict[str, dict[str, Any]]:
+
+def styles(**marks: str) -> Styles:
     """Return the styles of runs with their marks of the palette."""
     return {name: look(mark, label=spec.LABELS[name]) for name, mark in marks.items()}
 
 
 LANDINGS = styles(baseline="baseline", dt10_sub1="first", dt20_sub2="third", dt20_sub1="second")
-SAMPLES: dict[str, dict[str, Any]] = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
+SAMPLES: Styles = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
     "dt20_sub2": {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8},
     "dt20_sub1": {"marker": "^", "markersize": 3},
 }
