@@ -93,6 +93,20 @@ def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figur
     return figure
 
 
+def baseline_forces(run: Experiment) -> Figure:
+    """Draw both force getters of the baseline: they answer different questions."""
+    (figure, ax), trace = plotting.axes(3.4), run.traces["baseline"]
+    ax.axhline(float(trace.effort_limit[ENTRY]), label="limit, read back", **LIMIT)
+    for name, array, mark in (
+        ("get_dofs_control_force", trace.control_force, "baseline"),
+        ("get_dofs_force", trace.internal_force, "other"),
+    ):
+        ax.plot(trace.t_step, array[:, ENTRY], label=name, **look(mark, **DOTS))
+    ax.set_xlim(-0.005, BEFORE_REST)
+    plotting.finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]")
+    return figure
+
+
 def defined(run: Experiment) -> Figure:
     """Draw the position of the example with its rise and settling time, overshoot, final error."""
     (figure, ax), trace, m = plotting.axes(4), run.traces[EXAMPLE], run.metrics[EXAMPLE]
@@ -125,6 +139,21 @@ def _target(ax: Axes, trace: Trace) -> None:
 
 
 # The deeper pages
+
+
+def theory(run: Experiment) -> Figure:
+    """Draw the compared cases over the ideal joint's response, one case on each axes."""
+    start, t, figure = spec.BASELINE.q_start[ENTRY], run.traces["G1"].t, plotting.figure(7)
+    axes = figure.subplots(len(study_spec.COMPARED), 1, sharex=True)
+    for ax, name in zip(axes, study_spec.COMPARED, strict=True):
+        ideal = start + spec.STEP * study.ideal(run, name).response(t)
+        ax.axhline(start + spec.STEP, **LINE)
+        ax.plot(t, ideal, label="ideal joint", **IDEAL)
+        ax.plot(t, run.traces[name].q[:, ENTRY], label="measured", **look(CASE_MARKS[name]))
+        ax.set(title=name, xlim=(0, 0.4), xlabel="time [s]", ylabel=f"q of {STEPPED_JOINT} [rad]")
+        ax.legend(loc="lower right")
+        ax.label_outer()
+    return figure
 
 
 def step_size(run: Experiment) -> Figure:

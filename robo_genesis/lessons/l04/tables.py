@@ -66,6 +66,20 @@ def force_ranges(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
+def first_demand(run: Experiment) -> Iterator[Row]:
+    """Compare for each case the demand of the PD law at t = 0 with the clipped effort."""
+    k = spec.ENTRY
+    for name, case in study_spec.COMPARED.items():
+        trace = run.traces[name]
+        yield {
+            "case": name,
+            "demand at t = 0": f"{case.kp[k] * (case.q_target[k] - trace.q[0, k]):.0f} N·m",
+            "clipped effort": f"{trace.start_control_force[k]:.0f} N·m",
+            "at the same limit until": format_value(study.at_limit_until(trace), "s"),
+        }
+
+
+@as_table
 def outcomes_of_predictions(run: Experiment) -> Iterator[Row]:
     """Return the values and the outcome of each prediction of the lesson."""
     for relation in spec.RELATIONS:
@@ -139,6 +153,18 @@ def stepped_table(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
+def convergence_table(run: Experiment) -> Iterator[Row]:
+    """Return for each solver step G2's overshoot in both engines; unstable runs are marked."""
+    for n in study_spec.SUBSTEPS_STUDIED:
+        row = {"substeps": n, "h": f"{1000 * spec.G2.dt / n:g} ms"}
+        for engine, label in ENGINE_LABELS.items():
+            overshoot = study.overshoot_by_substeps(run, engine)[n]
+            mark = " (unstable)" * study.unstable(run, engine, n)
+            row[label] = format_value(overshoot, "rad") + mark
+        yield row
+
+
+@as_table
 def relation_table(run: Experiment) -> Iterator[Row]:
     """Return for each ordering that the lesson claims its state and values in each engine."""
     for relation in spec.RELATIONS:
@@ -149,3 +175,11 @@ def relation_table(run: Experiment) -> Iterator[Row]:
             values = _change(study.compared(run, engine), relation)
             row[label] = f"{'unstable' if study.unstable(run, engine) else state}: {values}"
         yield row
+
+
+def metrics_by_engine(run: Experiment) -> str:
+    """Return all metrics of G1 to G3, one table for each engine."""
+    return "\n".join(
+        f"**{label}**\n\n{by_case(study.compared(run, engine))}"
+        for engine, label in ENGINE_LABELS.items()
+    )
