@@ -27,18 +27,6 @@ def second_init(gs: Any) -> Mistake:
     return Mistake("second_init", type(error).__name__ == "GenesisException", text)
 
 
-def late_entity(scene: Any, morph: Any) -> Mistake:
-    """Add an entity to a built scene."""
-    before = len(scene.entities)
-    error = refused(lambda: scene.add_entity(morph))
-    shown = type(error).__name__ == "GenesisException" and len(scene.entities) == before
-    text = (
-        f"The call after `build`: {quoted(error)} The scene had {before} entities before the call "
-        f"and has {len(scene.entities)} now."
-    )
-    return Mistake("late_entity", shown, text)
-
-
 def heights(
     scene: Any, case: Drop, steps: int, **bodies: Any
 ) -> tuple[FloatArray, dict[str, FloatArray]]:

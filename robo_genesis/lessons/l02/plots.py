@@ -7,7 +7,6 @@ from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import body_schematic, look
 from robo_genesis.lessons.l02 import spec, trials
-from robo_genesis.lessons.l02.study import by_step, expected_gap
 from robo_genesis.sim.bodies.falls import fallen, predicted
 from robo_genesis.sim.bodies.free_fall import continuous_drop
 
@@ -84,22 +83,4 @@ def three_drops(run: Experiment) -> Figure:
     ax.plot(trace.t, 1000 * (fallen(trace) - continuous), "o", markersize=4.5, label="measured",
             color=look("baseline")["color"])  # fmt: skip
     plotting.finish(ax, "Against continuous free fall", "farther down [mm]", "upper left")
-    return figure
-
-
-def gaps(run: Experiment) -> Figure:
-    """Draw the distance ahead of continuous free fall at the end of the run by solver step."""
-    figure, ax = plotting.axes(3.4)
-    names = by_step(run)
-    h = [1000 * run.cases[name].h for name in names]
-    expected = [1000 * expected_gap(run, name) for name in names]
-    measured = [1000 * run.metrics[name].continuous_gap for name in names]
-    ax.loglog(h, expected, label="g h t / 2", **look("target"))
-    ax.loglog(h, measured, "o", markersize=6, label="measured", color=look("baseline")["color"])
-    ax.set(xlabel="solver step h [ms]", ylabel="farther down at the end [mm]")
-    ax.set_title("Difference at the end, by solver step")
-    ax.set_xticks(h, [f"{step:g}" for step in h])
-    ax.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
-    ax.minorticks_off()
-    ax.legend(loc="upper left")
     return figure

@@ -3,7 +3,7 @@
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import bullets, format_value, signed
-from robo_genesis.lessons.l02 import spec, study, trials
+from robo_genesis.lessons.l02 import spec, study
 from robo_genesis.sim.bodies.free_fall import continuous_drop, summed_drop
 
 MEASURES = False
@@ -77,16 +77,3 @@ def substep_table(run: Experiment) -> str:
         gaps = 1000 * of.continuous_gap, 1000 * study.expected_gap(run, name)
         rows[f"{case.substeps}"] = f"{1000 * case.h:g}", of.drop, *gaps
     return tables.number_table("substeps", dict(zip(names, (0, 6, 3, 3), strict=True)), rows)
-
-
-def falls_table(run: Experiment) -> str:
-    """Return the further falls beside the stepped formula."""
-    words = {
-        "higher": f"from {spec.HIGHER:g} m",
-        "thrown": f"thrown upwards at {spec.THROWN:g} m/s",
-        "heavier": f"{spec.HEAVIER:g} times as heavy",
-        "moon": f"on the Moon, g = {spec.MOON:g} m/s²",
-    }
-    found, expected = run.readings[trials.FURTHER], trials.expected_falls()
-    rows = {words[name]: (found[name], expected[name]) for name in trials.FALLS}
-    return tables.number_table("fall", {"measured [m]": 6, "stepped formula [m]": 6}, rows)

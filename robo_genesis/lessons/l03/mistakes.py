@@ -11,12 +11,10 @@ import numpy as np
 from robo_genesis.core.exercises import Mistake
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import metrics
-from robo_genesis.lessons.l03.metrics import STOP_SPEED, clearance, slide_metrics, stopped_at
+from robo_genesis.lessons.l03.metrics import STOP_SPEED, slide_metrics, stopped_at
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase, build_world, run_world, time_constant
 
 MEASURES = False
-
-INSIDE = 1e-3  # Depth below the surface from which a body counts as inside [m]
 
 
 def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Mistake:
@@ -41,18 +39,6 @@ def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Mistake:
     }
     shown = bool(apart > 0.01 and at_equal_times < 1e-5)
     return Mistake("equal_steps", shown, text, curves, axis="number of the step")
-
-
-def no_contact_inside(trace: ContactTrace, case: ContactCase) -> Mistake:
-    """Conclude from a contact count of zero that a body touches nothing."""
-    clear = clearance(trace, case)
-    empty = np.flatnonzero((trace.contacts[:, 0] == 0) & (clear < -INSIDE))
-    k = int(empty[np.argmin(clear[empty])]) if len(empty) else 0
-    text = (
-        f"At {trace.t[k]:.2f} s the engine reports {trace.contacts[k, 0]} contact points; "
-        f"the cube's underside is {-1000 * clear[k]:.1f} mm below the surface."
-    )
-    return Mistake("no_contact_inside", bool(len(empty)), text)
 
 
 def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Mistake:

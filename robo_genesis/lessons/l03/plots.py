@@ -1,6 +1,5 @@
-"""Figures of the lab: functions of the experiment."""
+"""Figures of landings, slides and bounces: functions of the experiment."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,16 +8,16 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, body_schematic, legend_above, log_axis, look
-from robo_genesis.lessons.l03 import checks, metrics, spec, theory
+from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_spec, theory
 from robo_genesis.sim.bodies.contacts import TOP
 
 MEASURES = False
 
-Styles = Mapping[str, Mapping[str, Any]]
+Styles = dict[str, dict[str, Any]]
 """By run, the style of its line and the line's label in the legend."""
 
 
-def styles(**marks: str) -> dict[str, dict[str, Any]]:
+def styles(**marks: str) -> Styles:
     """Return the styles of runs with their marks of the palette."""
     return {name: look(mark, label=spec.LABELS[name]) for name, mark in marks.items()}
 
@@ -34,6 +33,11 @@ SLIDES = styles(low_on_050="first", high_on_050="second", low_on_030="third", hi
 BOUNCES = styles(bounce_sub1="second", bounce_sub2="other", bounce_sub100="third")
 WINDOW = (0.18, 0.44)  # Around the landing of the lab [s]
 STEP_LABEL = "solver step h [ms]"
+
+STEP_MARKS = {
+    "h_20000us": "second", "h_10000us": "third", "h_5000us": "baseline", "h_125us": "first",
+}  # fmt: skip
+"""Marks of the palette by scene; the landing from the baseline's height is drawn."""
 
 
 def legend_below(figure: Figure) -> None:
@@ -79,16 +83,11 @@ def contact_counts(run: Experiment) -> Figure:
 
 
 def pushed(run: Experiment) -> Figure:
-    """Draw speed, clearance and angular speed of the lab's pushed cubes."""
-    below = SLIDES["high_on_050"] | {"linewidth": 4.0, "alpha": 0.45}  # It lies below an equal one
-    return slides(run, SLIDES | {"high_on_050": below})
-
-
-def slides(run: Experiment, styles: Styles) -> Figure:
-    """Draw speed along x, clearance and angular speed of pushed cubes."""
+    """Draw speed along x, clearance and angular speed of the lab's pushed cubes."""
     figure = plotting.figure(7)
     axes = figure.subplots(3, 1, sharex=True)
-    for name, style in styles.items():
+    below = SLIDES["high_on_050"] | {"linewidth": 4.0, "alpha": 0.45}  # It lies below an equal one
+    for name, style in (SLIDES | {"high_on_050": below}).items():
         trace = run.traces[name]
         clear = 1000 * metrics.clearance(trace, run.cases[name])
         curves = trace.link_vel[:, 0, 0], clear, trace.link_ang[:, 0, 1]
@@ -149,4 +148,52 @@ def kept_by_step(run: Experiment) -> Figure:
     ax.set_ylabel("kept at the first bounce [%]")
     log_axis(ax, h, STEP_LABEL)
     legend_above(ax, "")
+    return figure
+
+
+# The lecture
+
+
+def landings_by_step(run: Experiment) -> Figure:
+    """Draw the landing from the baseline's height at four solver steps."""
+    figure, ax = plotting.axes(3.6)
+    for scene, mark in STEP_MARKS.items():
+        case, trace = run.cases[f"{scene}_10000"], run.traces[f"{scene}_10000"]
+        every = max(1, round(0.001 / trace.dt))
+        style = look(mark, marker="." if case.h > 0.002 else "")
+        clear = 1000 * metrics.clearance(trace, case)[::every]
+        ax.plot(trace.t[::every], clear, label=f"h = {1000 * case.h:g} ms", **style)
+    ax.axhline(0, **LINE)
+    ax.set(xlim=(0.2, 0.34), ylim=(-26, 14), xlabel="time [s]", ylabel="clearance [mm]",
+           title="Below zero: overlap")  # fmt: skip
+    ax.legend(loc="lower right")
+    return figure
+
+
+def deepest(run: Experiment) -> Figure:
+    """Show two cubes at their deepest samples, without a camera the landings at four steps."""
+    if not run.rendered:
+        return landings_by_step(run)
+    words = study_spec.DEEPEST.items()
+    return plotting.stacked({text: run.frames[name][120:420] for name, text in words})
+
+
+def depths_by_step(run: Experiment) -> Figure:
+    """Draw each depth as a share of v T / e by the solver step."""
+    figure, ax = plotting.axes(3.8)
+    points = np.array([
+        (1000 * case.h, found.penetration / theory.depth(case), found.rebound > metrics.CLEAR)
+        for _, case, found in study.row(run, *study_spec.STEP_CASES)
+    ])  # fmt: skip
+    for label, rebounds, marker, size, mark in (
+        ("stays down", False, "o", 4.5, "first"),
+        ("leaves the surface again", True, "^", 6, "second"),
+    ):
+        h, shares, _ = points[points[:, 2] == rebounds].T
+        ax.plot(h, shares, marker, markersize=size, color=look(mark)["color"], label=label)
+    ax.axhline(1, label="v T / e", **look("target"))
+    log_axis(ax, points[:, 0], STEP_LABEL)
+    ax.set_ylim(bottom=0)
+    ax.set_ylabel("depth / (v T / e)")
+    legend_above(ax, "Nine heights")
     return figure

@@ -35,9 +35,6 @@ def share_of_step(scene: str) -> float:
     return case.h / theory.contact_seconds(case)
 
 
-FINEST_SCENE = min(study_spec.STEP_CASES, key=share_of_step)
-
-
 def depth_shares(run: Experiment, scene: str) -> list[float]:
     """Return each depth as a share of v T / e, in the order of the heights."""
     return [found.penetration / theory.depth(case) for _, case, found in row(run, scene)]

@@ -51,8 +51,6 @@ STEPS = (
 STEP_CASES = {name: side_by_side(name, **step) for name, step in by_step("h", *STEPS).items()}
 """By solver step, the landing from each height with the default time constant."""
 
-AS_BASELINE = "h_5000us_10000"  # With its height and solver step, and each solver step recorded
-
 STIFF = "T_2ms"
 STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.0005, substeps=5)}
 """The landings with a time constant of 2 ms, with a twentieth of it as solver step."""

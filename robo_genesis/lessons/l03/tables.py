@@ -1,14 +1,12 @@
 """Tables of landings, slides and bounces: functions of the experiment."""
 
-import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import wraps
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
+from robo_genesis.core.tables import as_table, metric_table
 from robo_genesis.core.text import NOT_OBSERVED, format_value
 from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, BounceMetrics, LandingMetrics, SlideMetrics
@@ -17,24 +15,7 @@ from robo_genesis.sim.bodies.contacts import ContactCase
 
 MEASURES = False
 
-BEFORE_UNIT = re.compile(r"(?<=\d) (?=[A-Za-zµ%/]+$)")
-"""The space between a number and its unit at the end of a cell."""
-
 Row = dict[str, str]
-
-
-def as_table(rows: Callable[[Experiment], Iterable[Row]]) -> Callable[[Experiment], str]:
-    """Make a function that returns a Markdown table of one that yields its rows.
-
-    In the table, no line ends between a number and its unit.
-    """
-
-    @wraps(rows)
-    def unbroken(run: Experiment) -> Iterator[Row]:
-        for row in rows(run):
-            yield {head: BEFORE_UNIT.sub("\u00a0", cell) for head, cell in row.items()}
-
-    return tables.as_table(unbroken)
 
 
 def span(values: Sequence[float], digits: int = 2) -> str:
@@ -45,65 +26,28 @@ def span(values: Sequence[float], digits: int = 2) -> str:
 # The lab
 
 
-def by_run(run: Experiment, kind: type[CaseMetrics], left_out: str = "") -> Iterator[Row]:
-    """Yield one row per run of a kind with one column per metric; one may be left out for room."""
-    labels = kind.about("label")
-    for name, of in checks.measured(run, kind).items():
-        cells = {labels[n]: readable(v, unit) for n, v, unit in of.items() if n != left_out}
-        yield {"run": spec.LABELS[name]} | cells
+def of_kind(run: Experiment, kind: type[CaseMetrics]) -> str:
+    """Return the metrics of the runs of one kind."""
+    found = {spec.LABELS[name]: of for name, of in checks.measured(run, kind).items()}
+    return metric_table(found, readable)
 
 
-@as_table
-def landings(run: Experiment) -> Iterator[Row]:
+def landings(run: Experiment) -> str:
     """Return the metrics of the dropped cubes."""
-    return by_run(run, LandingMetrics, left_out="touchdown")
+    return of_kind(run, LandingMetrics)
 
 
-@as_table
-def slides(run: Experiment) -> Iterator[Row]:
+def slides(run: Experiment) -> str:
     """Return the metrics of the pushed cubes."""
-    return by_run(run, SlideMetrics, left_out="first_speed")
+    return of_kind(run, SlideMetrics)
 
 
-@as_table
-def bounces(run: Experiment) -> Iterator[Row]:
+def bounces(run: Experiment) -> str:
     """Return the metrics of the balls."""
-    return by_run(run, BounceMetrics)
+    return of_kind(run, BounceMetrics)
 
 
 # The lecture
-
-
-@as_table
-def steps(run: Experiment) -> Iterator[Row]:
-    """Return the landings by solver step: time constant, depth by hand and measured, rebounds."""
-    for name in study_spec.STEP_CASES:
-        found = [of for *_, of in study.row(run, name)]
-        yield {
-            "h": milliseconds(study.case_of(name).h),
-            "T in force": milliseconds(run.readings[study.GROUP][name]),
-            "h / T": f"{study.share_of_step(name):.3g}",
-            "depth": f"{span([1000 * of.penetration for of in found], 1)} mm",
-            "depth / (v T / e)": span(study.depth_shares(run, name)),
-            "rebounds": f"{sum(of.rebound > CLEAR for of in found)} of {len(found)}",
-        }
-
-
-@as_table
-def depths(run: Experiment) -> Iterator[Row]:
-    """Return depth by hand and measured from the lab's height, for both time constants."""
-    for scene in (study.FINEST_SCENE, study_spec.STIFF):
-        name = f"{scene}_10000"
-        case = run.cases[name]
-        yield {
-            "T": milliseconds(theory.contact_seconds(case)),
-            "h": milliseconds(case.h),
-            "v": f"{theory.impact_speed(case):.2f} m/s",
-            "v T / e": millimetres(theory.depth(case)),
-            "measured": millimetres(run.metrics[name].penetration),
-            "rebound": millimetres(run.metrics[name].rebound),
-            "nine heights, measured / (v T / e)": span(study.depth_shares(run, scene)),
-        }
 
 
 def stop(run: Experiment, name: str) -> str:
@@ -172,22 +116,6 @@ def settings_of_cones(run: Experiment) -> Iterator[Row]:
                 "stops after": stop(run, name),
                 "apparent μ": apparent or NOT_OBSERVED,
             }
-
-
-@as_table
-def first_impulses(run: Experiment) -> Iterator[Row]:
-    """Return the impulses of the first outer step of the pushed cubes."""
-    for name in study_spec.HOPPED:
-        case, (lost, gained) = run.cases[name], study.first_impulses(run, name)
-        mu = theory.pair_friction(case)
-        yield {
-            "μ of the pair": f"{mu:g}",
-            "lost along x": f"{lost:.3f} m/s",
-            "gained upwards": f"{gained:.3f} m/s",
-            "their ratio": f"{lost / gained:.3f}",
-            "formula, upwards": f"{theory.upward_blow(case):.3f} m/s",
-            "μ g dt, under the weight": f"{mu * case.gravity * case.dt:.3f} m/s",
-        }
 
 
 @as_table

@@ -1,7 +1,6 @@
 """Figures of lesson L04: functions of the experiment; no numerics, no show()."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,14 +8,15 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.palette import marks_of
-from robo_genesis.core.plotting import BAND, LIMIT, LINE, look
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.palette import PARTS, marks_of
+from robo_genesis.core.plotting import BAND, LIMIT, LINE, log_axis, look
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED, EXAMPLE
+from robo_genesis.lessons.l04.tables import ENGINE_LABELS
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 
 MEASURES = False
@@ -25,19 +25,22 @@ START = 0.4  # End of the time axis where the compared cases differ [s]
 BEFORE_REST = 0.6  # End of the time axis of the baseline [s]
 DOTS = {"marker": ".", "markersize": 5}
 
-Label = tuple[float, tuple[float, float]]
-"""Time of the labelled sample [s], and where its text is relative to it [pt]."""
+PANELS = {
+    "position": ("q", "q [rad]"),
+    "velocity": ("qd", "q̇ [rad/s]"),
+    "control force": ("control_force", "control force [N·m]"),
+}
+"""The array of a trace that each panel of a response shows, and the label of its axis."""
 
-PANELS: Mapping[str, tuple[str, str, Mapping[str, Label]]] = {
-    "position": ("q", "q [rad]",
-                 {"G1": (0.11, (10, -18)), "G2": (0.15, (8, 3)), "G3": (0.1, (12, -12))}),
-    "velocity": ("qd", "q̇ [rad/s]",
-                 {"G1": (0.06, (-26, 6)), "G2": (0.1, (8, 0)), "G3": (0.11, (10, 2))}),
-    "control force": ("control_force", "control force [N·m]",
-                      {"G1": (0.09, (-24, -4)), "G2": (0.2, (-10, -16)), "G3": (0.1, (8, -24))}),
-}  # fmt: skip
-"""The array of a trace that each panel of a response shows, the label of its axis, and those of the
-compared cases."""
+IDEAL = look("target", linestyle=(0, (4, 2)), linewidth=1.6)
+"""The one dashed line of a figure: theory. Measured data have solid lines."""
+
+ENGINE_STYLES = {
+    "Genesis": look(CASE_MARKS["G2"], marker="o"),
+    "MuJoCo implicitfast": look("other", marker="s"),
+    "MuJoCo Euler": look("further", marker="^"),
+}
+"""All curves are G2's. Marker shapes distinguish the engines as well as colours."""
 
 
 def posture(run: Experiment) -> Figure:
@@ -49,13 +52,11 @@ def assigned(run: Experiment) -> Figure:
     """Draw the stepped joint with assigned states and with a commanded target, over time."""
     figure, ax = plotting.axes(3.4)
     written, commanded = run.traces[ASSIGNED], run.traces["baseline"]
-    _target(ax, float(commanded.target[0, ENTRY]))
+    ax.axhline(float(commanded.target[0, ENTRY]), label="target", **LINE)
     crosses = look("other", linestyle="", marker="x", markersize=4)
-    t, q = written.t[::4], written.q[::4, ENTRY]
-    _curve(ax, t, q, crosses, "set_dofs_position", (0.6, (10, -20)))
-    t, q = commanded.t, commanded.q[:, ENTRY]
-    _curve(ax, t, q, look("baseline"), "control_dofs_position", (0.27, (2, -18)))
-    _finish(ax, f"Assigned or commanded, {STEPPED_JOINT}", "q [rad]", float(t[-1]))
+    ax.plot(written.t[::4], written.q[::4, ENTRY], label="set_dofs_position", **crosses)
+    ax.plot(commanded.t, commanded.q[:, ENTRY], label="control_dofs_position", **look("baseline"))
+    plotting.finish(ax, f"Assigned or commanded, {STEPPED_JOINT}", "q [rad]", "lower right")
     return figure
 
 
@@ -76,16 +77,18 @@ def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figur
     """
     figure, first = plotting.figure(height), next(iter(traces.values()))
     position, velocity, force = axes = figure.subplots(3, 1, sharex=True)
-    _target(position, float(first.target[0, ENTRY]), SETTLING_BAND)
+    _target(position, first)
     velocity.axhline(0, **LINE)
-    _limits(force, first, until)
-    for ax, (panel, (field, ylabel, labels)) in zip(axes, PANELS.items(), strict=True):
+    limit = float(first.effort_limit[ENTRY])
+    force.axhline(limit, label="limit, read back", **LIMIT)
+    force.axhline(-limit, **LIMIT)
+    for ax, (panel, (field, ylabel)) in zip(axes, PANELS.items(), strict=True):
         for name, mark in marks_of(list(traces), CASE_MARKS).items():
             values = getattr(traces[name], field)[:, ENTRY]
             t = traces[name].t[-len(values) :]
             shown = t <= until
-            _curve(ax, t[shown], values[shown], look(mark, **DOTS), name, labels.get(name))
-        _finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel, until)
+            ax.plot(t[shown], values[shown], label=name, **look(mark, **DOTS))
+        plotting.finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel)
         ax.label_outer()
     return figure
 
@@ -93,13 +96,14 @@ def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figur
 def baseline_forces(run: Experiment) -> Figure:
     """Draw both force getters of the baseline: they answer different questions."""
     (figure, ax), trace = plotting.axes(3.4), run.traces["baseline"]
-    _limits(ax, trace, BEFORE_REST)
-    for name, array, mark, label in (
-        ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
-        ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
+    ax.axhline(float(trace.effort_limit[ENTRY]), label="limit, read back", **LIMIT)
+    for name, array, mark in (
+        ("get_dofs_control_force", trace.control_force, "baseline"),
+        ("get_dofs_force", trace.internal_force, "other"),
     ):
-        _curve(ax, trace.t_step, array[:, ENTRY], look(mark, **DOTS), name, label)
-    _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", BEFORE_REST)
+        ax.plot(trace.t_step, array[:, ENTRY], label=name, **look(mark, **DOTS))
+    ax.set_xlim(-0.005, BEFORE_REST)
+    plotting.finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]")
     return figure
 
 
@@ -107,7 +111,7 @@ def defined(run: Experiment) -> Figure:
     """Draw the position of the example with its rise and settling time, overshoot, final error."""
     (figure, ax), trace, m = plotting.axes(4), run.traces[EXAMPLE], run.metrics[EXAMPLE]
     q = trace.q[:, ENTRY]
-    _target(ax, float(trace.target[0, ENTRY]), SETTLING_BAND)
+    _target(ax, trace)
     ax.plot(trace.t, q, marker=".", markersize=6, **look("further"))
     for value, unit, time, name, height, start in (
         (m.rise_time, "s", m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
@@ -122,43 +126,76 @@ def defined(run: Experiment) -> Figure:
             text, place = f"{name} {format_value(value, unit)}", (float(trace.t[at]), float(q[at]))
             ax.annotate(text, place, (0.98, height), textcoords="axes fraction", ha="right",
                         va="center", arrowprops=arrow)  # fmt: skip
-    _finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]", START)
+    ax.set_xlim(-0.005, START)
+    plotting.finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]")
     return figure
 
 
-def _curve(
-    ax: Axes, t: FloatArray, values: FloatArray, style: Mapping[str, Any], name: str,
-    label: Label | None,
-) -> None:  # fmt: skip
-    """Draw a curve, and with a label its name beside the sample that is nearest to a time."""
-    ax.plot(t, values, **style)
-    if label:
-        time, offset = label
-        n = int(np.abs(t - time).argmin())
-        ax.annotate(name, (float(t[n]), float(values[n])), offset, textcoords="offset points",
-                    color=style["color"], fontweight="bold")  # fmt: skip
+def _target(ax: Axes, trace: Trace) -> None:
+    """Draw the target of the stepped joint in its settling band."""
+    value = float(trace.target[0, ENTRY])
+    ax.axhspan(value - SETTLING_BAND, value + SETTLING_BAND, color=BAND, zorder=0)
+    ax.axhline(value, label=f"target ±{SETTLING_BAND:g} rad", **LINE)
 
 
-def _target(ax: Axes, value: float, band: float | None = None) -> None:
-    """Draw the target with its settling band, and name both: at the right edge below the band."""
-    name, place, offset, side = "target", (0.0, value), (4, -4), "left"
-    if band is not None:
-        ax.axhspan(value - band, value + band, color=BAND, zorder=0)
-        name, place, offset, side = f"target ±{band:g} rad", (1.0, value - band), (-4, -4), "right"
-    ax.axhline(value, **LINE)
-    ax.annotate(name, place, offset, xycoords=ax.get_yaxis_transform(),
-                textcoords="offset points", ha=side, va="top")  # fmt: skip
+# The deeper pages
 
 
-def _limits(ax: Axes, trace: Trace, until: float) -> None:
-    """Draw both limits that were read back, and name the upper one."""
-    limit = float(trace.effort_limit[ENTRY])
-    ax.axhline(limit, **LIMIT)
-    ax.axhline(-limit, **LIMIT)
-    ax.set_ylim(-1.25 * limit, 1.25 * limit)
-    ax.annotate("limit, read back", (until, limit), (-4, 4), textcoords="offset points",
-                ha="right", color=LIMIT["color"])  # fmt: skip
+def theory(run: Experiment) -> Figure:
+    """Draw the compared cases over the ideal joint's response, one case on each axes."""
+    start, t, figure = spec.BASELINE.q_start[ENTRY], run.traces["G1"].t, plotting.figure(7)
+    axes = figure.subplots(len(study_spec.COMPARED), 1, sharex=True)
+    for ax, name in zip(axes, study_spec.COMPARED, strict=True):
+        ideal = start + spec.STEP * study.ideal(run, name).response(t)
+        ax.axhline(start + spec.STEP, **LINE)
+        ax.plot(t, ideal, label="ideal joint", **IDEAL)
+        ax.plot(t, run.traces[name].q[:, ENTRY], label="measured", **look(CASE_MARKS[name]))
+        ax.set(title=name, xlim=(0, 0.4), xlabel="time [s]", ylabel=f"q of {STEPPED_JOINT} [rad]")
+        ax.legend(loc="lower right")
+        ax.label_outer()
+    return figure
 
 
-def _finish(ax: Axes, title: str, ylabel: str, until: float) -> None:
-    ax.set(title=title, xlabel="time [s]", ylabel=ylabel, xlim=(-0.005, until))
+def step_size(run: Experiment) -> Figure:
+    """Draw the response to both heights of the step over the ideal joint's, a case on each axes.
+
+    The curve of the ideal joint is dashed.
+    """
+    t, figure = run.traces["G1"].t, plotting.figure(5.6)
+    axes = figure.subplots(2, 1, sharex=True)
+    for ax, name in zip(axes, study_spec.SMALL_STEPPED, strict=True):
+        ax.axhline(1.0, **LINE)
+        ax.plot(t, study.ideal(run, name).response(t), label="ideal joint", **IDEAL)
+        small, large = study.share(run, name, "small"), study.share(run, name)
+        ax.plot(t, small, label=f"+{study_spec.SMALL_STEP:g} rad", **look("other"))
+        ax.plot(t, large, label=f"+{spec.STEP:g} rad", **look(CASE_MARKS[name]))
+        ax.set(title=name, xlim=(0, 0.4), xlabel="time [s]", ylabel="share of the step")
+        ax.legend(loc="lower right")
+        ax.label_outer()
+    return figure
+
+
+def overshoot_by_step(run: Experiment) -> Figure:
+    """Draw the overshoot of G2 over the solver's step for each engine.
+
+    The mark of an unstable run is hollow, and no line leads there.
+    """
+    figure, ax = plotting.axes(3.8)
+    steps = 1000 * spec.G2.dt / np.array(study_spec.SUBSTEPS_STUDIED)
+    for engine, label in ENGINE_LABELS.items():
+        style = ENGINE_STYLES[label] | {"markersize": 6}
+        found = study.overshoot_by_substeps(run, engine)
+        hollow = np.array([study.unstable(run, engine, n) for n in found])
+        values = np.array([*found.values()])
+        ax.plot(steps[~hollow], values[~hollow], label=label, **style)
+        if hollow.any():
+            empty = style | {"linestyle": "", "markerfacecolor": PARTS["ground"].light}
+            ax.plot(steps[hollow], values[hollow], label=f"{label}, unstable", **empty)
+    ax.axvline(1000 * study.H, **LINE)
+    ax.annotate("the lesson's step", (1000 * study.H, 0), (-4, 4), textcoords="offset points",
+                ha="right")  # fmt: skip
+    log_axis(ax, steps, "solver step h [ms]")
+    ax.set_ylabel("overshoot of G2 [rad]")
+    ax.set_ylim(0, 1.4 * ax.get_ylim()[1])  # space for the legend
+    ax.legend(loc="upper left")
+    return figure

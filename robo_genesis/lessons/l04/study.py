@@ -193,21 +193,6 @@ def braking_error(trace: Trace) -> float:
     return float(left[brakes.argmax()] * brakes.any())
 
 
-def first_speed(run: Experiment, case: str, term: float) -> float:
-    """Return the stepped joint's speed [rad/s] after the first step, its neighbours held still.
-
-    Args:
-        run: inertia, passive damping and gravity of the start pose.
-        case: one of the compared cases; the demand on its motor is far above the limit.
-        term: the integrator's addition to the passive damping on the inertia's side [N·m·s/rad].
-    """
-    readings, limit = run.readings[GROUP], float(study_spec.COMPARED[case].effort_limit[ENTRY])
-    damping, gravity = (readings[n] for n in ("passive_damping", "gravity_at_start_Genesis"))
-    joint = replace(ideal(run, case), damping=damping + term)
-    path = stepped_joint(joint, damping, spec.STEP, H, SUBSTEPS, limit, gravity)
-    return float(path[-1] - path[-2]) / H
-
-
 def unstable_joints(trace: Trace) -> list[str]:
     """Name the joints with a clipped effort in so many samples that the run is called unstable."""
     share = is_saturated(trace.control_force, trace.effort_limit).mean(axis=0)

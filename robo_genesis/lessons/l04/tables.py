@@ -1,25 +1,17 @@
 """Tables of L04: the robot, the metrics, and what the studies of the stepped joint measured."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from robo_genesis.core.comparison import HELD_BY, compare, order
+from robo_genesis.core.comparison import Relation
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import as_table, markdown
 from robo_genesis.core.tables import metric_table as by_case
 from robo_genesis.core.text import format_value
 from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
-from robo_genesis.lessons.l04.theory import overshoot_share
+from robo_genesis.lessons.l04.metrics import StepMetrics
 
 MEASURES = False
-
-CLOSE = "too close to call"  # The outcome where two values differ by less than the margin
-OUTCOMES = {
-    (False, True): "held", (False, False): "**did not hold**",
-    (True, True): f"held ({CLOSE})", (True, False): CLOSE,
-}  # fmt: skip
-"""By whether it is close, and whether it held, the outcome of a prediction."""
 
 ENGINE_LABELS = {
     engine: engine if engine == "Genesis" else f"MuJoCo {engine}" for engine in study.ENGINES
@@ -38,13 +30,6 @@ def share_text(share: float) -> str:
 def margin_text(metric: str) -> str:
     """Write the margin of a metric with its unit."""
     return f"{spec.MARGINS[metric]:g} {'samples' if UNITS[metric] == '1' else UNITS[metric]}"
-
-
-def damping_word(zeta: float) -> str:
-    """Name the regime of a damping ratio."""
-    if abs(zeta - 1) < 5e-3:
-        return "critically damped"
-    return "underdamped" if zeta < 1 else "overdamped"
 
 
 def model_table(run: Experiment) -> str:
@@ -96,23 +81,21 @@ def first_demand(run: Experiment) -> Iterator[Row]:
 
 @as_table
 def outcomes_of_predictions(run: Experiment) -> Iterator[Row]:
-    """Return the outcome of each prediction of the lesson; a close one is too close to call."""
-    for (one, other), metric, claim, margin in spec.RELATIONS:
-        found = compare(metric, run.metrics[one], run.metrics[other], spec.RESOLUTION, margin)
-        close = found.order == "equal" and found.first != found.second
-        held = {found.order, order(found.first, found.second, 0)} <= {*HELD_BY[claim]}
-        outcome = OUTCOMES[close, held] if found.order else "cannot be judged"
+    """Return the values and the outcome of each prediction of the lesson."""
+    for relation in spec.RELATIONS:
+        (first, second), metric, claim, _ = relation
         yield {
-            "prediction": f"{found.label}: {other} {claim} than {one}",
-            "measured": _change((found.first, found.second), metric),
+            "prediction": f"{NOUNS[metric]}: {second} {claim} than {first}",
+            "measured": _change(run.metrics, relation),
             "margin": margin_text(metric),
-            "outcome": outcome,
+            "outcome": study.relation_outcome(run, "Genesis", relation)[0],
         }
 
 
-def _change(values: Iterable[float | None], metric: str) -> str:
-    """Write a metric of two cases: `0.12 s → 0.11 s`."""
-    return " → ".join(format_value(value, UNITS[metric]) for value in values)
+def _change(found: Mapping[str, StepMetrics], relation: Relation) -> str:
+    """Write the metric of an ordering for its two cases: `0.12 s → 0.11 s`."""
+    cases, metric, *_ = relation
+    return " → ".join(format_value(getattr(found[of], metric), UNITS[metric]) for of in cases)
 
 
 @as_table
@@ -152,22 +135,8 @@ def ideal_table(run: Experiment) -> Iterator[Row]:
             "KP [N·m/rad]": ideal.kp,
             "KV + passive damping [N·m·s/rad]": ideal.damping,
             "ζ": f"{ideal.zeta:.2f}",
-            "ideal joint": damping_word(ideal.zeta),
             "ideal overshoot [share of step]": share_text(ideal.overshoot),
         }
-
-
-@as_table
-def step_size_table(run: Experiment) -> Iterator[Row]:
-    """Return overshoot and distance from theory at both heights of the step."""
-    for case in study_spec.SMALL_STEPPED:
-        ideal = study.ideal(run, case)
-        row = {"case": case, "overshoot, ideal": share_text(ideal.overshoot)}
-        for height, kind in ((study_spec.SMALL_STEP, "small"), (spec.STEP, "")):
-            share, distance = study.share(run, case, kind), study.off_ideal(run, case, kind)
-            row[f"overshoot, +{height:g} rad"] = share_text(overshoot_share(share))
-            row[f"largest distance, +{height:g} rad"] = share_text(distance)
-        yield row
 
 
 @as_table
@@ -181,32 +150,6 @@ def stepped_table(run: Experiment) -> Iterator[Row]:
                 head: share_text(of / height) if height == small else format_value(of, "rad")
                 for head, of in zip(heads, found, strict=True)
             }
-
-
-@as_table
-def explicit_table(run: Experiment) -> Iterator[Row]:
-    """Return for G2 the explicit damping ratio of each joint, and its clipped samples in MuJoCo."""
-    ratio, engines = study.damping_ratio("G2"), study.by_engine(run, "G2")
-    for k, joint in enumerate(run.joints.names):
-        row = {"joint": joint, "h (KV + d) / I": f"{ratio[k]:.2f}"}
-        for name in study_spec.SECOND_INTEGRATORS:
-            clipped = is_saturated(engines[name].control_force, engines[name].effort_limit)
-            row[f"clipped, {name}"] = format_value(int(clipped[:, k].sum()), "1")
-        yield row
-
-
-@as_table
-def first_step_table(run: Experiment) -> Iterator[Row]:
-    """Return for each compared case the stepped joint's speed after the first step, by engine."""
-    for case, settings in study_spec.COMPARED.items():
-        speeds = {
-            "alone, with the term": study.first_speed(run, case, float(settings.kv[spec.ENTRY])),
-            "alone, without it": study.first_speed(run, case, 0.0),
-        } | {
-            ENGINE_LABELS[engine]: float(trace.qd[0, spec.ENTRY])
-            for engine, trace in study.by_engine(run, case).items()
-        }
-        yield {"case": case} | {n: format_value(v, "rad/s") for n, v in speeds.items()}
 
 
 @as_table
@@ -225,12 +168,11 @@ def convergence_table(run: Experiment) -> Iterator[Row]:
 def relation_table(run: Experiment) -> Iterator[Row]:
     """Return for each ordering that the lesson claims its state and values in each engine."""
     for relation in spec.RELATIONS:
-        (first, second), metric, order, _ = relation
-        row = {"claim": f"{NOUNS[metric]}: {second} {order} than {first}"}
+        (first, second), metric, claim, _ = relation
+        row = {"claim": f"{NOUNS[metric]}: {second} {claim} than {first}"}
         for engine, label in ENGINE_LABELS.items():
-            found = study.compared(run, engine)
-            values = _change((getattr(found[case], metric) for case in (first, second)), metric)
             state, _ = study.relation_outcome(run, engine, relation)
+            values = _change(study.compared(run, engine), relation)
             row[label] = f"{'unstable' if study.unstable(run, engine) else state}: {values}"
         yield row
 

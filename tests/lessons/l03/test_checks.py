@@ -75,7 +75,6 @@ SPOILERS = {
     "energy_converges": [metric("bounce_sub100", first_kept=of) for of in (90.0, None)],
     "posture": [frames(initial="initial", final="initial")],
     "time_constants": [reading(study.GROUP, "h_20000us", 0.01)],
-    "records_each_step": [moved(study_spec.AS_BASELINE, 1e-5, first=20, end=40)],
     "rebound_goes": [moved("h_500us_10000", 0.002, first=-20, end=-19), never_rebounding],
     "scatter_shrinks": [deeper("h_125us_10000")],
     "depth_by_hand": [deeper("h_125us_10000")],

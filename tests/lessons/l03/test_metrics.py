@@ -132,7 +132,7 @@ def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
 
 def test_the_table_of_both_engines_says_when_runs_separate(experiments):
     rows = tables.engines(experiments["contact"]).splitlines()[2:]
-    assert re.fullmatch(r"\| landing, h = 5\u00a0ms \|.*\| never \| – and – \|", rows[0])
+    assert re.fullmatch(r"\| landing, h = 5 ms \|.*\| never \| – and – \|", rows[0])
     assert re.match(r"\| landing, h = 5 ms, MuJoCo's own contact \|(?!.*never)", rows[-1])
 
 

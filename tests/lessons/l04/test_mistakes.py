@@ -7,7 +7,6 @@ import pytest
 
 from robo_genesis.core.checks import Check
 from robo_genesis.lessons.l04 import mistakes, spec
-from robo_genesis.lessons.l04.backend_mistake import absent_backend_failure
 
 STAY = replace(spec.BASELINE, q_target=spec.BASELINE.q_start)
 AT_START = replace(spec.G2, q_target=spec.G2.q_start)
@@ -33,26 +32,6 @@ def test_a_symptom_is_not_found_where_nothing_is_wrong(lab, mistake, args, says)
     found = mistake(arm, *args)
     assert not found.shown
     assert says in found.evidence
-
-
-GONE = ["GenesisException", "Backend ~~<gs.cuda>~~ not available on this machine."]
-FALLS = "Backend ~~<gs.gpu>~~ not available on this machine. Falling back to CPU."
-
-
-@pytest.mark.parametrize(
-    ("answer", "shown", "words"),
-    [
-        ((GONE, "cpu", [FALLS]), True, "Backend <gs.cuda> not available"),
-        ((GONE, "amdgpu", []), True, "started on `amdgpu`; its warnings (0): none"),
-        ((GONE, "cpu", [FALLS, FALLS]), False, "its warnings (2)"),
-        ((None, None, []), False, "`gs.init(backend=gs.cuda)` raised nothing."),
-    ],
-)
-def test_an_absent_backend_is_shown_where_it_raises_and_falls_back(answer, shown, words):
-    found = absent_backend_failure("cuda", *answer)
-    assert found.shown is shown
-    assert words in found.evidence
-    assert "~" not in found.evidence
 
 
 def test_mistakes_of_reading_are_not_found_where_nothing_is_wrong(traces):

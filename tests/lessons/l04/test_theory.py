@@ -4,7 +4,6 @@ import control
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l04 import study
 from robo_genesis.lessons.l04.theory import IdealJoint, step_share
 
 T = np.linspace(0, 1.2, 24001)
@@ -34,14 +33,3 @@ def test_what_acts_on_both_runs_is_gone_from_the_share(make_trace):
     response, sag = np.array([0.0, 0.2, 0.5, 0.8, 1.0]), -0.02 * np.arange(5)
     share = step_share(make_trace(0.5 * response + sag, 0.5), make_trace(sag, 0.0), 0)
     assert share == pytest.approx(response)
-
-
-@pytest.mark.parametrize("term", [0.0, 100.0])
-def test_the_joint_alone_is_the_equation_by_hand(experiments, term):
-    run = experiments["integrator"]
-    given = run.readings[study.GROUP]
-    damping, h = given["passive_damping"], 0.005
-    mass = given["inertia_Genesis"] + h * (damping + term)
-    after_one = h * (87.0 - given["gravity_at_start_Genesis"]) / mass
-    more = h * (87.0 - given["gravity_at_start_Genesis"] - damping * after_one) / mass
-    assert study.first_speed(run, "G1", term) == pytest.approx(after_one + more)

@@ -34,7 +34,7 @@ def test_a_page_s_size(tmp_path):
     cells = [
         new_markdown_cell(f"{'word ' * 400}\n\n{EXCERPT}\n\n{asked}"),
         new_code_cell("a = 1\n\nb = 2\npage.show(l04.plots.baseline)"),
-        new_code_cell("page.show(l04.study_plots.theory)", metadata={"tags": ["hide-input"]}),
+        new_code_cell("page.show(l04.plots.step_size)", metadata={"tags": ["hide-input"]}),
         new_code_cell("c = 3"),
     ]
     found = sizes.size(new_notebook(cells=cells), tmp_path / "lecture.md")
