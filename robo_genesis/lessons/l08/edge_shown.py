@@ -8,7 +8,7 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l08 import edge, rates, spec
+from robo_genesis.lessons.l08 import edge, metrics, rates, spec
 from robo_genesis.lessons.l08.edge_checks import pairs
 from robo_genesis.lessons.l08.text import rate
 
@@ -37,16 +37,6 @@ def side_table(run: Experiment) -> Iterator[dict[str, str]]:
         own = (along >= low) & (along < high)
         words = f"from {low:g} to {high:g}".replace("from -inf to", "below")
         yield {"noise [mm]": words.replace(" to inf", " on").replace("-", "−")} | {
-            spec.LABELS[n]: f"{edge.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
+            spec.LABELS[n]: f"{metrics.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
             for n in ("plain", "corrected")
         }
-
-
-@tables.as_table
-def box_table(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return what different words count in the episodes with boxes."""
-    for words, name in (
-        ("all phases done", "finished"), ("horizontally in the bowl", "over_bowl"),
-        ("all seven rungs", "resting"), ("hanging in the hand", "hanging"),
-    ):  # fmt: skip
-        yield {"counted": words} | rate(getattr(run.metrics["boxes"], name), edge.PAIRS)

@@ -42,21 +42,14 @@ def errors(run: Experiment, batch: str = "askew") -> Figure:
     case = run.cases[batch]
     error = 1000 * (case.beliefs - case.starts)
     level = metrics.reached(run.traces[batch], case)
-    for name, mark, sign in (
-        ("placed", "baseline", "o"), ("slipped", "first", "s"), ("tipped", "second", "^"),
-        ("pushed", "third", "x"),
-    ):  # fmt: skip
-        rung = spec.REACH[name]
-        own = level == rung
-        ax.plot(*error[own].T, sign, color=look(mark)["color"], markersize=4, label=SIGNS[rung])
+    for (name, mark), sign in zip(spec.CASE_MARKS.items(), "os^x", strict=True):
+        own = error[level == spec.REACH[name]]
+        style = {"color": look(mark)["color"], "markersize": 4, "label": spec.LABELS[name]}
+        ax.plot(*own.T, sign, **style)
     ax.axvline(0, **LINE)
     ax.set(xlabel="error along the pads, x [mm]", ylabel="error across the pads, y [mm]")
     legend_above(ax, "Each sign is an episode")
     return figure
-
-
-SIGNS = {7: "in the bowl", 3: "grip lost on the way", 2: "lost in the lift", 1: "never held"}
-"""By number of rungs, the words of the legend."""
 
 
 def creep(run: Experiment) -> Figure:

@@ -9,11 +9,22 @@ from robo_genesis.lessons.l08 import metrics, rates, spec
 
 MEASURES = False
 
-WORDS = {
-    "finished": "all phases done", "raised_once": "lifted at some time",
-    "in_bowl": "in the bowl at the end", "resting": "all seven rungs",
-}  # fmt: skip
-"""Definitions of success, from the most careless on."""
+COUNTED = {
+    "success means": {
+        "all phases done": ("askew", "finished"),
+        "lifted at some time": ("askew", "raised_once"),
+        "in the bowl at the end": ("askew", "in_bowl"),
+        "all seven rungs": ("askew", "resting"),
+    },
+    "expert": {spec.LABELS[name]: (name, "resting") for name in spec.COUNTED},
+    "counted": {
+        "all phases done": ("boxes", "finished"),
+        "horizontally in the bowl": ("boxes", "over_bowl"),
+        "all seven rungs": ("boxes", "resting"),
+        "hanging in the hand": ("boxes", "hanging"),
+    },
+}
+"""By head of a table and by row, what is counted: a batch and a metric."""
 
 
 def rate(successes: float, of: int) -> dict[str, str]:
@@ -25,12 +36,14 @@ def rate(successes: float, of: int) -> dict[str, str]:
     }  # fmt: skip
 
 
-@tables.as_table
-def words_table(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return what each definition of success counts in the same episodes."""
-    for name, words in WORDS.items():
-        count = getattr(run.metrics["askew"], name)
-        yield {"success means": words} | rate(count, len(spec.STARTS))
+def rate_table(run: Experiment, head: str) -> str:
+    """Return the rates of a table of `COUNTED`, with their intervals."""
+    return tables.markdown(
+        [
+            {head: words} | rate(getattr(run.metrics[batch], name), len(run.cases[batch].starts))
+            for words, (batch, name) in COUNTED[head].items()
+        ]
+    )
 
 
 @tables.as_table
@@ -42,11 +55,3 @@ def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
         yield {"rung": rung, spec.LABELS["exact"]: exact, spec.LABELS["askew"]: askew,
                "of these fail here first": left - askew}  # fmt: skip
         left = askew
-
-
-@tables.as_table
-def rate_table(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return the rates of success with their intervals."""
-    for name in spec.COUNTED:
-        of = len(spec.BATCHES[name].starts)
-        yield {"expert": spec.LABELS[name]} | rate(run.metrics[name].resting, of)

@@ -38,7 +38,7 @@ def test_the_checks_accept_the_episodes(episodes):
     for figure in (plots.posture, plots.phases, plots.errors, plots.creep):
         assert figure(episodes).axes
     assert text.rung_table(episodes).count("\n") == len(metrics.RUNGS) + 2
-    assert "of 256" in text.words_table(episodes)
+    assert "of 256" in text.rate_table(episodes, "success means")
 
 
 LOST = [
