@@ -1,29 +1,18 @@
 """What a table scene of L07 does: it rests, and the robot tries to lift its object."""
 
-from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
-
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import lifting
-from robo_genesis.sim.arm.engine_kinematics import IkSettings
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.reaching import ONE_START
 from robo_genesis.sim.bodies.table import SceneCase, World
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiftCase(SceneCase):
-    """The same scene; the object begins at the `spot` (x, y), and the robot tries to lift it."""
-
-    spot: tuple[float, float] = (0.55, 0.0)
-    settings: IkSettings
-
-    @property
-    def centre(self) -> FloatArray:
-        """Centre (3,) of the object at the spot [m]."""
-        return np.array([*self.spot, self.gap + self.size[2] / 2])
+def lifts(case: Any) -> bool:
+    """Return whether a case is a lift, which has the steps of all its phases."""
+    return bool(case.steps == lifting.ENDS["hold"])
 
 
 def rest(world: World, joints: JointMap, case: SceneCase) -> tuple[Trace, float]:
@@ -43,10 +32,10 @@ def rest(world: World, joints: JointMap, case: SceneCase) -> tuple[Trace, float]
     return trace, depths[0]
 
 
-def lift(world: World, joints: JointMap, case: LiftCase) -> tuple[Trace, dict[str, int]]:
-    """Lift the object from the spot; return the run and the counts of `contact_counter`."""
-    points = lifting.waypoints((*case.spot, 0.0), case.size[2])
-    answers = lifting.ask(world.robot, joints, case.q_start, case.settings, points)
+def lift(world: World, joints: JointMap, case: SceneCase) -> tuple[Trace, dict[str, int]]:
+    """Lift the object from the place of a lift; return run and counts of `contact_counter`."""
+    points = lifting.waypoints(case.place, case.size[2])
+    answers = lifting.ask(world.robot, joints, case.q_start, ONE_START, points)
     command = case.commanding(lifting.lift_command(case.q_start, answers))
     counts, after = lifting.contact_counter(world.robot, world.body)
     bodies = (world.body, world.ball)

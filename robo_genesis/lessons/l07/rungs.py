@@ -99,11 +99,6 @@ def passed(values: Mapping[str, float]) -> bool:
     )
 
 
-def verdicts(run: Experiment, scene: str) -> dict[str, bool]:
-    """Return by rung whether a scene passes it."""
-    return {rung: passed(values) for rung, values in measured(run, scene).items()}
-
-
 def failed(run: Experiment, scene: str) -> list[str]:
     """Return the rungs that a scene fails."""
-    return [rung for rung, good in verdicts(run, scene).items() if not good]
+    return [rung for rung, values in measured(run, scene).items() if not passed(values)]

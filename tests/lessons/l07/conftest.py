@@ -25,10 +25,10 @@ def trace_of(name: str, case: table.SceneCase) -> Trace:
         answers = [answer(target, spec.GOOD.q_start, 20).q for target in case.targets]
         before = driven(spec.GOOD.commanding(spec.GOOD.q_start), LINKS)
         return table_map.with_bodies(assigned(case.start, LINKS, before, np.stack(answers)))
-    lifts = isinstance(case, run.LiftCase)
+    lifts = run.lifts(case)
     command = case.q_start
     if lifts:
-        points = lifting.waypoints((*case.spot, 0.0), case.size[2])
+        points = lifting.waypoints(case.place, case.size[2])
         answers = [answer(point, case.q_start, 50) for point in points]
         command = lifting.lift_command(case.q_start, answers)
     arm = driven(case.commanding(command), LINKS)
