@@ -9,8 +9,7 @@ from robo_genesis.core.checks import Finding, above, at_most, below, equal, mode
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import rungs, spec
-from robo_genesis.lessons.l07.metrics import OBJECT
-from robo_genesis.lessons.l07.run import lifts
+from robo_genesis.lessons.l07.metrics import OBJECT, lifts
 from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
 from robo_genesis.sim.arm.laws import assigned_postures, commanded, dynamics, model_joints

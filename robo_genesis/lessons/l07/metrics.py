@@ -6,7 +6,6 @@ import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07.run import lifts
 from robo_genesis.sim.arm.kinematics import HAND
 from robo_genesis.sim.arm.lifting import ENDS
 from robo_genesis.sim.bodies.table import SceneCase
@@ -28,6 +27,11 @@ class SceneMetrics(CaseMetrics):
     pushed: float | None = metric("m", "pushed before closing", "link_pos_m")
     rise: float | None = metric("m", "rise of the object", "link_pos_m")
     hand_rise: float | None = metric("m", "rise of the hand", "link_pos_m")
+
+
+def lifts(case: SceneCase) -> bool:
+    """Return whether a case is a lift, which has the steps of all its phases."""
+    return bool(case.steps == ENDS["hold"])
 
 
 def scene_metrics(trace: Trace, case: SceneCase) -> SceneMetrics:

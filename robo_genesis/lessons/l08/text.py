@@ -1,11 +1,17 @@
 """Tables of L08, each a function of the experiment."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l08 import metrics, rates, spec
+from robo_genesis.core.text import scaled_value
+from robo_genesis.lessons.l08 import creep, edge, metrics, rates, spec
+from robo_genesis.lessons.l08.creep_checks import share_of
+from robo_genesis.lessons.l08.edge_checks import pairs
 
 MEASURES = False
 
@@ -55,3 +61,42 @@ def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
         yield {"rung": rung, spec.LABELS["exact"]: exact, spec.LABELS["askew"]: askew,
                "of these fail here first": left - askew}  # fmt: skip
         left = askew
+
+
+@tables.as_table
+def pair_table(run: Experiment) -> Iterator[dict[str, Any]]:
+    """Return the outcomes of both experts at the first starts, and p of the paired test."""
+    for n in (16, 32, 64, edge.PAIRS):
+        both, alone, worse, none = pairs(run, n)
+        plain, other = (rate(k, n)["95 % interval [%]"] for k in (both + worse, both + alone))
+        yield {
+            "starts": n, "plain [%]": plain, "corrected [%]": other, "both": both,
+            "only corrected": alone, "only plain": worse, "none": none,
+            "p": f"{rates.paired(alone, worse):.2g}",
+        }  # fmt: skip
+
+
+@tables.as_table
+def side_table(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return successes by the error along the pads, before any correction."""
+    along = 1000 * (run.cases["plain"].beliefs - run.cases["plain"].starts)[:, 0]
+    edges = np.array([-np.inf, -8, -4, 0, 4, 8, np.inf])
+    for low, high in pairwise(edges):
+        own = (along >= low) & (along < high)
+        words = f"from {low:g} to {high:g}".replace("from -inf to", "below")
+        yield {"noise [mm]": words.replace(" to inf", " on").replace("-", "−")} | {
+            spec.LABELS[n]: f"{metrics.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
+            for n in ("plain", "corrected")
+        }
+
+
+@tables.as_table
+def creep_changes(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return what users change, and the share of the creep that it leaves in both engines."""
+    for name, (words, other, price) in creep.CHANGES.items():
+        shares = {
+            head: f"{share_of(run, engine + name, engine + other):z.3f}"
+            for head, engine in (("Genesis", ""), ("MuJoCo", "mujoco_"))
+        }
+        depth = scaled_value(run.metrics[name].depth, "µm").removesuffix(" µm")
+        yield {"change": words} | shares | {"depth [µm]": depth, "price": price}

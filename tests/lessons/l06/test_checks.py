@@ -7,7 +7,7 @@ import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l06 import checks, spec
-from robo_genesis.lessons.l06.laws import laws_of_motion
+from robo_genesis.lessons.l06.checks import laws_of_motion
 from robo_genesis.lessons.l06.run import commands
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
 from robo_genesis.sim.arm.kinematics import HAND
