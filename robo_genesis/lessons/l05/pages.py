@@ -1,9 +1,6 @@
 """The measuring pages of L05, and its declaration."""
 
 from dataclasses import replace
-from typing import Any
-
-import numpy as np
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
@@ -14,15 +11,8 @@ from robo_genesis.lessons.l05 import checks, spec, study
 from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record as view_record
-from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 MEASURES = False
-
-
-def target_part(marker: Any) -> list[Part]:
-    """Return the shape of a fixed sphere at the lesson's target, for the replay."""
-    parts = read_shape(marker)
-    return [replace(p, link=WORLD, vertices=p.vertices + np.float32(spec.TARGET)) for p in parts]
 
 
 MODEL = {"model": counts(spec.EXPECTED_MODEL)}

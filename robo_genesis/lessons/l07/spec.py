@@ -129,13 +129,8 @@ RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)
 """How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 
-def parameters() -> dict[str, Any]:
-    """Return every configured input of the scenes as JSON values, for the evidence key."""
-    return parameters_of(runs("baseline"))
-
-
-def parameters_of(cases: dict[str, Any]) -> dict[str, Any]:
-    """Return the inputs of a page with these runs."""
+def parameters(cases: dict[str, Any]) -> dict[str, Any]:
+    """Return every configured input of a page with these runs as JSON values, for its key."""
     of_scene = ("TABLE", "FLOOR", "ON_HAND", "BALL_HEIGHT")
     of_lift = ("PHASES", "PAD", "HAND_TO_PAD", "ABOVE", "RISE")
     further = {n: getattr(of, n) for of, ns in ((table, of_scene), (lifting, of_lift)) for n in ns}
