@@ -24,6 +24,8 @@ def test_a_point_behind_the_camera_has_no_pixel():
     behind = TRANSFORM[:3, 3] + TRANSFORM[:3, 2]
     assert np.isnan(cameras.project(behind, K, TRANSFORM)).all()
 
+
+def test_other_axes_of_other_axes_are_the_first():
     assert cameras.other_axes(cameras.other_axes(TRANSFORM)) == pytest.approx(TRANSFORM)
 
 
