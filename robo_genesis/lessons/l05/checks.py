@@ -115,11 +115,10 @@ def sag_explains(run: Experiment) -> Iterator[Finding]:
     pose, except for at most 2 % of it, and the angle between them within 2 %.
     """
     for name, case in spec.CASES.items():
-        *_, share = study.sag_lengths(run.traces[name], case.kp)
+        *_, share, turn = study.sag_lengths(run.traces[name], case.kp)
         yield at_most(f"{name}.unexplained_share", share, spec.SAG_SHARE)
-        turn = np.linalg.norm(study.sag(run.traces[name].target[-1].astype(float), case.kp)[3:])
         found = run.metrics[name].tracking_angle
-        yield nearly(f"{name}.angle_rad", found, float(turn), spec.SAG_SHARE)
+        yield nearly(f"{name}.angle_rad", found, turn, spec.SAG_SHARE)
 
 
 def smaller_angles_explain_more(run: Experiment) -> Iterator[Finding]:

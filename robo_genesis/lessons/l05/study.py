@@ -106,16 +106,18 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
     return np.asarray(-kinematics.jacobian(q) @ angles)
 
 
-def sag_lengths(trace: Trace, kp: FloatArray) -> tuple[float, float, float]:
+def sag_lengths(trace: Trace, kp: FloatArray) -> tuple[float, float, float, float]:
     """Return the lengths of the measured motion from command to end and of the expected one [m].
 
-    The third number is the length of their difference as a share of the expected one.
+    The third number is the length of their difference as a share of the expected one, the fourth
+    the expected rotation [rad].
     """
     command = trace.target[-1].astype(float)
     found = measured_hand(trace, -1).position - kinematics.hand_pose(command).position
-    expected = sag(command, kp)[:3]
-    lengths = [float(np.linalg.norm(way)) for way in (found, expected, found - expected)]
-    return lengths[0], lengths[1], lengths[2] / lengths[1]
+    expected, turn = np.split(sag(command, kp), 2)
+    ways = (found, expected, found - expected, turn)
+    measured, computed, apart, turned = (float(np.linalg.norm(way)) for way in ways)
+    return measured, computed, apart / computed, turned
 
 
 def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
