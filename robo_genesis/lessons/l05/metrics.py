@@ -46,13 +46,7 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
 
     Raises:
         IndexError: the trace lacks the hand.
-        ValueError: the command changes.
     """
-    if (trace.target[case.ramp :] != trace.target[-1]).any():
-        raise ValueError(
-            f"The command changes after step {case.ramp}. Measure a run that ends with a constant "
-            "command."
-        )
     target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
     end, found = measured_hand(trace, -1), {"final_speed": float(np.abs(trace.qd[-1]).max())}
     path = measured_hand(trace, slice(None)).position

@@ -1,28 +1,18 @@
 """The measuring pages of L05, and its declaration."""
 
 from dataclasses import replace
-from typing import Any
-
-import numpy as np
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import MeasuringPage, Readings, Run, counts, runs_of
+from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import checks, spec, study
 from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record as view_record
-from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 MEASURES = False
-
-
-def target_part(marker: Any) -> list[Part]:
-    """Return the shape of a fixed sphere at the lesson's target, for the replay."""
-    parts = read_shape(marker)
-    return [replace(p, link=WORLD, vertices=p.vertices + np.float32(spec.TARGET)) for p in parts]
 
 
 MODEL = {"model": counts(spec.EXPECTED_MODEL)}
@@ -54,7 +44,7 @@ LECTURE = replace(
 LAB = with_functions(RECORDED, "chain", "damped", "accept", "project", "back_project")
 
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
-ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
+ANSWERS = runs_of(spec.QUESTIONS, measured=False, note=ANSWERS_NOTE)
 SOLUTIONS = MOTION.with_more(spec.solution_parameters, ANSWERS, checks=checks.SOLUTIONS)
 """The page about many solutions, the map of targets and the target beyond reach."""
 

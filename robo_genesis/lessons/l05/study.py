@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.experiment import Experiment, Readings, counts
+from robo_genesis.core.experiment import Experiment, Readings
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
@@ -18,7 +18,7 @@ from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.kinematics import ARM, Pose, measured_hand
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
-GROUP, REPEAT_GROUP, PRECISE, ITERATIONS = "ik", "ik_repeated", "ik_residuals", "iterations"
+GROUP, PRECISE, ITERATIONS = "ik", "ik_residuals", "iterations"
 """Groups of a bundle's metrics: what the engine's solver reported, also for smaller tolerances."""
 
 READINGS = {
@@ -28,27 +28,21 @@ READINGS = {
     }),
     PRECISE: Readings(dict.fromkeys(spec.PRECISE, "m")),
     ITERATIONS: Readings(dict.fromkeys(spec.PRECISE, "iterations"), "exact"),
-    REPEAT_GROUP: counts(["entries_that_differ"]),
 }  # fmt: skip
 """Residuals of the answers for the target and for one in the floor, with the height of the
-fingertips there; the residual for each tolerance, and the iterations to it; and the entries in
-which two answers to one question differ."""
+fingertips there; the residual for each tolerance, and the iterations to it."""
 
 
 def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
     """Give a page what the solver reports of the lesson's questions; this resets the scene."""
     reset(scene, robot, joints, spec.BASELINE.commanding(spec.BASELINE.q_start))
-    first, second, low = (
-        ask(robot, joints, case) for case in (spec.BASELINE, spec.BASELINE, spec.IN_THE_FLOOR)
-    )
+    first, low = (ask(robot, joints, case) for case in (spec.BASELINE, spec.IN_THE_FLOOR))
     tip = spec.IN_THE_FLOOR.position[2] - low.error[2] - kinematics.TIP
     values = (*kinematics.distances(first.error), *kinematics.distances(low.error), tip)
     page.readings[GROUP] = dict(zip(READINGS[GROUP].units, map(float, values), strict=True))
     needed = {name: iterations(robot, joints, case) for name, case in spec.PRECISE.items()}
     page.readings[PRECISE] = {name: left for name, (_, left) in needed.items()}
     page.readings[ITERATIONS] = {name: n for name, (n, _) in needed.items()}
-    differ = (first.q != second.q).sum() + (first.error != second.error).sum()
-    page.readings[REPEAT_GROUP] = {"entries_that_differ": int(differ)}
 
 
 def iterations(robot: Any, joints: JointMap, case: ReachCase) -> tuple[int, float]:
@@ -112,16 +106,18 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
     return np.asarray(-kinematics.jacobian(q) @ angles)
 
 
-def sag_lengths(trace: Trace, kp: FloatArray) -> tuple[float, float, float]:
+def sag_lengths(trace: Trace, kp: FloatArray) -> tuple[float, float, float, float]:
     """Return the lengths of the measured motion from command to end and of the expected one [m].
 
-    The third number is the length of their difference as a share of the expected one.
+    The third number is the length of their difference as a share of the expected one, the fourth
+    the expected rotation [rad].
     """
     command = trace.target[-1].astype(float)
     found = measured_hand(trace, -1).position - kinematics.hand_pose(command).position
-    expected = sag(command, kp)[:3]
-    lengths = [float(np.linalg.norm(way)) for way in (found, expected, found - expected)]
-    return lengths[0], lengths[1], lengths[2] / lengths[1]
+    expected, turn = np.split(sag(command, kp), 2)
+    ways = (found, expected, found - expected, turn)
+    measured, computed, apart, turned = (float(np.linalg.norm(way)) for way in ways)
+    return measured, computed, apart / computed, turned
 
 
 def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:

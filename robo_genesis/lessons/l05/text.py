@@ -69,8 +69,7 @@ def sag_table(run: Experiment) -> str:
     heads["not explained [%]"] = 1
     rows = {}
     for name, case in spec.CASES.items():
-        found, expected, rest = study.sag_lengths(run.traces[name], case.kp)
-        turned = np.linalg.norm(study.sag(run.traces[name].target[-1].astype(float), case.kp)[3:])
+        found, expected, rest, turned = study.sag_lengths(run.traces[name], case.kp)
         values = 1000 * np.array([found, expected, run.metrics[name].tracking_angle, turned])
         rows[spec.LABELS[name]] = *values, 100 * rest
     return tables.number_table("run", heads, rows)

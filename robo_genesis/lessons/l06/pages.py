@@ -7,7 +7,7 @@ import numpy as np
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import MeasuringPage, Run, runs_of
+from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import checks, spec, study, throughput
@@ -31,10 +31,7 @@ def target_parts() -> list[Part]:
 COPY_NOTE = "repeats another run of this page, and has no metrics of its own"
 
 WORLDS = MeasuringPage(
-    runs={
-        **runs_of(spec.CASES),
-        **{name: Run(world, False, COPY_NOTE) for name, world in spec.COPIES.items()},
-    },
+    runs=runs_of(spec.CASES) | runs_of(spec.COPIES, measured=False, note=COPY_NOTE),
     kind=Trace,
     joints=JOINT_NAMES,
     readings=study.READINGS,

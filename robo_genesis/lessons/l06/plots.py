@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator, ScalarFormatter
+from matplotlib.ticker import ScalarFormatter
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
@@ -57,10 +57,8 @@ def times(run: Experiment, name: str) -> FloatArray:
 def of_environments(ax: Axes, run: Experiment, title: str, ylabel: str) -> None:
     """Make both axes logarithmic and label them: numbers of environments to the right."""
     shown = [size for size in sizes(run) if size.bit_count() == 1]  # powers of two
-    ax.set_xscale("log")
-    ax.set_xticks(shown, [str(size) for size in shown])
-    ax.xaxis.set_minor_locator(NullLocator())
-    ax.set(xlabel="number of environments B", yscale="log", ylabel=ylabel)
+    plotting.log_axis(ax, shown, "number of environments B")
+    ax.set(yscale="log", ylabel=ylabel)
     plotting.legend_above(ax, title)
 
 

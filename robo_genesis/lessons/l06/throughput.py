@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.experiment import Readings, counts
+from robo_genesis.core.experiment import Readings, counts, json_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim import throughput as timing
 from robo_genesis.sim.arm.franka import Q_START
@@ -47,8 +47,7 @@ class Protocol:
 
     def parameters(self) -> dict[str, Any]:
         """Return every configured input as JSON values, for the evidence key."""
-        lists = {"sizes": list(self.sizes), "others": list(self.others)}
-        return {GROUP: asdict(self) | lists | {"raised": RAISED}}
+        return {GROUP: json_value(asdict(self)) | {"raised": RAISED}}
 
     def readings(self) -> dict[str, Readings]:
         """Return the groups of readings."""

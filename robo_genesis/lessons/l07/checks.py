@@ -9,8 +9,7 @@ from robo_genesis.core.checks import Finding, above, at_most, below, equal, mode
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import rungs, spec
-from robo_genesis.lessons.l07.metrics import OBJECT
-from robo_genesis.lessons.l07.run import LiftCase
+from robo_genesis.lessons.l07.metrics import OBJECT, lifts
 from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
 from robo_genesis.sim.arm.laws import assigned_postures, commanded, dynamics, model_joints
@@ -41,8 +40,8 @@ def reached(run: Experiment) -> Iterator[Finding]:
     its way.
     """
     for name, case in run.cases.items():
-        if isinstance(case, LiftCase) and case.size[1] <= spec.LIMITS["width"][1]:
-            points = lifting.waypoints((*case.spot, 0.0), case.size[2])
+        if lifts(case) and case.size[1] <= spec.LIMITS["width"][1]:
+            points = lifting.waypoints(case.place, case.size[2])
             for phase, point in zip(("settle", "hold"), points[1:], strict=True):
                 hand = measured_hand(run.traces[name], lifting.ENDS[phase]).position
                 yield at_most(f"{name}.{phase}_m", float(np.linalg.norm(hand - point)), 8e-3)
@@ -82,10 +81,9 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
             found = assigned_postures(robot, case.start, run.links[:OBJECT], run.traces.values())
             yield from kept(name, found)
             continue
-        free = lifting.ENDS["approach"] if isinstance(case, LiftCase) else trace.steps
-        alone = lifting.without_bodies(
-            trace, 2, free
-        )  # then the hand touches the object, which `dynamics` ignores
+        free = lifting.ENDS["approach"] if lifts(case) else trace.steps
+        # Then the hand touches the object, which `dynamics` ignores.
+        alone = lifting.without_bodies(trace, 2, free)
         moves = dynamics(alone, case.commanding(alone.target))
         driven = commanded(robot, case.commanding(robot.target), run.links[:OBJECT])
         yield from kept(name, chain(driven, moves))

@@ -6,7 +6,6 @@ import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm.kinematics import HAND
 from robo_genesis.sim.arm.lifting import ENDS
 from robo_genesis.sim.bodies.table import SceneCase
@@ -28,21 +27,24 @@ class SceneMetrics(CaseMetrics):
     pushed: float | None = metric("m", "pushed before closing", "link_pos_m")
     rise: float | None = metric("m", "rise of the object", "link_pos_m")
     hand_rise: float | None = metric("m", "rise of the hand", "link_pos_m")
-    opening: float | None = metric("m", "opening after closing", "q_rad_or_m")
+
+
+def lifts(case: SceneCase) -> bool:
+    """Return whether a case is a lift, which has the steps of all its phases."""
+    return bool(case.steps == ENDS["hold"])
 
 
 def scene_metrics(trace: Trace, case: SceneCase) -> SceneMetrics:
     """Measure one run of a scene."""
     at = trace.link_pos[:, OBJECT].astype(np.float64)
-    if not isinstance(case, LiftCase):
+    if not lifts(case):
         support = at[-1, 2] - case.size[2] / 2 - case.place[2]
         apart = np.linalg.norm(at - at[0], axis=1)[-1]
         window = np.ptp(at[-WINDOW - 1 :], axis=0).max()
         ball = trace.link_pos[-1, BALL, 2] - case.ball_radius
-        return SceneMetrics(*map(float, (support, apart, window, ball)), *[None] * 4)
+        return SceneMetrics(*map(float, (support, apart, window, ball)), *[None] * 3)
     before, opened, shut = (ENDS[name] for name in ("approach", "settle", "close"))
     hand = trace.link_pos[:, HAND, 2].astype(np.float64)
     pushed = np.linalg.norm(at[opened] - at[before])
     rises = at[-1, 2] - at[shut, 2], hand[-1] - hand[shut]
-    opening = trace.q[shut, -2:].astype(np.float64).sum()
-    return SceneMetrics(*[None] * 4, *map(float, (pushed, *rises, opening)))
+    return SceneMetrics(*[None] * 4, *map(float, (pushed, *rises)))

@@ -11,7 +11,7 @@ import numpy as np
 from robo_genesis.core.checks import Finding, above, equal
 from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l07 import run, spec
+from robo_genesis.lessons.l07 import spec, study
 from robo_genesis.lessons.l07.metrics import scene_metrics
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.bodies import table
@@ -71,7 +71,7 @@ def one_sided_friction(world: table.World, joints: JointMap) -> Mistake:
     for changed in (None, world.body, world.robot):
         if changed:
             changed.set_friction(SLIPPERY)
-        rises.append(1000 * (scene_metrics(run.lift(world, joints, case)[0], case).rise or 0))
+        rises.append(1000 * (scene_metrics(study.lift(world, joints, case)[0], case).rise or 0))
     before, alone, both = rises
     text = (
         f"With its own coefficient of {case.friction:g} the object rises {before:.1f} mm, and with "

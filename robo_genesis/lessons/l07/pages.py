@@ -28,7 +28,7 @@ def of_scenes(*scenes: str) -> MeasuringPage:
         with_camera={"pixels": study.group("outline", *scenes)},
         measure=scene_metrics,
         checks=checks.CHECKS,
-        parameters=lambda: spec.parameters_of(runs),
+        parameters=lambda: spec.parameters(runs),
         frames=("initial", "final", *record.frame_names(*rungs.CAMERAS)),
     )
 
@@ -36,7 +36,7 @@ def of_scenes(*scenes: str) -> MeasuringPage:
 LECTURE = (
     of_scenes(*spec.SCENES_OF_LECTURE)
     .with_more(
-        lambda: spec.parameters_of(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
+        lambda: spec.parameters(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
         runs_of(spec.FURTHER),
         {"contacts": study.group("contacts", *spec.SCENES_OF_LECTURE, *spec.FURTHER)},
         checks.LECTURE,

@@ -5,7 +5,7 @@ from itertools import chain
 
 from robo_genesis.core.check_spec import READ_BACK
 from robo_genesis.core.checks import Finding, above, at_most, below, nearly, within
-from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, Run, runs_of
+from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, runs_of
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l07 import rest
 from robo_genesis.sim.bodies.contacts import SETTINGS
@@ -152,8 +152,7 @@ CHECKS = (
 )  # fmt: skip
 
 REST = MeasuringPage(
-    runs=runs_of(rest.CASES)
-    | {name: Run(case, note="run in MuJoCo, not in Genesis") for name, case in rest.TWINS.items()},
+    runs=runs_of(rest.CASES) | runs_of(rest.TWINS, note="run in MuJoCo, not in Genesis"),
     kind=ContactTrace,
     links=("body",),
     readings={name: Readings(dict.fromkeys(rest.CASES, "1")) for name in SETTINGS},

@@ -11,7 +11,7 @@ from robo_genesis.lessons.l07 import spec
 from robo_genesis.lessons.l07.metrics import BALL
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.table import SceneCase
-from robo_genesis.sim.camera.geometry import outline_area, project
+from robo_genesis.sim.camera.geometry import project
 from robo_genesis.sim.camera.views import View
 
 CAMERAS = ("world", "wrist")
@@ -29,9 +29,11 @@ def outline(corners: FloatArray, view: View, inside: bool = False) -> float:
         inside: whether the area counts as 0 if the border of the picture cuts it. It always does if
             a corner is not before the camera.
     """
+    from scipy.spatial import ConvexHull
+
     pixels = project(corners, view.intrinsics, view.transform)
     good = (pixels > 0) & (pixels < view.size) if inside else np.isfinite(pixels)
-    return outline_area(corners, view.intrinsics, view.transform) if good.all() else 0.0
+    return float(ConvexHull(pixels).volume) if good.all() else 0.0  # of two dimensions: the area
 
 
 def measured(run: Experiment, scene: str) -> dict[str, dict[str, float]]:
@@ -99,11 +101,6 @@ def passed(values: Mapping[str, float]) -> bool:
     )
 
 
-def verdicts(run: Experiment, scene: str) -> dict[str, bool]:
-    """Return by rung whether a scene passes it."""
-    return {rung: passed(values) for rung, values in measured(run, scene).items()}
-
-
 def failed(run: Experiment, scene: str) -> list[str]:
     """Return the rungs that a scene fails."""
-    return [rung for rung, good in verdicts(run, scene).items() if not good]
+    return [rung for rung, values in measured(run, scene).items() if not passed(values)]

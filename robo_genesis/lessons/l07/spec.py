@@ -4,8 +4,7 @@ Pages, checks, verification and tests read the experiment here. The module is da
 nothing. `parameters()` has the values that decide what runs; all other values only judge.
 """
 
-import dataclasses
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,6 @@ from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs, json_value
 from robo_genesis.core.scene import CAMERA, DT
 from robo_genesis.lessons.l07 import bowls, rest
-from robo_genesis.lessons.l07.run import LiftCase
 from robo_genesis.sim.arm import franka, lifting, reaching
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.bodies.table import SceneCase
@@ -79,10 +77,13 @@ FORCED = replace(SCENES["wide"], friction=0.3, pads=0.3)
 SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 
 
-def lift_of(scene: SceneCase, **changed: Any) -> LiftCase:
+SPOT = (0.55, 0.0, 0.0)
+"""Where all lifts begin: a fault of an object's own place cannot fail them [m]."""
+
+
+def lift_of(scene: SceneCase, **changed: Any) -> SceneCase:
     """Return the run that lifts the object of a scene from the spot."""
-    fields = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
-    return LiftCase(**fields | {"steps": LIFTING, "settings": ONE_START} | changed)
+    return replace(scene, place=SPOT, steps=LIFTING, **changed)
 
 
 def runs(*scenes: str) -> dict[str, SceneCase]:
@@ -128,15 +129,11 @@ RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)
 """How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 
-def parameters() -> dict[str, Any]:
-    """Return every configured input of the scenes as JSON values, for the evidence key."""
-    return parameters_of(runs("baseline"))
-
-
-def parameters_of(cases: dict[str, Any]) -> dict[str, Any]:
-    """Return the inputs of a page with these runs."""
+def parameters(cases: dict[str, Any]) -> dict[str, Any]:
+    """Return every configured input of a page with these runs as JSON values, for its key."""
     of_scene = ("TABLE", "FLOOR", "ON_HAND", "BALL_HEIGHT")
     of_lift = ("PHASES", "PAD", "HAND_TO_PAD", "ABOVE", "RISE")
     further = {n: getattr(of, n) for of, ns in ((table, of_scene), (lifting, of_lift)) for n in ns}
+    further |= {"settings": asdict(ONE_START)}
     wrist = {name: value for name, value in WRIST.items() if name != "GUI"}
     return inputs(cases, VIEW, table=json_value(further), wrist=wrist, counted=list(EXPECTED_MODEL))

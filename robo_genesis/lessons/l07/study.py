@@ -8,12 +8,13 @@ import numpy as np
 from robo_genesis.core.experiment import Readings, counts
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import run, rungs, spec
+from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.lessons.l07.metrics import BALL, OBJECT, scene_metrics
 from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import MODEL_COUNTS
-from robo_genesis.sim.arm.joints import describe
+from robo_genesis.sim.arm.joint_control import run_case
+from robo_genesis.sim.arm.joints import JointMap, describe, to_numpy
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera import record
 from robo_genesis.sim.camera.views import View, look, segment_number
@@ -43,7 +44,40 @@ def readings(*scenes: str) -> dict[str, Readings]:
 def note(page: Any, group: str, scene: str, **values: float) -> None:
     """Add readings of a scene to a group of a page."""
     more = {f"{scene}_{name}": value for name, value in values.items()}
-    page.readings[group] = {**page.readings.get(group, {}), **more}
+    page.readings.setdefault(group, {}).update(more)
+
+
+def let_rest(world: table.World, joints: JointMap, case: table.SceneCase) -> tuple[Trace, float]:
+    """Let the scene rest while the robot holds its start.
+
+    Returns:
+        The run, and the depth of the object's deepest contact after the first step [m].
+    """
+    depths: list[float] = []
+
+    def after(step: int) -> None:
+        if step == 0:
+            depths.append(float(to_numpy(world.body.get_contacts()["penetration"]).max(initial=0)))
+
+    held = case.commanding(case.q_start)
+    trace = run_case(world.scene, world.robot, joints, held, (world.body, world.ball), after=after)
+    return trace, depths[0]
+
+
+def lift(
+    world: table.World, joints: JointMap, case: table.SceneCase
+) -> tuple[Trace, dict[str, int]]:
+    """Lift the object from the place of a lift; return run and counts of `contact_counter`."""
+    points = lifting.waypoints(case.place, case.size[2])
+    answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
+    command = case.commanding(lifting.lift_command(case.q_start, answers))
+    counts, after = lifting.contact_counter(world.robot, world.body)
+    bodies = (world.body, world.ball)
+
+    def begin() -> None:
+        world.body.set_pos(case.centre)
+
+    return run_case(world.scene, world.robot, joints, command, bodies, begin, after), counts
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +159,7 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     world = table.build(gs, case, spec.VIEW, spec.WRIST)
     joints = describe(page, world.robot)
     page.links = [*page.links, "object", "ball"]
-    rest, depth = run.rest(world, joints, case)
+    rest, depth = let_rest(world, joints, case)
     mass = float(world.body.get_mass())
     world.cameras["wrist"].move_to_attach()
     views = {name: look(camera, page.render) for name, camera in world.cameras.items()}
@@ -135,10 +169,10 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
     way = lifting.line([case.q_start, *(a.q for a in answers)])
     touches = np.array([lifting.touches(world.robot, joints, world.fixed, q) for q in way])
-    lift, contacts = run.lift(world, joints, spec.lift_of(case))
+    lifted, contacts = lift(world, joints, spec.lift_of(case))
     number = segment_number(world.scene, world.body.links[0]) if page.render else 0
-    return Facts(case=case, world=world, rest=rest, lift=lift, depth=depth, mass=mass, views=views,
-                 outlines=outlines, number=number, answers=answers, touches=touches,
+    return Facts(case=case, world=world, rest=rest, lift=lifted, depth=depth, mass=mass,
+                 views=views, outlines=outlines, number=number, answers=answers, touches=touches,
                  contacts=contacts)  # fmt: skip
 
 
@@ -164,7 +198,7 @@ def record_forced(page: Any, gs: Any) -> None:
     """Give a page the lifts of the wide box with little friction, at two solver steps."""
     for name, case in spec.FURTHER.items():
         world = table.build(gs, case, spec.VIEW, spec.WRIST)
-        page.traces[name], contacts = run.lift(world, page.joints, case)
+        page.traces[name], contacts = lift(world, page.joints, case)
         note(page, "contacts", name, **contacts)
 
 

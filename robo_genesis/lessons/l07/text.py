@@ -11,36 +11,26 @@ from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
 MEASURES = False
 
 
-@tables.as_table
-def ladder_table(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return which rungs each scene passes."""
-    for name in rungs.scenes(run):
-        words = {
-            rung: "passes" if good else "**fails**"
-            for rung, good in rungs.verdicts(run, name).items()
-        }
-        yield {"scene": spec.LETTERS[name], **words}
-
-
 DECIDES = {
-    "built": ("ball above the bowl's foot [mm]", "ball", 1000.0, 1),
-    "stable": ("support error [mm]", "support", 1000.0, 3),
-    "seen": ("pixels", "pixels", 1.0, 0),
-    "reachable": ("touching postures", "touches", 1.0, 0),
-    "graspable": ("rise, share of the hand's", "rise", 1.0, 2),
+    "built": ("built: ball above the bowl's foot [mm]", "ball", 1000.0, 1),
+    "stable": ("stable: support error [mm]", "support", 1000.0, 3),
+    "seen": ("seen: pixels", "pixels", 1.0, 0),
+    "reachable": ("reachable: touching postures", "touches", 1.0, 0),
+    "graspable": ("graspable: rise, share of the hand's", "rise", 1.0, 2),
 }
 """By rung: head, quantity, factor and digits of the value that decides in this lesson."""
 
 
 @tables.as_table
-def value_table(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return of each scene the value of each rung that differs between the scenes."""
+def ladder_table(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return which rungs each scene fails, and of each rung the value that decides."""
     for name in rungs.scenes(run):
-        found = rungs.measured(run, name)
-        yield {"scene": spec.LETTERS[name]} | {
-            head: decimal(factor * found[rung][quantity], digits)
-            for rung, (head, quantity, factor, digits) in DECIDES.items()
-        }
+        row = {"scene": spec.LETTERS[name]}
+        for rung, found in rungs.measured(run, name).items():
+            head, quantity, factor, digits = DECIDES[rung]
+            value = decimal(factor * found[quantity], digits)
+            row[head] = value if rungs.passed(found) else f"**fails**, {value}"
+        yield row
 
 
 @tables.as_table

@@ -7,7 +7,7 @@ import numpy as np
 
 from robo_genesis.core.check_spec import READ_BACK
 from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, within
-from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, Run, runs_of
+from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l08 import creep
 from robo_genesis.sim.bodies.grippers import CONTACTS, LINKS, HeldCase
@@ -176,8 +176,7 @@ CHECKS = (
 TIMES = [f"{what}_{name}" for what in KEPT for name in creep.TIMED]
 
 CREEP = MeasuringPage(
-    runs=runs_of(creep.CASES)
-    | {name: Run(case, note="run in MuJoCo, not in Genesis") for name, case in creep.TWINS.items()},
+    runs=runs_of(creep.CASES) | runs_of(creep.TWINS, note="run in MuJoCo, not in Genesis"),
     kind=BodyTrace,
     links=LINKS,
     readings={

@@ -7,8 +7,7 @@ import numpy as np
 
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import FloatArray, read_only
-from robo_genesis.core.trace import Episodes
-from robo_genesis.lessons.l08 import metrics, spec
+from robo_genesis.lessons.l08 import spec
 from robo_genesis.sim.arm.picking import PickCase
 
 STEPS: dict[str, Any] = {"dt": 0.1, "substeps": 20, "commands": 10, "steps": 60}
@@ -69,11 +68,6 @@ def permuted(name: str) -> PickCase:
 
 COUNTED = cases()
 COPIES = {f"{name}_permuted": permuted(name) for name in COUNTED}
-
-
-def good(trace: Episodes, case: PickCase) -> np.ndarray:
-    """Return which episodes (e,) reach the last rung."""
-    return np.asarray(metrics.reached(trace, case) == len(metrics.RUNGS))
 
 
 def parameters() -> dict[str, Any]:

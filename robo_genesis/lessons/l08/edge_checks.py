@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, below, equal, within
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l08 import checks, edge, rates
+from robo_genesis.lessons.l08 import checks, edge, metrics, rates
 from robo_genesis.sim.arm.laws import model_joints
 from robo_genesis.sim.arm.picking import CLOSE
 from robo_genesis.sim.common_checks import stamps
@@ -37,7 +37,7 @@ def window_of_errors(run: Experiment) -> Iterator[Finding]:
     """
     case, trace = run.cases["grid"], run.traces["grid"]
     along, across = 1000 * (case.beliefs - case.starts).T
-    good, inner = edge.good(trace, case), np.abs(across) < 15
+    good, inner = metrics.good(trace, case), np.abs(across) < 15
     early = ((trace.touches == 1) & (trace.phase < CLOSE)).any(axis=0)
     yield within("grid.success", run.metrics["grid"].resting, 48, BAND)
     core = inner & (along > 1) & (along < 7)
@@ -62,7 +62,7 @@ def window_is_centred(run: Experiment) -> Iterator[Finding]:
     """The corrected expert succeeds at all starts with noise of at most 7 mm along the pads."""
     case = run.cases["corrected"]
     along = (case.beliefs - case.starts - edge.SAG)[:, 0]
-    good = edge.good(run.traces["corrected"], case)
+    good = metrics.good(run.traces["corrected"], case)
     yield equal("small_noise.failed", int((~good[np.abs(along) <= 7e-3]).sum()), 0)
 
 
@@ -71,7 +71,7 @@ def pairs(run: Experiment, first: int = edge.PAIRS) -> tuple[int, int, int, int]
     plain one, and none.
     """
     cases, traces = run.cases, run.traces
-    plain, other = (edge.good(traces[n], cases[n])[:first] for n in ("plain", "corrected"))
+    plain, other = (metrics.good(traces[n], cases[n])[:first] for n in ("plain", "corrected"))
     both, alone = int((plain & other).sum()), int((other & ~plain).sum())
     return both, alone, int((plain & ~other).sum()), int((~plain & ~other).sum())
 
@@ -80,7 +80,7 @@ def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
     """All episodes finish all phases. With the shortest clock none succeeds; with the longest
     one and with the measured end all do.
     """
-    good = edge.good(run.traces["timed"], run.cases["timed"]).reshape(len(edge.CLOCKS), -1)
+    good = metrics.good(run.traces["timed"], run.cases["timed"]).reshape(len(edge.CLOCKS), -1)
     yield equal("timed.finished", run.metrics["timed"].finished, good.size)
     yield equal("shortest.success", int(good[0].sum()), 0)
     for row, words in ((-2, "longest"), (-1, "measured")):

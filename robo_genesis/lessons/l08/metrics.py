@@ -70,6 +70,11 @@ def reached(trace: Episodes, case: PickCase) -> np.ndarray:
     return np.asarray(np.logical_and.accumulate(passed).sum(axis=0))
 
 
+def good(trace: Episodes, case: PickCase) -> np.ndarray:
+    """Return which episodes (e,) reach the last rung."""
+    return reached(trace, case) == len(RUNGS)
+
+
 @dataclass(frozen=True, slots=True)
 class EpisodesMetrics(CaseMetrics):
     """How many episodes reach each rung, and how many other words would count."""
@@ -83,7 +88,6 @@ class EpisodesMetrics(CaseMetrics):
     resting: float = metric("1", "success", "phase", "force_N", "object_pos_m", "touches")
     finished: float = metric("1", "all phases done", "phase")
     raised_once: float = metric("1", "lifted at some time", "object_pos_m")
-    over_bowl_once: float = metric("1", "over the bowl at some time", "object_pos_m")
     in_bowl: float = metric("1", "in the bowl at the end", "object_pos_m", "object_quat_wxyz")
     over_bowl: float = metric("1", "over the bowl at the end", "object_pos_m")
     hanging: float = metric("1", "of these, above the rim and touched", "object_pos_m", "touches")
@@ -105,7 +109,6 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         *((level > k).sum() for k in range(len(RUNGS))),
         (trace.phase[-1] == DONE).sum(),
         (rise.max(axis=0) >= RAISED).sum(),
-        (apart.min(axis=0) < CENTRED).sum(),
         passed["contained"].sum(),
         over.sum(),
         (over & (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)).sum(),

@@ -38,7 +38,7 @@ def seen(world: World, joints: JointMap, case: picking.PickCase) -> tuple[Simple
     of = SimpleNamespace(
         finished=(trace.phase[-1] == picking.DONE).sum(),
         late=(descent >= picking.LIMIT).sum(),
-        success=edge.good(trace, case).sum(),
+        success=metrics.good(trace, case).sum(),
         opening=1000 * np.median(trace.q[lift, rows, -2:].sum(axis=1)),
         pushed=1000 * np.median(np.linalg.norm(away, axis=1)),
     )

@@ -6,10 +6,11 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, legend_above, look
-from robo_genesis.lessons.l08 import metrics, spec
+from robo_genesis.lessons.l08 import creep, metrics, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import hand_pose
+from robo_genesis.sim.bodies.grippers import HeldCase
 
 MEASURES = False
 
@@ -42,24 +43,17 @@ def errors(run: Experiment, batch: str = "askew") -> Figure:
     case = run.cases[batch]
     error = 1000 * (case.beliefs - case.starts)
     level = metrics.reached(run.traces[batch], case)
-    for name, mark, sign in (
-        ("placed", "baseline", "o"), ("slipped", "first", "s"), ("tipped", "second", "^"),
-        ("pushed", "third", "x"),
-    ):  # fmt: skip
-        rung = spec.REACH[name]
-        own = level == rung
-        ax.plot(*error[own].T, sign, color=look(mark)["color"], markersize=4, label=SIGNS[rung])
+    for (name, mark), sign in zip(spec.CASE_MARKS.items(), "os^x", strict=True):
+        own = error[level == spec.REACH[name]]
+        style = {"color": look(mark)["color"], "markersize": 4, "label": spec.LABELS[name]}
+        ax.plot(*own.T, sign, **style)
     ax.axvline(0, **LINE)
     ax.set(xlabel="error along the pads, x [mm]", ylabel="error across the pads, y [mm]")
     legend_above(ax, "Each sign is an episode")
     return figure
 
 
-SIGNS = {7: "in the bowl", 3: "grip lost on the way", 2: "lost in the lift", 1: "never held"}
-"""By number of rungs, the words of the legend."""
-
-
-def creep(run: Experiment) -> Figure:
+def slide(run: Experiment) -> Figure:
     """Draw how far the object is below its place in the hand at the start of the move."""
     figure, ax = plotting.axes(3.4)
     trace, row = run.traces["askew"], spec.SHOWN["placed"]
@@ -69,4 +63,30 @@ def creep(run: Experiment) -> Figure:
     ax.plot(trace.t[inside], 1000 * (above - above[0]), **look("baseline"))
     ax.set(xlabel="time [s]", ylabel="slid down [mm]")
     ax.set_title("Slide of the object in the closed fingers")
+    return figure
+
+
+AXES = {"friction": "friction µ", "force": "force of a pad [N]", "mass": "mass [kg]"}
+"""Label of each scanned setting."""
+
+
+def creep_scans(run: Experiment) -> Figure:
+    """Draw the creep over friction, force and mass: measured as points, the formula dotted."""
+    figure = plotting.figure(3.4)
+    axes = figure.subplots(1, len(AXES), sharey=True)
+    for ax, (setting, label) in zip(axes, AXES.items(), strict=True):
+        names = [*creep.SCANS[setting]]
+        values = [getattr(run.cases[name], setting) for name in names]
+        ax.plot(
+            values, [1000 * run.metrics[n].creep for n in names], "o", color=look("first")["color"]
+        )
+        fine = np.linspace(values[0], values[-1], 200)
+        cases = [HeldCase(**{setting: value}) for value in fine]
+        ax.plot(
+            fine, [1000 * creep.formulas(c)[1] for c in cases], ":", color=look("other")["color"]
+        )
+        ax.set_xlabel(label)
+    axes[-1].axvline(creep.LIGHT, **LINE)
+    axes[-1].annotate("mg = µN", (creep.LIGHT, 0.1), rotation=90, va="bottom", ha="right")
+    axes[0].set(ylabel="creep [mm/s]", ylim=(0, None))
     return figure

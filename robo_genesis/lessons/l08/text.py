@@ -1,19 +1,37 @@
 """Tables of L08, each a function of the experiment."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l08 import metrics, rates, spec
+from robo_genesis.core.text import scaled_value
+from robo_genesis.lessons.l08 import creep, edge, metrics, rates, spec
+from robo_genesis.lessons.l08.creep_checks import share_of
+from robo_genesis.lessons.l08.edge_checks import pairs
+from robo_genesis.sim.throughput import KEPT
 
 MEASURES = False
 
-WORDS = {
-    "finished": "all phases done", "raised_once": "lifted at some time",
-    "in_bowl": "in the bowl at the end", "resting": "all seven rungs",
-}  # fmt: skip
-"""Definitions of success, from the most careless on."""
+COUNTED = {
+    "success means": {
+        "all phases done": ("askew", "finished"),
+        "lifted at some time": ("askew", "raised_once"),
+        "in the bowl at the end": ("askew", "in_bowl"),
+        "all seven rungs": ("askew", "resting"),
+    },
+    "expert": {spec.LABELS[name]: (name, "resting") for name in spec.COUNTED},
+    "counted": {
+        "all phases done": ("boxes", "finished"),
+        "horizontally in the bowl": ("boxes", "over_bowl"),
+        "all seven rungs": ("boxes", "resting"),
+        "hanging in the hand": ("boxes", "hanging"),
+    },
+}
+"""By head of a table and by row, what is counted: a batch and a metric."""
 
 
 def rate(successes: float, of: int) -> dict[str, str]:
@@ -25,12 +43,14 @@ def rate(successes: float, of: int) -> dict[str, str]:
     }  # fmt: skip
 
 
-@tables.as_table
-def words_table(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return what each definition of success counts in the same episodes."""
-    for name, words in WORDS.items():
-        count = getattr(run.metrics["askew"], name)
-        yield {"success means": words} | rate(count, len(spec.STARTS))
+def rate_table(run: Experiment, head: str) -> str:
+    """Return the rates of a table of `COUNTED`, with their intervals."""
+    return tables.markdown(
+        [
+            {head: words} | rate(getattr(run.metrics[batch], name), len(run.cases[batch].starts))
+            for words, (batch, name) in COUNTED[head].items()
+        ]
+    )
 
 
 @tables.as_table
@@ -45,8 +65,50 @@ def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
 
 
 @tables.as_table
-def rate_table(run: Experiment) -> Iterator[dict[str, str]]:
-    """Return the rates of success with their intervals."""
-    for name in spec.COUNTED:
-        of = len(spec.BATCHES[name].starts)
-        yield {"expert": spec.LABELS[name]} | rate(run.metrics[name].resting, of)
+def pair_table(run: Experiment) -> Iterator[dict[str, Any]]:
+    """Return the outcomes of both experts at the first starts, and p of the paired test."""
+    for n in (16, 32, 64, edge.PAIRS):
+        both, alone, worse, none = pairs(run, n)
+        plain, other = (rate(k, n)["95 % interval [%]"] for k in (both + worse, both + alone))
+        yield {
+            "starts": n, "plain [%]": plain, "corrected [%]": other, "both": both,
+            "only corrected": alone, "only plain": worse, "none": none,
+            "p": f"{rates.paired(alone, worse):.2g}",
+        }  # fmt: skip
+
+
+@tables.as_table
+def side_table(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return successes by the error along the pads, before any correction."""
+    along = 1000 * (run.cases["plain"].beliefs - run.cases["plain"].starts)[:, 0]
+    edges = np.array([-np.inf, -8, -4, 0, 4, 8, np.inf])
+    for low, high in pairwise(edges):
+        own = (along >= low) & (along < high)
+        words = f"from {low:g} to {high:g}".replace("from -inf to", "below")
+        yield {"noise [mm]": words.replace(" to inf", " on").replace("-", "−")} | {
+            spec.LABELS[n]: f"{metrics.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
+            for n in ("plain", "corrected")
+        }
+
+
+@tables.as_table
+def creep_changes(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return what users change, and the share of the creep that it leaves in both engines."""
+    for name, (words, other, price) in creep.CHANGES.items():
+        shares = {
+            head: f"{share_of(run, engine + name, engine + other):z.3f}"
+            for head, engine in (("Genesis", ""), ("MuJoCo", "mujoco_"))
+        }
+        depth = scaled_value(run.metrics[name].depth, "µm").removesuffix(" µm")
+        times = {"time [ms]": time_of(run, name), "price": price}
+        yield {"change": words} | shares | {"depth [µm]": depth} | times
+
+
+def time_of(run: Experiment, name: str) -> str:
+    """Write median, least and largest time of an outer step of a run's scene, if it is timed."""
+    name = "plain_base" if name == "base" else name
+    (scene,) = (one for one, cases in creep.SCENES.items() if name in cases)
+    if scene not in creep.TIMED:
+        return "–"
+    step, least, most = (f"{1000 * run.readings['step'][f'{of}_{scene}']:.1f}" for of in KEPT)
+    return f"{step} ({least} to {most})"

@@ -1,8 +1,8 @@
 """Bodies that land, slide and bounce on a surface: build the scene, run it, record the contacts."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Literal, TypeVar
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 
@@ -17,12 +17,6 @@ SURFACE_SIZE = (2.0, 0.8, 0.05)
 
 TOP = 0.725  # Height of its upper face [m]
 
-SHARED = (
-    "surface_friction", "duration", "settle", "dt", "substeps", "cone", "resolution", "impratio",
-    "gravity", "tilt", "yaw", "time_constant", "noslip",
-)  # fmt: skip
-"""Settings that cases in one scene have in common."""
-
 SETTINGS = ("friction", "surface_friction", "substeps")
 """Settings that no array of a run shows; they are read back from the scene."""
 
@@ -33,7 +27,7 @@ CHOICES: dict[str, tuple[str | None, ...]] = {
 }
 """The words that a case takes, by setting."""
 
-Case = TypeVar("Case")
+Case = TypeVar("Case", bound="ContactRun")
 
 State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
 
@@ -42,40 +36,61 @@ class ContactError(ValueError):
     """A case is not valid; the message says what was found and what is valid."""
 
 
-@dataclass(frozen=True, slots=True)
-class ContactCase:
-    """All settings of one run of a body above or on the surface.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactRun:
+    """How long a scene runs, with which steps and which model of its contacts.
 
-    `start` is the position of its centre [m]; `size` the edge of a cube or the diameter of a ball
-    [m]; `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
-    After `settle` seconds it gets `speed` along x [m/s], and `duration` seconds are recorded.
-    `cone` is the shape of the friction cone, `resolution` the engine's scheme for normal force and
-    friction, `impratio` the ratio of frictional to normal impedance; for None the engine chooses
-    the last two by the cone. `time_constant` is that of all contacts of the scene [s]; the engine
-    uses at least two solver steps. `spring` are time constant [s] and damping ratio of the contacts
-    of this body and the surface. None for both means the engine's defaults. `noslip` is the number
-    of iterations of the post-processing of that name. `gravity` is a magnitude [m/s²]. A surface
-    that is tilted by `tilt` [rad] is gravity that leans, towards x turned by `yaw` [rad] about z.
+    After `settle` seconds, `duration` seconds are recorded. `cone` is the shape of the friction
+    cone, `resolution` the engine's scheme for normal force and friction, `impratio` the ratio of
+    frictional to normal impedance; for None the engine chooses the last two by the cone.
+    `time_constant` is that of all contacts of the scene [s]; the engine uses at least two solver
+    steps. `noslip` is the number of iterations of the post-processing of that name. `gravity` is a
+    magnitude [m/s²]. Cases in one scene have all of this in common, and the settings of `shared`.
     """
 
-    start: tuple[float, float, float]
+    shared: ClassVar[tuple[str, ...]] = ()
     duration: float
-    friction: float = 0.5
-    surface_friction: float = 0.8
-    speed: float = 0.0
     settle: float = 0.0
-    shape: Literal["cube", "ball"] = "cube"
-    size: float = 0.08
-    density: float = 500.0
     dt: float = DT
     substeps: int = SUBSTEPS
     cone: Literal["pyramidal", "elliptic"] = "pyramidal"
     resolution: Literal["convex", "signorini"] | None = None
     impratio: float | None = None
     time_constant: float | None = None
-    spring: tuple[float, float] | None = None
     noslip: int = 0
     gravity: float = GRAVITY
+
+    @property
+    def h(self) -> float:
+        """Length of one solver step [s]."""
+        return self.dt / self.substeps
+
+    @property
+    def steps(self) -> int:
+        """Outer steps that are recorded."""
+        return round(self.duration / self.dt)
+
+
+@dataclass(frozen=True, slots=True)
+class ContactCase(ContactRun):
+    """All settings of one run of a body above or on the surface.
+
+    `start` is the position of its centre [m]; `size` the edge of a cube or the diameter of a ball
+    [m]; `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
+    Once settled, it gets `speed` along x [m/s]. `spring` are time constant [s] and damping ratio
+    of the contacts of this body and the surface, None for the engine's defaults. A surface that is
+    tilted by `tilt` [rad] is gravity that leans, towards x turned by `yaw` [rad] about z.
+    """
+
+    shared = ("surface_friction", "tilt", "yaw")
+    start: tuple[float, float, float]
+    friction: float = 0.5
+    surface_friction: float = 0.8
+    speed: float = 0.0
+    shape: Literal["cube", "ball"] = "cube"
+    size: float = 0.08
+    density: float = 500.0
+    spring: tuple[float, float] | None = None
     tilt: float = 0.0
     yaw: float = 0.0
 
@@ -91,16 +106,6 @@ class ContactCase:
                     f"{name} is {seconds} s, no whole number of outer steps of {self.dt} s. "
                     "Cases are compared over equal simulated time. Choose a dt that divides it."
                 )
-
-    @property
-    def h(self) -> float:
-        """Length of one solver step [s]."""
-        return self.dt / self.substeps
-
-    @property
-    def steps(self) -> int:
-        """Outer steps that are recorded."""
-        return round(self.duration / self.dt)
 
     @property
     def mass(self) -> float:
@@ -144,11 +149,11 @@ def build_world(
 
     Args:
         gs: the engine after `gs.init`.
-        cases: by name; cases in one scene have the fields of `SHARED` in common.
+        cases: by name; cases in one scene have the settings of `shared` in common.
         view: settings of the camera, None for no camera.
 
     Raises:
-        ContactError: there are no cases, or they differ in a field of `SHARED`.
+        ContactError: there are no cases, or they differ in such a setting.
     """
     common = shared_case(cases)
     scene = gs.Scene(
@@ -188,11 +193,8 @@ def build_world(
     return World(scene, surface, bodies, dict(cases), camera)
 
 
-def rigid_options(gs: Any, case: Any) -> dict[str, Any]:
-    """Return friction model and time constant of a case as options; None is the default.
-
-    Other cases than `ContactCase` have these fields as well.
-    """
+def rigid_options(gs: Any, case: ContactRun) -> dict[str, Any]:
+    """Return friction model and time constant of a case as options; None is the default."""
     resolution = gs.contact_resolution[case.resolution] if case.resolution else None
     seconds = {"constraint_timeconst": case.time_constant} if case.time_constant else {}
     return {
@@ -217,17 +219,19 @@ def time_constant(world: World) -> float:
     return float(contact_constants(world.scene, world.surface.geoms[0])[0])
 
 
+def friction(scene: Any, body: Any) -> float:
+    """Return the friction coefficient of the first geom of a body."""
+    return float(to_numpy(scene.rigid_solver.get_geoms_friction([body.geoms[0].idx]))[0])
+
+
 def record_world(
     world: World, traces: dict[str, ContactTrace], settings: dict[str, dict[str, float]]
 ) -> None:
     """Run a world; add its traces and its `SETTINGS`, which are read back, to those of others."""
-
-    def friction(body: Any) -> float:
-        return float(to_numpy(world.scene.rigid_solver.get_geoms_friction([body.geoms[0].idx]))[0])
-
     traces |= run_world(world)
+    ground = friction(world.scene, world.surface)
     for name, body in world.bodies.items():
-        found = friction(body), friction(world.surface), float(world.scene.substeps)
+        found = friction(world.scene, body), ground, float(world.scene.substeps)
         for setting, value in zip(SETTINGS, found, strict=True):
             settings.setdefault(setting, {})[name] = value
 
@@ -264,17 +268,17 @@ def read_world(world: World) -> dict[str, State]:
     return states
 
 
-def shared_case(cases: Mapping[str, Case], shared: tuple[str, ...] = SHARED) -> Case:
-    """Return the first case, whose fields of `shared` are those of all cases.
+def shared_case(cases: Mapping[str, Case]) -> Case:
+    """Return the first case, which has what cases in one scene have in common.
 
     Raises:
-        ContactError: there are no cases, or they differ in such a field.
+        ContactError: there are no cases, or they differ in such a setting.
     """
     if not cases:
         raise ContactError("No cases were given; a scene takes at least one. Name a case.")
     first = next(iter(cases.values()))
     for name, case in cases.items():
-        for field in shared:
+        for field in (*(of.name for of in fields(ContactRun)), *first.shared):
             if getattr(case, field) != getattr(first, field):
                 raise ContactError(
                     f"{name} asks for {field}={getattr(case, field)}, another case of the scene "

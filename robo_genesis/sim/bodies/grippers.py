@@ -3,16 +3,15 @@
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import DT, FloatArray
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.bodies.contacts import contact_constants, rigid_options, shared_case
-from robo_genesis.sim.bodies.free_fall import GRAVITY
+from robo_genesis.sim.bodies import contacts
 from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
 
 LINKS = ("box", "left", "right")
@@ -25,48 +24,26 @@ PAD_MASS, ARMATURE = 1.0, 0.1  # [kg]; Genesis adds this armature to each joint 
 CONTACTS = 8
 """Contact points of a box, four at each pad."""
 
-SHARED = (
-    "time_constant", "cone", "impratio", "noslip", "iterations", "dt", "substeps", "settle",
-    "duration", "gravity",
-)  # fmt: skip
-"""Settings that cases in one scene have in common."""
 
-
-@dataclass(frozen=True, slots=True)
-class HeldCase:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeldCase(contacts.ContactRun):
     """All settings of one run of a box between two pads, which slide along x.
 
     `place` is the y of the gripper [m]; its height is 0, where float32 resolves a slow motion.
     `friction` is the coefficient of the box, and the pads have less; `force` presses each pad [N],
-    `mass` is that of the box [kg]. After `settle` seconds, `duration` seconds are recorded. The
-    other settings are as of `ContactCase`; `iterations` of the solver, None for its default.
+    `mass` is that of the box [kg]. `iterations` are those of the solver, None for its default.
     """
 
+    shared = ("iterations",)
+    duration: float = 0.2
+    settle: float = 0.3
+    substeps: int = 4
+    time_constant: float = 0.01
     place: float = 0.0
     friction: float = 1.0
     force: float = 10.0
     mass: float = 0.1
-    time_constant: float = 0.01
-    cone: Literal["pyramidal", "elliptic"] = "pyramidal"
-    impratio: float | None = None
-    resolution: None = None
-    noslip: int = 0
     iterations: int | None = None
-    dt: float = DT
-    substeps: int = 4
-    settle: float = 0.3
-    duration: float = 0.2
-    gravity: float = GRAVITY
-
-    @property
-    def steps(self) -> int:
-        """Number of recorded outer steps."""
-        return round(self.duration / self.dt)
-
-    @property
-    def h(self) -> float:
-        """Length of one solver step [s]."""
-        return self.dt / self.substeps
 
 
 def pads(case: HeldCase) -> str:
@@ -95,12 +72,12 @@ class World:
 
 def build_world(gs: Any, cases: Mapping[str, HeldCase]) -> World:
     """Declare a scene with a gripper for each case, and build it; raises as `shared_case`."""
-    common = shared_case(cases, SHARED)
+    common = contacts.shared_case(cases)
     further = {"iterations": common.iterations} if common.iterations else {}
     options, fall = gs.options, (0, 0, -common.gravity)
     scene = gs.Scene(
         sim_options=options.SimOptions(dt=common.dt, substeps=common.substeps, gravity=fall),
-        rigid_options=options.RigidOptions(**rigid_options(gs, common), **further),
+        rigid_options=options.RigidOptions(**contacts.rigid_options(gs, common), **further),
         profiling_options=options.ProfilingOptions(show_FPS=False),
         show_viewer=False,
     )
@@ -124,7 +101,7 @@ def record_world(
 
     Readings are the friction of each box, the time constant of its contacts, and their number.
     """
-    common, scene = shared_case(world.cases, SHARED), world.scene
+    common, scene = contacts.shared_case(world.cases), world.scene
     scene.reset()
     for name, (hand, _) in world.grippers.items():
         hand.control_dofs_force(np.full(2, world.cases[name].force, np.float32))
@@ -135,10 +112,9 @@ def record_world(
     )
     for name, (_, box) in world.grippers.items():
         traces[name] = BodyTrace(times(common), *stacked([state[name] for state in states]))
-        geom = box.geoms[0]
         found = {
-            "friction": float(to_numpy(scene.rigid_solver.get_geoms_friction([geom.idx]))[0]),
-            "time_constant": float(contact_constants(scene, geom)[0]),
+            "friction": contacts.friction(scene, box),
+            "time_constant": float(contacts.contact_constants(scene, box.geoms[0])[0]),
             "contacts": len(to_numpy(box.get_contacts()["penetration"])),
         }
         for group, value in found.items():

@@ -49,11 +49,6 @@ def looking(pos: Sequence[float], at: Sequence[float]) -> FloatArray:
     return transform
 
 
-def extrinsics(transform: FloatArray) -> FloatArray:
-    """Return the matrix (4, 4) from world to camera coordinates, OpenCV axes [m]."""
-    return np.linalg.inv(other_axes(transform))
-
-
 def in_camera(points: FloatArray, transform: FloatArray) -> FloatArray:
     """Return points (…, 3) of the world in camera coordinates: right, down, forwards [m]."""
     pose = other_axes(transform)
@@ -65,19 +60,6 @@ def project(points: FloatArray, K: FloatArray, transform: FloatArray) -> FloatAr
     seen = in_camera(points, transform)
     depth = np.where(seen[..., 2:] > 0, seen[..., 2:], np.nan)
     return np.asarray((seen / depth @ K.T)[..., :2])
-
-
-def outline_area(points: FloatArray, K: FloatArray, transform: FloatArray) -> float:
-    """Return the area of the picture of a convex body, whole and not hidden [pixel].
-
-    Args:
-        points: (n, 3) its corners in the world, all in front of the camera [m].
-        K: camera matrix.
-        transform: of the camera.
-    """
-    from scipy.spatial import ConvexHull
-
-    return float(ConvexHull(project(points, K, transform)).volume)  # of two dimensions: the area
 
 
 def silhouette_centre(

@@ -35,6 +35,5 @@ def reaches(joints) -> Experiment:
         | dict.fromkeys(("residual_m", "low_residual_m"), apart),
         "ik_residuals": dict.fromkeys(spec.PRECISE, 4e-6),
         "iterations": dict.fromkeys(spec.PRECISE, 5),
-        "ik_repeated": {"entries_that_differ": 0},
     }
     return experiment_of(SOLUTIONS, runs, known, LINKS, {}, joints)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l05 import mistakes, spec
-from robo_genesis.sim.camera.geometry import extrinsics, intrinsics
+from robo_genesis.sim.camera.geometry import intrinsics, other_axes
 
 CASE = spec.BASELINE
 BEYOND = replace(CASE, position=spec.BEYOND_REACH)
@@ -41,7 +41,7 @@ POINT = np.array([0.3, 0.0, 0.0])
 def camera(*res):
     """Return what stands for a camera that looks down, at first from the height of 1 m."""
     pose = np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 1])
-    fixed = {"intrinsics": intrinsics(42.0, res), "extrinsics": extrinsics(pose)}
+    fixed = {"intrinsics": intrinsics(42.0, res), "extrinsics": np.linalg.inv(other_axes(pose))}
     made = SimpleNamespace(res=res, far=20.0, transform=pose, **fixed)
     made.set_pose = lambda height: pose.put(11, height)
     return made

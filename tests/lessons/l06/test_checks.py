@@ -7,8 +7,7 @@ import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l06 import checks, spec
-from robo_genesis.lessons.l06.laws import laws_of_motion
-from robo_genesis.lessons.l06.metrics import world_metrics
+from robo_genesis.lessons.l06.checks import laws_of_motion
 from robo_genesis.lessons.l06.run import commands
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
 from robo_genesis.sim.arm.kinematics import HAND
@@ -106,7 +105,3 @@ def test_the_metrics_tell_when_a_hand_moved(worlds):
     assert (m[PLAIN].moved_later, m[PLAIN].final_distance) == (None, m[PLAIN].first_distance)
     assert m["unlimited_robot"].overshoot < 0.01 < m[STIFF].overshoot
     assert m["env_3"].first_distance < 0.02 > m["env_3"].final_distance
-    empty = {"link_pos": np.zeros((361, 3, 3)), "link_quat": np.zeros((361, 3, 4))}
-    few = replace(worlds.traces["env_0"], **empty)
-    with pytest.raises(ValueError, match="3 links and 360 steps"):
-        world_metrics(few, spec.WORLDS["env_0"])

@@ -8,7 +8,7 @@ from robot_runs import LINKS, answer, assigned, driven
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import run, rungs, spec, table_map
+from robo_genesis.lessons.l07 import metrics, rungs, spec, table_map
 from robo_genesis.lessons.l07.pages import LECTURE
 from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.kinematics import HAND
@@ -25,10 +25,10 @@ def trace_of(name: str, case: table.SceneCase) -> Trace:
         answers = [answer(target, spec.GOOD.q_start, 20).q for target in case.targets]
         before = driven(spec.GOOD.commanding(spec.GOOD.q_start), LINKS)
         return table_map.with_bodies(assigned(case.start, LINKS, before, np.stack(answers)))
-    lifts = isinstance(case, run.LiftCase)
+    lifts = metrics.lifts(case)
     command = case.q_start
     if lifts:
-        points = lifting.waypoints((*case.spot, 0.0), case.size[2])
+        points = lifting.waypoints(case.place, case.size[2])
         answers = [answer(point, case.q_start, 50) for point in points]
         command = lifting.lift_command(case.q_start, answers)
     arm = driven(case.commanding(command), LINKS)

@@ -9,7 +9,7 @@ from lessons.l08.made_batches import episodes
 from robot_runs import LINKS
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l08 import edge, edge_shown, pages, plots, spec
+from robo_genesis.lessons.l08 import edge, pages, plots, spec, text
 from robo_genesis.sim.arm import picking
 
 
@@ -77,7 +77,7 @@ def test_a_clock_ends_the_descent_whatever_is_measured():
 
 
 def test_tables_and_figure_show_the_batches(run):
-    assert "| 128 |" in edge_shown.pair_table(run)
-    assert "below −8" in edge_shown.side_table(run)
-    assert "100 of 128" in edge_shown.box_table(run)
+    assert "| 128 |" in text.pair_table(run)
+    assert "below −8" in text.side_table(run)
+    assert "100 of 128" in text.rate_table(run, "counted")
     assert plots.errors(run, "grid").axes

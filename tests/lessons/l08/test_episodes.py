@@ -35,10 +35,10 @@ def test_the_paired_test_is_exact():
 
 def test_the_checks_accept_the_episodes(episodes):
     assert [one for one in episodes.outcomes() if not one.passed] == []
-    for figure in (plots.posture, plots.phases, plots.errors, plots.creep):
+    for figure in (plots.posture, plots.phases, plots.errors, plots.slide):
         assert figure(episodes).axes
     assert text.rung_table(episodes).count("\n") == len(metrics.RUNGS) + 2
-    assert "of 256" in text.words_table(episodes)
+    assert "of 256" in text.rate_table(episodes, "success means")
 
 
 LOST = [
