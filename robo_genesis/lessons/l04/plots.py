@@ -98,7 +98,7 @@ def baseline_forces(run: Experiment) -> Figure:
         ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
         ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
     ):
-        _curve(ax, trace.t_step, array[:, ENTRY], look(mark, **DOTS), name, label)
+        _curve(ax, trace.t[1:], array[:, ENTRY], look(mark, **DOTS), name, label)
     _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", BEFORE_REST)
     return figure
 
