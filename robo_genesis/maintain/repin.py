@@ -163,7 +163,7 @@ class Trial:
     before: refresh.EngineBuild | None = None
     failed: dict[str, refresh.Pair] = field(default_factory=dict)
 
-    def run(self) -> list[Path]:
+    def run(self) -> Path:
         """Resolve, build with the old and the new version, report, test; return the report."""
         set_pin(self.work, self.old, self.new)
         lock = str(self.work / "build_scripts" / "lock.py")

@@ -11,7 +11,7 @@ from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
-from robo_genesis.sim.session import CaseError
+from robo_genesis.sim.session import CaseError, new_scene
 
 SURFACE_SIZE = (2.0, 0.8, 0.05)
 """Length, width and thickness of the fixed box under the bodies [m]."""
@@ -148,14 +148,7 @@ def build_world(
         CaseError: there are no cases, or they differ in a field of `SHARED`.
     """
     common = shared_case(cases)
-    scene = gs.Scene(
-        sim_options=gs.options.SimOptions(
-            dt=common.dt, substeps=common.substeps, gravity=tuple(common.fall)
-        ),
-        rigid_options=gs.options.RigidOptions(**rigid_options(gs, common)),
-        profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
-        show_viewer=False,
-    )
+    scene = new_scene(gs, common, rigid_options(gs, common), gravity=tuple(common.fall))
     surface = scene.add_entity(
         morph=gs.morphs.Box(
             size=SURFACE_SIZE, pos=(0.0, 0.0, TOP - SURFACE_SIZE[2] / 2), fixed=True
