@@ -81,12 +81,9 @@ def compare(old: Path, new: Path) -> BundleComparison:
             f"{a.folder} is of {was.lesson}/{was.page}, {b.folder} of {now.lesson}/{now.page}. "
             "Give two bundles of the same page.",
         )
-    differing = axes(was, now)
     obstacles = tuple(_obstacles(was, now))
-    if len(differing) > 1:
-        obstacles += (f"Two axes differ: {' and '.join(differing)}. Change one at a time.",)
     repeat = "repeat" if was.source == now.source else "same engine and backend, other code"
-    axis = " and ".join(differing) or repeat
+    axis = " and ".join(axes(was, now)) or repeat
     parts = () if obstacles else _sections(a, b, spec)
     return BundleComparison(
         was, now, (a.folder, b.folder), axis, obstacles, tuple(_notes(was, now)), parts
@@ -143,6 +140,8 @@ def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
         if side.backend.actual != side.backend.actual_at_end:
             change = f"from {side.backend.actual} to {side.backend.actual_at_end}"
             yield f"The backend of the {word} bundle changed during the run, {change}."
+    if len(differing := axes(old, new)) > 1:
+        yield f"Two axes differ: {' and '.join(differing)}. Change one at a time."
 
 
 def _notes(old: Predicate, new: Predicate) -> Iterator[str]:

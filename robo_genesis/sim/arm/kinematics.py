@@ -85,12 +85,6 @@ def rotation_vector(quat: FloatArray) -> FloatArray:
     return np.asarray(quat[..., 1:] * factor)
 
 
-def compose(outer: Pose, inner: Pose) -> Pose:
-    """Return the pose of `inner`, which is given in the frame `outer`, in the frame of `outer`."""
-    position = outer.position + rotate(outer.quat, inner.position)
-    return Pose(position, quat_multiply(outer.quat, inner.quat))
-
-
 def link_poses(q: FloatArray) -> Pose:
     """Return the poses of the links of `CHAIN` by forward kinematics.
 
@@ -109,14 +103,15 @@ def link_poses(q: FloatArray) -> Pose:
             f"{q.shape[-1]} joint positions given, expected {ARM} of the Franka or more. For "
             "another arm call sim.mujoco.kinematics.link_poses with its RobotModel."
         )
-    pose = Pose(np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
+    at, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])  # of the link before, first the base
     positions, quats = [], []
     for k, (_, position, quat) in enumerate(CHAIN):
-        pose = compose(pose, Pose(np.array(position), np.array(quat)))
+        at = at + rotate(turn, np.array(position))
+        turn = quat_multiply(turn, np.array(quat))
         if k < ARM:
-            pose = Pose(pose.position, quat_multiply(pose.quat, about_z(q[..., k])))
-        positions.append(np.broadcast_to(pose.position, (*q.shape[:-1], 3)))
-        quats.append(np.broadcast_to(pose.quat, (*q.shape[:-1], 4)))
+            turn = quat_multiply(turn, about_z(q[..., k]))
+        positions.append(np.broadcast_to(at, (*q.shape[:-1], 3)))
+        quats.append(np.broadcast_to(turn, (*q.shape[:-1], 4)))
     return Pose(np.stack(positions, axis=-2), np.stack(quats, axis=-2))
 
 
