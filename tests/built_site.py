@@ -18,7 +18,7 @@ from browsers import launched
 from bs4 import BeautifulSoup
 
 from robo_genesis.core.project import BOOK, CACHE, ROOT, STORE
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons import LESSONS, find_lesson
 from robo_genesis.pipeline.html.archive import ARCHIVE, FOLDER
 from robo_genesis.pipeline.pages.book import find_pages, page_files
 from robo_genesis.pipeline.pages.built import BuiltPages
@@ -37,7 +37,7 @@ LESSON_PAGES = {
 }
 """The pages of lessons by lesson and page."""
 
-MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in lesson.pages]
+MEASURING_PAGES = [(name, page) for name in LESSONS for page in find_lesson(name).pages]
 """Lesson and page of each page that leaves a bundle."""
 
 TEXT = {".html", ".css", ".js", ".json", ".svg", ".txt"}  # The files that a web server compresses

@@ -71,18 +71,23 @@ def outcome(numbers: Mapping[str, Any], relation: Relation) -> tuple[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One metric of two cases. `order` is that of the second relative to the first.
+    """One metric of two cases; `label` is its name in prose.
 
-    It is lower, equal or higher, and None if the values cannot be ranked. It is equal where the
-    values differ by no more than the declared `margin`.
+    Values are equal if they differ by no more than the `resolution` of the unit or the declared
+    `margin`.
     """
 
     label: str
     unit: str
     first: float | None
     second: float | None
-    order: str | None
+    resolution: float
     margin: float = 0.0
+
+    @property
+    def order(self) -> str | None:
+        """The order of the second value relative to the first, as of the function `order`."""
+        return order(self.first, self.second, max(self.resolution, self.margin))
 
 
 def compare(
@@ -92,26 +97,10 @@ def compare(
     resolution: Mapping[str, float],
     margin: float = 0.0,
 ) -> Comparison:
-    """Order one metric of two cases; a difference below the resolution of its unit is equal."""
+    """Return the comparison of one metric of two cases, with the resolution of its unit."""
     noun, unit = (first.about(what)[metric] for what in ("noun", "unit"))
     values = getattr(first, metric), getattr(second, metric)
-    return compare_values(noun, unit, *values, resolution, margin)
-
-
-def compare_values(
-    label: str,
-    unit: str,
-    a: float | None,
-    b: float | None,
-    resolution: Mapping[str, float],
-    margin: float = 0.0,
-) -> Comparison:
-    """Order the values `a` and `b` of one metric in two cases; `label` is its name in prose.
-
-    A difference up to the margin is equal, as is one up to the resolution of the unit.
-    """
-    found = order(a, b, max(resolution[unit], margin))
-    return Comparison(label, unit, a, b, found, margin)
+    return Comparison(noun, unit, *values, resolution[unit], margin)
 
 
 def allowed(a: Any, b: Any, atol: Any, rtol: Any) -> Any:

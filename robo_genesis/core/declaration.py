@@ -8,7 +8,6 @@ from types import ModuleType
 from typing import Any
 
 from robo_genesis.core.channels import Replay
-from robo_genesis.core.checks import claim_of
 from robo_genesis.core.experiment import MeasuringPage
 from robo_genesis.core.metrics import CaseMetrics
 
@@ -36,12 +35,6 @@ class Lesson:
     metrics: Mapping[str, type[CaseMetrics]]
     pages: Mapping[str, MeasuringPage]
     replays: Mapping[str, Replay]
-
-    def __post_init__(self) -> None:
-        """Refuse checks without a claim; raises as `claim_of`."""
-        for page in self.pages.values():
-            for check in page.checks:
-                claim_of(check)
 
     def about_metrics(self, what: str) -> dict[str, Any]:
         """Return `unit`, `label` or `noun` of each of its metrics by name."""

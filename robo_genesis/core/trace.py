@@ -66,11 +66,6 @@ class TimeSeries:
         """Number of outer steps n."""
         return len(self.t) - 1
 
-    @property
-    def t_step(self) -> FloatArray:
-        """Times of the values after each step, t[1] … t[n], shape (n,) [s]."""
-        return self.t[1:]
-
 
 LINK_POS = array("link_pos_m", "state link axis", "m", "link position in the world")
 LINK_QUAT = array("link_quat_wxyz", "state link wxyz", "1", "link orientation")

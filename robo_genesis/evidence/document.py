@@ -1,4 +1,4 @@
-"""A report as a Markdown page and as an HTML page that fetches nothing.
+"""A report as a Markdown page.
 
 Text of a bundle is escaped: it cannot control a terminal, begin a line or become markup.
 """
@@ -9,13 +9,9 @@ from pathlib import Path
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.markup import filled
 from robo_genesis.core.text import bullets, printable
-from robo_genesis.evidence.rows import SEVERITY
 
 Cells = tuple[str, ...]
-
-PAGE = Path(__file__).with_suffix(".html")  # Its template
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +31,10 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A report: its title, its verdict in one sentence with the state, remarks and parts."""
+    """A report: its title, its verdict in one sentence, remarks and parts."""
 
     title: str
     verdict: str
-    state: str
     parts: Sequence[Part]
     remarks: Sequence[str] = ()
 
@@ -53,16 +48,11 @@ class Document:
             blocks.append(_markdown_table(part.rows) if len(part.rows) > 1 else part.empty)
         return "\n\n".join(block for block in blocks if block) + "\n"
 
-    def html(self) -> str:
-        """Return the report as one HTML page without scripts, fonts or pictures from elsewhere."""
-        return filled(PAGE, report=self, states=SEVERITY, line=_one_line)
-
-    def write(self, folder: Path) -> list[Path]:
-        """Write both pages and return their paths."""
-        pages = {folder / "report.md": self.markdown(), folder / "report.html": self.html()}
-        for path, text in pages.items():
-            write_whole(path, text.encode())
-        return list(pages)
+    def write(self, folder: Path) -> Path:
+        """Write the page and return its path."""
+        path = folder / "report.md"
+        write_whole(path, self.markdown().encode())
+        return path
 
 
 def _markdown_table(rows: Sequence[Cells]) -> str:
@@ -70,11 +60,7 @@ def _markdown_table(rows: Sequence[Cells]) -> str:
     return tables.markdown([dict(zip(head, row, strict=True)) for row in body]).strip()
 
 
-def _one_line(text: str) -> str:
-    """Return text as one line, without characters that change how others are shown."""
-    return printable(" ".join(text.split()))
-
-
 def _plain(text: str) -> str:
-    """Return text with the characters escaped that have a meaning in Markdown."""
-    return "".join(f"\\{c}" if c in "\\`*_|[]<>#" else c for c in _one_line(text))
+    """Return text as one line, with the characters escaped that have a meaning in Markdown."""
+    line = printable(" ".join(text.split()))
+    return "".join(f"\\{c}" if c in "\\`*_|[]<>#" else c for c in line)

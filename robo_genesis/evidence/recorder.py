@@ -87,19 +87,12 @@ class Recorder:
         """Write the bundle to a temporary folder, then move it to its place in one step.
 
         Raises:
-            ContractError: the page rendered although it should not, or the reverse.
             RecordError: the experiment has other runs than the page declares, or values that are
                 not finite. An earlier bundle is unchanged.
 
         Returns:
             Its folder. An earlier bundle of the same page and backend is replaced.
         """
-        if self.contract.render != (renderer is not None):
-            raise session.ContractError(
-                f"{project.RENDER} asks for {'a camera' if self.contract.render else 'none'}, "
-                f"but the page used {'a' if renderer else 'no'} renderer. Render exactly "
-                "if the contract asks for it."
-            )
         require_complete(experiment)
         with replaced(self.folder) as following:
             following.mkdir(parents=True)

@@ -56,8 +56,7 @@ def document(comparison: BundleComparison) -> Document:
         for part in comparison.sections
     ]
     parts.append(Part("The two bundles", _origin(comparison)))
-    head = title(comparison), verdict(comparison), comparison.state
-    return Document(*head, parts, comparison.remarks)
+    return Document(title(comparison), verdict(comparison), parts, comparison.remarks)
 
 
 def changes(comparison: BundleComparison) -> list[Cells]:

@@ -146,8 +146,6 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     """
     described, fields, place = arrays.cases[case], kind.arrays(), f"arrays.json {case}"
     expect("path", place, "file", described.file, f"arrays/{case}.npz")
-    if not issubclass(kind, (Trace, Episodes)):
-        expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
     types = read_joints(arrays).types if arrays.joints else ()
     dtypes = {of.name: of.dtype for of in fields.values()}
     expect("labels", place, "list of arrays", sorted(described.variables), sorted(dtypes))

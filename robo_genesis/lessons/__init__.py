@@ -1,6 +1,5 @@
 """The lessons of the course: each folder of this sub-package with an `__init__.py`."""
 
-from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -9,34 +8,8 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage
 
-
-class _Lessons(Mapping[str, Lesson]):
-    """The lessons by name, in the order of the course; each is imported at its first use."""
-
-    def __init__(self, names: Iterable[str]) -> None:
-        self.found: dict[str, Lesson | None] = dict.fromkeys(names)
-
-    def __getitem__(self, name: str) -> Lesson:
-        lesson = self.found[name]
-        if lesson is None:
-            lesson = getattr(import_module(f"{__name__}.{name}"), "LESSON", None)
-            if not isinstance(lesson, Lesson):
-                raise TypeError(
-                    f"lessons/{name}/__init__.py declares LESSON as {lesson!r}. Each folder of a "
-                    "lesson declares one: LESSON = Lesson(spec=..., metrics=..., pages=..., "
-                    "replays=...)."
-                )
-            self.found[name] = lesson
-        return lesson
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.found)
-
-    def __len__(self) -> int:
-        return len(self.found)
-
-
-LESSONS = _Lessons(sorted(init.parent.name for init in Path(__file__).parent.glob("*/__init__.py")))
+LESSONS = tuple(sorted(of.parent.name for of in Path(__file__).parent.glob("*/__init__.py")))
+"""The names of all lessons, in the order of the course."""
 
 
 @cache
@@ -49,8 +22,8 @@ def course_marks() -> dict[str, str]:
         ValueError: two lessons give one case different marks.
     """
     found = {"baseline": "baseline"}
-    for name, lesson in LESSONS.items():
-        for case, mark in getattr(lesson.spec, "CASE_MARKS", {}).items():
+    for name in LESSONS:
+        for case, mark in getattr(find_lesson(name).spec, "CASE_MARKS", {}).items():
             if found.setdefault(case, mark) != mark:
                 raise ValueError(
                     f"{name} gives the case {case} the mark {mark!r}, an earlier lesson gives it "
@@ -60,10 +33,11 @@ def course_marks() -> dict[str, str]:
 
 
 def find_lesson(name: str) -> Lesson:
-    """Return a lesson by its name.
+    """Return a lesson by its name; it is imported at its first use.
 
     Raises:
         LookupError: it does not exist; the message lists the lessons.
+        TypeError: its folder declares none.
     """
     if not LESSONS:
         raise LookupError(
@@ -73,7 +47,13 @@ def find_lesson(name: str) -> Lesson:
         )
     if name not in LESSONS:
         raise LookupError(f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}.")
-    return LESSONS[name]
+    lesson = getattr(import_module(f"{__name__}.{name}"), "LESSON", None)
+    if not isinstance(lesson, Lesson):
+        raise TypeError(
+            f"lessons/{name}/__init__.py declares LESSON as {lesson!r}. Each folder of a lesson "
+            "declares one: LESSON = Lesson(spec=..., metrics=..., pages=..., replays=...)."
+        )
+    return lesson
 
 
 def find_replay(lesson: str, name: str = "") -> Replay:

@@ -65,7 +65,7 @@ def run_repin(
         fresh_checkout(root, folder / "work", cache) as work,
     ):
         trial = Trial(cache, old, new, work, Progress(say))
-        pages, new = trial.run(), trial.new
+        report, new = trial.run(), trial.new
         if texts(root) != before:
             raise project.ProjectError(
                 f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
@@ -75,7 +75,7 @@ def run_repin(
         write(root, texts(work))
     return [
         f"Pinned: {ENGINE} {old} → {new}, in {' and '.join(FILES)}. Nothing is committed.",
-        *(f"Report: {page}" for page in pages),
+        f"Report: {report}",
         "Review both; describe the changes in CHANGELOG.md under \"Evidence changed\". The next "
         "make book sets up .venv anew (with PYTHON=…, install the lock there first).",
         f"git restore {' '.join(FILES)} restores the old pin.",
@@ -163,7 +163,7 @@ class Trial:
     before: refresh.EngineBuild | None = None
     failed: dict[str, refresh.Pair] = field(default_factory=dict)
 
-    def run(self) -> list[Path]:
+    def run(self) -> Path:
         """Resolve, build with the old and the new version, report, test; return the report."""
         set_pin(self.work, self.old, self.new)
         lock = str(self.work / "build_scripts" / "lock.py")
@@ -180,9 +180,9 @@ class Trial:
         python = f"BASE_PYTHON={sys.executable}"
         self.command("install", "the new lock", "make", ".venv/.installed", python)
         self.command("book", f"with {self.new}", "make", "book")
-        pages = self.write_report()
+        report = self.write_report()
         self.command("test", f"with {self.new}", "make", "test")
-        return pages
+        return report
 
     def command(self, stage: str, what: str, *command: str) -> None:
         """Run one command there; a failure names it and its log, and ends with a report.
@@ -202,8 +202,7 @@ class Trial:
                 f"so that it passes with {self.new} too, and commit; then run make repin again. It "
                 "reuses what is compiled and executed, and begins with the pages that failed."
             )
-            pages = self.write_report(head, remedy, *lines)
-            places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
+            places = [f"Log: {log}", f"Report: {self.write_report(head, remedy, *lines)}"]
             raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
     def name_failed(self, stage: str, log: Path) -> None:
@@ -213,7 +212,7 @@ class Trial:
                 self.failed[page] = state, why
                 self.progress(stage, page, f"{state}: {why}")
 
-    def write_report(self, *failed: str) -> list[Path]:
+    def write_report(self, *failed: str) -> Path:
         """Compare what both versions built, as far as they did, and write the report."""
         found = refresh.Refresh((self.old, self.new))
         if self.before:

@@ -215,7 +215,7 @@ def document(refresh: Refresh) -> Document:
     text = summary(refresh)
     verdict = f"{text[0].upper()}{text[1:]}."
     title = f"Engine {' → '.join(refresh.versions)}"
-    return Document(title, verdict, refresh.state, list(_parts(refresh)))
+    return Document(title, verdict, list(_parts(refresh)))
 
 
 def _advice(state: str, why: str) -> str:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robo_genesis.core.comparison import compare_values
+from robo_genesis.core.comparison import Comparison
 from robo_genesis.core.tables import comparison_sentence, prediction_sentence
 from robo_genesis.core.text import format_value, scaled_value
 
@@ -34,7 +34,7 @@ def test_a_value_in_another_unit_has_three_digits(value, unit, text):
 
 def rise_times(*values, margin=0.0):
     """Compare the rise times of two cases."""
-    return compare_values("rise time", "s", *values, {"s": 0.005}, margin)
+    return Comparison("rise time", "s", *values, 0.005, margin)
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,6 @@ def trace(traces):
 def test_a_run_of_n_steps_has_n_plus_one_states(trace):
     assert (trace.steps, len(trace.t), len(trace.q), len(trace.qd)) == (120, 121, 121, 120)
     assert trace.dt == 0.01
-    assert trace.t_step.tolist() == trace.t[1:].tolist()
 
 
 def test_arrays_are_read_only_and_its_own(trace):

@@ -363,15 +363,17 @@ GROUPS = {
     ("older-schema", None): {"an older schema of other fields": both(
         manifest(lambda m: m.update(predicate={"backend": "cpu"})), older_type)},
     # Identity and the list of files.
-    ("lesson", "lesson"): {"another lesson": predicate(lesson="l99")},
-    ("key", "lesson"): {"a page that the book lacks": predicate(page="exam")},
+    ("key", "lesson"): {
+        "another lesson": predicate(lesson="l99"),
+        "a page that the book lacks": predicate(page="exam"),
+    },
     ("time", "time"): {
         "ended before it began": predicate(ended="2020-01-01T00:00:00Z"),
         "a day that no month has": predicate(started="2026-13-45T00:00:00Z"),
         "a run that is to come": predicate(ended="2099-01-01T00:00:00Z"),
     },
     ("key", None): {"another key": predicate(evidence_key="0" * 64)},
-    ("path", None): {
+    ("files", None): {
         "a listed path above": listed("../cpu/log.txt"),
         "a listed absolute path": listed("/etc/hostname"),
         "names that differ in case": listed("ARRAYS.JSON"),

@@ -173,15 +173,14 @@ def test_claimed_orderings(compared, metric, old, new, state, verdict):
 
 
 without_g3 = both(drop_case, pop(METRICS, "G3"))
-LACKING = ("present", "missing")
+LACKING = ("present", "absent")
 
 
 @pytest.mark.parametrize(
     ("first", "second", "title", "found"),
     [
         (same, without_g3, "Coverage",
-         {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "missing")}),
-        (without_g3, without_g3, "Coverage", {"case G3": ("missing", "missing")}),
+         {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "absent")}),
         (same, pop("manifest.json", "predicate", "checks", -1), "Coverage",
          {"check functions": LACKING}),
         (same, put(METRICS, "G1", "overshoot", unit="degree"), "Coverage",
@@ -301,7 +300,7 @@ def test_performance_is_shown_and_decides_nothing(compared):
     assert comparison.state == "equal"
 
 
-def test_the_report_is_worst_first_fetches_nothing_and_keeps_words_as_words(compared):
+def test_the_report_is_worst_first_and_keeps_words_as_words(compared):
     unlike = compared(
         UPGRADED,
         predicate(warnings=["<b>1 | 2</b>\n# see https://example.org"]),
@@ -318,10 +317,6 @@ def test_the_report_is_worst_first_fetches_nothing_and_keeps_words_as_words(comp
     assert text.splitlines()[1].startswith("Differs. Rows: ")
     assert "G2.final_error: " in text
     assert "overshoot: G2 higher than G1, inconclusive" in text
-    page = report.document(unlike).html()
-    assert not re.search(r"<(script|link|img|iframe|a)\b|\b(src|href)=|@import|url\(", page)
-    assert "&lt;b&gt;1 | 2&lt;/b&gt;" in page
-    assert page.count("<table>") == page.count('<div class="box" role="region"') == 6
     page = report.document(unlike).markdown()
     assert "- Engine warning gained: \\<b\\>1 \\| 2\\</b\\> \\# see https" in page
     table = [line for line in page.splitlines() if line.startswith("|")]
@@ -350,8 +345,8 @@ def test_the_exit_status_and_the_report(folder, other, command, tmp_path, old, n
     both(new, seal)(other)
     code, printed = command(tmp_path / "a report", folder, other)
     assert (code, printed.splitlines()[1][: len(said)]) == (status, said)
-    assert sorted(p.name for p in (tmp_path / "a report").iterdir()) == ["report.html", "report.md"]
-    assert f"Report: {tmp_path / 'a report' / 'report.html'}" in printed
+    assert sorted(p.name for p in (tmp_path / "a report").iterdir()) == ["report.md"]
+    assert f"Report: {tmp_path / 'a report' / 'report.md'}" in printed
 
 
 def test_what_cannot_be_compared_or_written_exits_2(folder, other, command, no_file, tmp_path):

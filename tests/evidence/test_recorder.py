@@ -49,14 +49,6 @@ def test_backend_renderer_log_and_host_are_recorded(recorder, experiment, backen
     assert {"numpy", "genesis-world"} <= set(found.host.packages)
 
 
-@pytest.mark.parametrize("render", [True, False])
-def test_a_page_that_does_not_follow_the_contract_is_refused(recorder, experiment, render):
-    recorder.contract = replace(recorder.contract, render=render)
-    with pytest.raises(session.ContractError, match="ROBO_GENESIS_RENDER asks for"):
-        recorder.write(experiment, None if render else RENDERER)
-    assert not recorder.folder.exists()
-
-
 def test_the_build_names_run_command_and_page(quiet, tmp_path, engine, experiment):
     contract = session.Contract("cpu", True, tmp_path)
     by_hand = {Recorder("l04", "lab", contract, engine, {}).run_id for _ in range(2)}

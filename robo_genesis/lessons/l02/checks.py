@@ -8,7 +8,7 @@ from robo_genesis.core.checks import Finding, above, at_most, equal, masses, mod
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.falling import free_fall
-from robo_genesis.sim.bodies.falls import fallen
+from robo_genesis.sim.bodies.free_fall import fallen
 from robo_genesis.sim.common_checks import posture, stamps, start
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim.bodies.falls import continuous_gap, fallen, formula_error
+from robo_genesis.sim.bodies.free_fall import continuous_gap, fallen, formula_error
 from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 

@@ -7,8 +7,7 @@ from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import body_schematic, look
 from robo_genesis.lessons.l02 import spec, trials
-from robo_genesis.sim.bodies.falls import fallen, predicted
-from robo_genesis.sim.bodies.free_fall import continuous_drop
+from robo_genesis.sim.bodies.free_fall import continuous_drop, fallen, predicted
 
 MEASURES = False
 

@@ -101,7 +101,7 @@ def baseline_forces(run: Experiment) -> Figure:
         ("get_dofs_control_force", trace.control_force, "baseline"),
         ("get_dofs_force", trace.internal_force, "other"),
     ):
-        ax.plot(trace.t_step, array[:, ENTRY], label=name, **look(mark, **DOTS))
+        ax.plot(trace.t[1:], array[:, ENTRY], label=name, **look(mark, **DOTS))
     ax.set_xlim(-0.005, BEFORE_REST)
     plotting.finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]")
     return figure

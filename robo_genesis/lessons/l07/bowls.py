@@ -15,6 +15,7 @@ from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.bowl import CHOICES, HEIGHT, WALL
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
+from robo_genesis.sim.session import new_scene
 
 T = 0.01  # Time constant of the engine's contacts at solver steps of up to 5 ms [s]
 
@@ -131,20 +132,10 @@ def parameters() -> dict[str, Any]:
     return inputs(CASES) | json_value(of_bowl | {"x_m": ACROSS, "z_m": UP})
 
 
-def new_scene(gs: Any, case: BowlCase) -> Any:
-    """Return a scene with the floor."""
-    scene = gs.Scene(
-        sim_options=gs.options.SimOptions(dt=case.dt, substeps=case.substeps),
-        profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
-        show_viewer=False,
-    )
-    scene.add_entity(gs.morphs.Plane())
-    return scene
-
-
 def run_case(gs: Any, case: BowlCase) -> tuple[BodyTrace, float]:
     """Let balls fall into a bowl; return trace and median time of a step [s]."""
     scene = new_scene(gs, case)
+    scene.add_entity(gs.morphs.Plane())
     bowl.add(gs, scene, case.choice, seed=case.seed)
     balls = [gs.morphs.Sphere(radius=case.radius, pos=tuple(start)) for start in case.starts]
     links = [scene.add_entity(ball).link_start for ball in balls]
@@ -164,6 +155,7 @@ def run_case(gs: Any, case: BowlCase) -> tuple[BodyTrace, float]:
 def read_geometry(gs: Any) -> dict[str, dict[str, float]]:
     """Return `READINGS` without the times, from free bowls side by side."""
     scene = new_scene(gs, BIG["in_default"])
+    scene.add_entity(gs.morphs.Plane())
     bowls = {
         of: bowl.add(gs, scene, of, (0.0, 0.3 * place, 0.0), fixed=False)
         for place, of in enumerate(CHOICES)

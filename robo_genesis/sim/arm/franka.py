@@ -28,8 +28,6 @@ JOINT_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2  # Type of each joint of `J
 
 def per_joint(*values: float) -> FloatArray:
     """Return a read-only array of shape (9,), one value for each of `JOINT_NAMES`."""
-    if len(values) != len(JOINT_NAMES):
-        raise ValueError(f"{len(values)} values given, one for each of {len(JOINT_NAMES)} joints")
     return read_only(values)
 
 

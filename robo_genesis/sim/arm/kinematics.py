@@ -103,7 +103,7 @@ def link_poses(q: FloatArray) -> Pose:
             f"{q.shape[-1]} joint positions given, expected {ARM} of the Franka or more. For "
             "another arm call sim.mujoco.kinematics.link_poses with its RobotModel."
         )
-    at, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
+    at, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])  # of the link before, first the base
     positions, quats = [], []
     for k, (_, position, quat) in enumerate(CHAIN):
         at = at + rotate(turn, np.array(position))

@@ -138,7 +138,6 @@ def poses(trace: Trace, links: Sequence[str], of: RobotModel) -> Iterator[Findin
     """Yield a link that is not where the positions of the joints put it."""
     from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
-    yield from unit_quaternions(trace.link_quat)
     unknown = sorted(set(links) - mujoco_kinematics.link_names(of))
     if unknown:
         yield broken("pose", "list of links that the model does not have", unknown, [])

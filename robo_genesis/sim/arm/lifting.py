@@ -47,17 +47,20 @@ def ask(
 ) -> list[IkAnswer]:  # fmt: skip
     """Ask for each position of the hand, from the answer before; the fingers stay as at the start.
 
+    Arrays have a row for each environment, and no such axis in a scene without.
+
     Args:
-        robot: of a scene without environments.
+        robot: its entity.
         joints: all its joints.
-        q_start: (d,) start of the first search [rad or m].
+        q_start: (…, d) start of the first search [rad or m].
         settings: of the solver.
-        points: (3,) each [m].
+        points: (…, 3) each [m].
     """
     answers, q = [], q_start
+    down = np.broadcast_to(DOWN, (*q.shape[:-1], 4))
     for position in points:
-        found = solve_ik(robot, joints, position, DOWN, q, settings)
-        q = np.concatenate([found.q[:ARM].astype(float), q_start[ARM:]])
+        found = solve_ik(robot, joints, position, down, q, settings)
+        q = np.concatenate([found.q[..., :ARM].astype(float), q_start[..., ARM:]], axis=-1)
         answers.append(IkAnswer(q, found.error))
     return answers
 

@@ -13,11 +13,11 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Episodes
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.batch import Batch
-from robo_genesis.sim.arm.engine_kinematics import IkSettings, solve_ik
+from robo_genesis.sim.arm.engine_kinematics import IkSettings
 from robo_genesis.sim.arm.joint_control import CaseError, ControlCase
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
-from robo_genesis.sim.arm.lifting import DOWN, FINGERS, HAND_TO_PAD
+from robo_genesis.sim.arm.lifting import FINGERS, HAND_TO_PAD, ask
 from robo_genesis.sim.bodies import bowl, table
 from robo_genesis.sim.bodies.table import SceneCase, World
 
@@ -113,15 +113,10 @@ def plan(
         Joint positions (phases, e, 7) at which the phases end [rad], and whether (e,) the solver
         found all of them.
     """
-    q, found = np.tile(case.q_start, (len(case.starts), 1)), []
-    good = np.ones(len(q), bool)
-    down = np.tile(DOWN, (len(q), 1))
-    for position in points or case.waypoints:
-        answer = solve_ik(robot, joints, position, down, q, case.settings)
-        good &= kinematics.accepted(answer.q, answer.error, *case.settings.tolerances)
-        q = np.concatenate([answer.q[:, :ARM].astype(float), q[:, ARM:]], axis=1)
-        found.append(q[:, :ARM])
-    return np.stack([found[at] for at in OF_GOAL]), good
+    q_start, settings = np.tile(case.q_start, (len(case.starts), 1)), case.settings
+    answers = ask(robot, joints, q_start, settings, points or case.waypoints)
+    good = [kinematics.accepted(of.q, of.error, *settings.tolerances) for of in answers]
+    return np.stack([answers[at].q[:, :ARM] for at in OF_GOAL]), np.all(good, axis=0)
 
 
 class Expert:

@@ -11,6 +11,7 @@ from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
+from robo_genesis.sim.session import CaseError, new_scene
 
 SURFACE_SIZE = (2.0, 0.8, 0.05)
 """Length, width and thickness of the fixed box under the bodies [m]."""
@@ -30,10 +31,6 @@ CHOICES: dict[str, tuple[str | None, ...]] = {
 Case = TypeVar("Case", bound="ContactRun")
 
 State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
-
-
-class ContactError(ValueError):
-    """A case is not valid; the message says what was found and what is valid."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,11 +95,11 @@ class ContactCase(ContactRun):
         for name, choices in CHOICES.items():
             if (given := getattr(self, name)) not in choices:
                 valid = ", ".join(map(repr, choices))
-                raise ContactError(f"{name}={given!r} is not valid. Choices: {valid}.")
+                raise CaseError(f"{name}={given!r} is not valid. Choices: {valid}.")
         for name in ("duration", "settle"):
             seconds = getattr(self, name)
             if abs(round(seconds / self.dt) * self.dt - seconds) > 1e-9:
-                raise ContactError(
+                raise CaseError(
                     f"{name} is {seconds} s, no whole number of outer steps of {self.dt} s. "
                     "Cases are compared over equal simulated time. Choose a dt that divides it."
                 )
@@ -153,17 +150,10 @@ def build_world(
         view: settings of the camera, None for no camera.
 
     Raises:
-        ContactError: there are no cases, or they differ in such a setting.
+        CaseError: there are no cases, or they differ in such a setting.
     """
     common = shared_case(cases)
-    scene = gs.Scene(
-        sim_options=gs.options.SimOptions(
-            dt=common.dt, substeps=common.substeps, gravity=tuple(common.fall)
-        ),
-        rigid_options=gs.options.RigidOptions(**rigid_options(gs, common)),
-        profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
-        show_viewer=False,
-    )
+    scene = new_scene(gs, common, rigid_options(gs, common), gravity=tuple(common.fall))
     surface = scene.add_entity(
         morph=gs.morphs.Box(
             size=SURFACE_SIZE, pos=(0.0, 0.0, TOP - SURFACE_SIZE[2] / 2), fixed=True
@@ -272,15 +262,15 @@ def shared_case(cases: Mapping[str, Case]) -> Case:
     """Return the first case, which has what cases in one scene have in common.
 
     Raises:
-        ContactError: there are no cases, or they differ in such a setting.
+        CaseError: there are no cases, or they differ in such a setting.
     """
     if not cases:
-        raise ContactError("No cases were given; a scene takes at least one. Name a case.")
+        raise CaseError("No cases were given; a scene takes at least one. Name a case.")
     first = next(iter(cases.values()))
     for name, case in cases.items():
         for field in (*(of.name for of in fields(ContactRun)), *first.shared):
             if getattr(case, field) != getattr(first, field):
-                raise ContactError(
+                raise CaseError(
                     f"{name} asks for {field}={getattr(case, field)}, another case of the scene "
                     f"for {getattr(first, field)}. Build a separate scene for it."
                 )

@@ -13,7 +13,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim.bodies.falls import predicted
+from robo_genesis.sim.bodies.free_fall import predicted
 from robo_genesis.sim.bodies.rigid_bodies import Drop
 from robo_genesis.sim.laws import UNTURNED, ZERO, apart, kept, times, unit_quaternions
 

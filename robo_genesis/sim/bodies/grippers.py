@@ -13,6 +13,7 @@ from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies import contacts
 from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
+from robo_genesis.sim.session import new_scene
 
 LINKS = ("box", "left", "right")
 """The links of a run: the box and both pads."""
@@ -74,13 +75,8 @@ def build_world(gs: Any, cases: Mapping[str, HeldCase]) -> World:
     """Declare a scene with a gripper for each case, and build it; raises as `shared_case`."""
     common = contacts.shared_case(cases)
     further = {"iterations": common.iterations} if common.iterations else {}
-    options, fall = gs.options, (0, 0, -common.gravity)
-    scene = gs.Scene(
-        sim_options=options.SimOptions(dt=common.dt, substeps=common.substeps, gravity=fall),
-        rigid_options=options.RigidOptions(**contacts.rigid_options(gs, common), **further),
-        profiling_options=options.ProfilingOptions(show_FPS=False),
-        show_viewer=False,
-    )
+    rigid = contacts.rigid_options(gs, common) | further
+    scene = new_scene(gs, common, rigid, gravity=(0, 0, -common.gravity))
     grippers = {}
     for name, case in cases.items():
         at, density = (0.0, case.place, 0.0), case.mass / SIZE**3

@@ -11,13 +11,9 @@ from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
-from robo_genesis.sim.session import require_built
+from robo_genesis.sim.session import CaseError, require_built
 
 Read = TypeVar("Read")
-
-
-class DropError(ValueError):
-    """A drop is not valid; the message says what was found and what is valid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,15 +49,15 @@ def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
     """Reset the scene, step, and record every state.
 
     Raises:
-        DropError: the scene is not built or has another time step, or the box is not at rest
+        CaseError: the scene is not built or has another time step, or the box is not at rest
             at the height that the case asks for.
     """
-    require_built(scene, case, DropError)
+    require_built(scene, case)
     scene.reset()
     position, _, velocity, spin = read_body(box)
     height = float(position[0, 2])
     if abs(height - case.height) > START_TOLERANCE or velocity.any() or spin.any():
-        raise DropError(
+        raise CaseError(
             f"The box starts at a height of {height:g} m with velocity {velocity[0].tolist()} m/s; "
             f"the case asks for {case.height:g} m, at rest. Set its position before scene.build()."
         )

@@ -13,6 +13,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.franka import FRANKA_MJCF
 from robo_genesis.sim.arm.joint_control import Controlled
 from robo_genesis.sim.bodies import bowl
+from robo_genesis.sim.session import new_scene
 
 TABLE = ((1.2, 0.8, 0.05), (0.45, 0.0))
 """Size of the table's top [m], and its centre (x, y)."""
@@ -131,13 +132,7 @@ def build(
     """
     if n_envs:  # each environment has gains of its own
         options = {"batch_dofs_info": True} | options
-    scene = gs.Scene(
-        sim_options=gs.options.SimOptions(dt=case.dt, substeps=case.substeps),
-        rigid_options=gs.options.RigidOptions(**options) if options else None,
-        profiling_options=gs.options.ProfilingOptions(show_FPS=False),
-        vis_options=gs.options.VisOptions(rendered_envs_idx=[0]) if n_envs else None,
-        show_viewer=False,
-    )
+    scene = new_scene(gs, case, options, first_only=n_envs > 0)
 
     def block(size: Sequence[float], x: float, y: float, top: float, shade: float = 0.6) -> Any:
         """Add a fixed box by its top."""

@@ -31,7 +31,7 @@ class View:
     | `segmentation` | (H, W) | number of what each pixel shows, 0 for the background, int32 |
 
     Raises:
-        ViewError: a shape is wrong, or the transform is not that of a rigid body.
+        ViewError: a shape is wrong.
     """
 
     intrinsics: FloatArray
@@ -62,12 +62,6 @@ class View:
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        turn = self.transform[:3, :3].astype(float)
-        if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-5) or np.linalg.det(turn) < 0:
-            raise ViewError(
-                f"The axes in transform are {turn.round(4).tolist()}, expected three orthogonal "
-                "unit vectors in a right-handed order. Read the camera's transform again."
-            )
 
 
 def look(camera: Any, render: bool = True) -> View:

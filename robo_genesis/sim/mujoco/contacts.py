@@ -1,5 +1,6 @@
 """Contact cases in MuJoCo with the contact parameters of Genesis, for comparison."""
 
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -104,6 +105,22 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
     return ContactTrace(times(case), *stacked(states))
 
 
+def after_one_step(model: Any, states: Sequence[FloatArray], substeps: int) -> FloatArray:
+    """Return time, positions and velocities (n, 1 + nq + nv) one outer step after states.
+
+    Args:
+        model: compiled.
+        states: parts (n, …) of the states in MuJoCo's order, without the time.
+        substeps: solver steps of an outer step.
+    """
+    import mujoco
+    from mujoco import rollout
+
+    begin = np.hstack([np.zeros((len(states[0]), 1)), *states])
+    ends, _ = rollout.rollout(model, [mujoco.MjData(model)], begin, nstep=substeps)
+    return np.asarray(ends)[:, -1]
+
+
 def each_step(
     trace: BodyTrace, case: ContactCase, own_defaults: bool = False
 ) -> dict[str, FloatArray]:
@@ -111,16 +128,12 @@ def each_step(
 
     The arguments are as of `run_case`.
     """
-    import mujoco
-    from mujoco import rollout
-
     states = {name: getattr(trace, name)[:-1, 0].astype(np.float64) for name in MOTION}
     position, quat, velocity, spin = states.values()
     spin = rotate(quat * [1, -1, -1, -1], spin)  # MuJoCo has it in the body's axes
-    begin = np.hstack([np.zeros((len(quat), 1)), position, quat, velocity, spin])
-    model = load(case, own_defaults)
-    ends, _ = rollout.rollout(model, [mujoco.MjData(model)], begin, nstep=case.substeps)
-    _, position, quat, velocity, spin = np.split(np.asarray(ends)[:, -1], (1, 4, 8, 11), axis=1)
+    begin = (position, quat, velocity, spin)
+    ends = after_one_step(load(case, own_defaults), begin, case.substeps)
+    _, position, quat, velocity, spin = np.split(ends, (1, 4, 8, 11), axis=1)
     return dict(zip(MOTION, (position, quat, velocity, rotate(quat, spin)), strict=True))
 
 

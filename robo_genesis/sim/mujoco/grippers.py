@@ -9,7 +9,7 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.kinematics import rotate
 from robo_genesis.sim.bodies.grippers import PAD, SIZE, HeldCase, pads
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
-from robo_genesis.sim.mujoco.contacts import MOTION
+from robo_genesis.sim.mujoco.contacts import MOTION, after_one_step
 
 AXES = np.array([[1.0, 0, 0], [-1, 0, 0]])  # Directions in which the left and the right pad press
 
@@ -72,9 +72,6 @@ def each_step(trace: BodyTrace, case: HeldCase, as_genesis: bool) -> dict[str, F
 
     The arguments are as of `load`.
     """
-    import mujoco
-    from mujoco import rollout
-
     position, quat, velocity, spin = (
         getattr(trace, name)[:-1].astype(np.float64) for name in MOTION
     )
@@ -82,10 +79,8 @@ def each_step(trace: BodyTrace, case: HeldCase, as_genesis: bool) -> dict[str, F
     speed = np.einsum("nlx,lx->nl", velocity[:, 1:], AXES)
     turning = rotate(quat[:, 0] * [1, -1, -1, -1], spin[:, 0])  # MuJoCo has it in the body's axes
     parts = (along, position[:, 0], quat[:, 0], speed, velocity[:, 0], turning)
-    begin = np.hstack([np.zeros((len(quat), 1)), *parts])
-    model = load(case, as_genesis)
-    ends, _ = rollout.rollout(model, [mujoco.MjData(model)], begin, nstep=case.substeps)
-    _, qpos, qvel, _ = np.split(np.asarray(ends)[:, -1], (1, 10, 18), axis=1)
+    ends = after_one_step(load(case, as_genesis), parts, case.substeps)
+    _, qpos, qvel, _ = np.split(ends, (1, 10, 18), axis=1)
     return dict(zip(MOTION, links(case, qpos, qvel), strict=True))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, assemble
+from robo_genesis.sim.bodies.rigid_bodies import record_states
 from robo_genesis.sim.mujoco.kinematics import bare_spec, compiled, with_data
 
 VERSION = version("mujoco")
@@ -86,10 +87,8 @@ def run_case(
         state = (data.qpos[q_at], data.xpos[bodies], data.xquat[bodies])
         return tuple(map(_kept, (*state, data.qvel[dof_at], data.actuator_force, net)))
 
-    readings = [read()]
-    for _ in range(case.steps):
-        mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
-        readings.append(read())
+    substeps = round(case.dt / timestep)
+    readings = record_states(lambda: mujoco.mj_step(model, data, nstep=substeps), case.steps, read)
     effort_limit = _kept(model.actuator_forcerange[:, 1])
     return assemble(case, readings, [case.q_target] * case.steps, effort_limit)
 

@@ -38,7 +38,7 @@ from docutils import nodes
 from docutils.parsers.rst.directives import flag, unchanged
 from sphinx.application import Sphinx
 
-from robo_genesis.core.comparison import Comparison, compare_values
+from robo_genesis.core.comparison import Comparison
 from robo_genesis.core.markup import filled
 from robo_genesis.core.tables import comparison_sentence
 from robo_genesis.core.text import SCALED, format_value
@@ -236,9 +236,9 @@ def measured_order(
     if absent and any(cases[1] in page.runs for page in lesson.pages.values()):
         raise LookupError(f"{lesson_name} records {cases[1]}; ask for it without `:absent:`.")
     first, second = (None if absent else records[case][metric].value for case in cases)
-    noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
+    noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION[unit]
     margin = declared_margin(lesson_name, metric)
-    found = compare_values(noun, unit, first, second, resolution, margin)
+    found = Comparison(noun, unit, first, second, resolution, margin)
     if absent:
         return found, f"The record of {lesson_page} has no such run.", origin
     names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))

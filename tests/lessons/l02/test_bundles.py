@@ -23,7 +23,7 @@ def test_runs_of_bodies_and_of_joints_are_not_exchanged(sound, folder):
     dropped = sound["lecture"]
     with pytest.raises(BundleRefused, match="labels"):
         read_run(dropped, bundle.read_arrays(dropped), "baseline", Trace)
-    with pytest.raises(BundleRefused, match=r"number of joints of free bodies"):
+    with pytest.raises(BundleRefused, match="labels"):
         read_run(folder, bundle.read_arrays(folder), "G1", BodyTrace)
 
 

@@ -9,7 +9,7 @@ import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.core.project import BOOK, ROOT, ProjectError
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons import LESSONS, find_page
 from robo_genesis.pipeline.pages import sources
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.sources import Tree, measuring_modules, page_fingerprint
@@ -19,7 +19,7 @@ from robo_genesis.pipeline.pages.syntax import read_code, syntax_digest
 PACKAGE = ROOT / "robo_genesis"
 PAGES = find_pages(BOOK)
 LECTURES = [page for page in PAGES if page.page == "lecture"]
-ALL, NONE = tuple(LESSONS), ()
+ALL, NONE = LESSONS, ()
 
 
 @pytest.fixture
@@ -185,7 +185,7 @@ def test_a_page_that_runs_alone_records_elapsed_times():
         code = page.code.sources[page.alone - 1]
         assert any(word in code for word in (TIMES, "step_time(", "perf_counter()")), name
     for name in timed:
-        groups = LESSONS[alone[name].lesson].pages[alone[name].page].groups(True).values()
+        groups = find_page(alone[name].lesson, alone[name].page).groups(True).values()
         assert any(group.kind == "performance" for group in groups), name
 
 

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robo_genesis.sim.bodies.contacts import ContactCase, ContactError, shared_case
+from robo_genesis.sim.bodies.contacts import ContactCase, shared_case
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+from robo_genesis.sim.session import CaseError
 
 CASE = ContactCase(start=(0.0, 0.0, 1.0), duration=1.5)
 
@@ -28,15 +29,15 @@ def test_a_case_knows_its_step_mass_and_place():
     ],
 )
 def test_a_case_that_cannot_be_run_is_refused(changes, message):
-    with pytest.raises(ContactError, match=message):
+    with pytest.raises(CaseError, match=message):
         replace(CASE, **changes)
 
 
 def test_cases_of_one_scene_share_what_a_scene_has_once():
     assert shared_case({"a": CASE, "b": replace(CASE, friction=0.1)}) is CASE
-    with pytest.raises(ContactError, match=r"b asks for surface_friction=0\.3, .* 0\.8"):
+    with pytest.raises(CaseError, match=r"b asks for surface_friction=0\.3, .* 0\.8"):
         shared_case({"a": CASE, "b": replace(CASE, surface_friction=0.3)})
-    with pytest.raises(ContactError, match="at least one"):
+    with pytest.raises(CaseError, match="at least one"):
         shared_case({})
 
 

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from robo_genesis.lessons.l02 import spec
-from robo_genesis.sim.bodies.rigid_bodies import DropError, run_drop
+from robo_genesis.sim.bodies.rigid_bodies import run_drop
+from robo_genesis.sim.session import CaseError
 
 
 @pytest.mark.parametrize(
@@ -21,5 +22,5 @@ def test_a_scene_that_was_not_made_ready_for_the_case_is_refused(found, message)
     ready = {"dt": 0.01, "substeps": 2, "is_built": True, "reset": lambda: None}
     ready |= {f"get_links_{name}": lambda: [[0, 0, 0]] for name in ("quat", "vel", "ang")}
     scene = SimpleNamespace(**ready | {"get_links_pos": lambda: [[0, 0, 0.5]]} | found)
-    with pytest.raises(DropError, match=message):
+    with pytest.raises(CaseError, match=message):
         run_drop(scene, scene, spec.BASELINE)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.sim.camera import views as camera_views
-from robo_genesis.sim.camera.views import View, ViewError
+from robo_genesis.sim.camera.views import ViewError
 
 WIDTH, HEIGHT = 8, 5
 SCENE = SimpleNamespace(segmentation_idx_dict={0: -1, 1: (0, 0), 2: (3, 14)})
@@ -69,11 +69,3 @@ def test_pictures_with_rows_and_columns_swapped_are_refused(camera):
     camera.rgb = np.zeros((WIDTH, HEIGHT, 3), np.uint8)
     with pytest.raises(ViewError, match=r"rgb has shape \(8, 5, 3\), expected \(5, 8, 3\)"):
         camera_views.look(camera)
-
-
-@pytest.mark.parametrize("axes", [2 * np.eye(3), np.diag([1.0, 1.0, -1.0])])
-def test_axes_of_no_rigid_body_are_refused(axes):
-    transform = np.eye(4)
-    transform[:3, :3] = axes
-    with pytest.raises(ViewError, match="expected three orthogonal unit vectors"):
-        View(np.eye(3), transform, (WIDTH, HEIGHT), (0.1, 20.0))

@@ -7,7 +7,9 @@ import base64
 import gzip
 import re
 import shutil
+import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pygltflib
@@ -43,9 +45,12 @@ def dropped(folder, monkeypatch, tmp_path, built):
     traces = {"high": falling(2.0, STEPS), "low": falling(1.0, STEPS)}
     arrays = write_traces(folder, traces, None, [*LINKS])
     write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
-    spec = registry.LESSONS["l04"].spec
+    spec = registry.find_lesson("l04").spec
     lesson = Lesson(spec, {}, {}, {"drops": DROPPED})
-    monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
+    monkeypatch.setattr(registry, "LESSONS", (*registry.LESSONS, LESSON))
+    monkeypatch.setitem(
+        sys.modules, f"{registry.__name__}.{LESSON}", SimpleNamespace(LESSON=lesson)
+    )
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
     visual_shape.write_shape(tmp_path / LESSON / "lecture", [box("box"), visual_shape.floor(1.0)])
     return folder

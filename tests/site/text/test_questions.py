@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from robo_genesis.core.comparison import compare_values
+from robo_genesis.core.comparison import Comparison
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.site.text import questions
@@ -63,7 +63,7 @@ def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
 )  # fmt: skip
 def test_the_answer_has_both_values_in_a_readable_unit(unit, values, margin, said):
     resolution = {"m": 1e-5, "s": 0.005, "rad": 1e-5}
-    found = compare_values("depth", unit, *values, resolution, margin)
+    found = Comparison("depth", unit, *values, resolution[unit], margin)
     assert questions.measured_sentence(("A", "B"), found).startswith(said)
 
 
