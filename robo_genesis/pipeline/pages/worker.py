@@ -173,7 +173,6 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     elapsed = time.monotonic() - begin
     if failure := _failure(run, error, list(begins)):
         return failure
-    notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
     try:
         if failure := _unkeyed(run):
             return failure
