@@ -194,8 +194,9 @@ class Trial:
         log = self.cache / "repin" / "logs" / f"{stage}-{version}.log"
         self.progress(stage, what, f"log: {log}")
         self.failed = {}
-        if run_logged(command, self.work, log, lambda: self.name_failed(stage, log)):
-            self.name_failed(stage, log)
+        if run_logged(command, self.work, log):
+            if stage == "book":  # tests print builds of their own
+                self.name_failed(log)
             head, lines = f"Failed: {stage} {what}", last_words(log)
             remedy = (
                 f"The checkout still pins {self.old}. Give another version, or change what failed "
@@ -206,12 +207,12 @@ class Trial:
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
             raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
-    def name_failed(self, stage: str, log: Path) -> None:
-        """Print each page of a build that failed or was refused since the last call."""
+    def name_failed(self, log: Path) -> None:
+        """Print each page of a build that failed or was refused."""
         for page, state, why in FAILED.findall(log.read_text("utf8", errors="replace")):
-            if stage == "book" and page not in self.failed:  # tests print builds of their own
+            if page not in self.failed:
                 self.failed[page] = state, why
-                self.progress(stage, page, f"{state}: {why}")
+                self.progress("book", page, f"{state}: {why}")
 
     def write_report(self, *failed: str) -> list[Path]:
         """Compare what both versions built, as far as they did, and write the report."""
@@ -234,16 +235,13 @@ def last_words(log: Path) -> list[str]:
     return [line.rstrip() for line in after.splitlines() if line.strip()][-LINES:]
 
 
-def run_logged(
-    command: Sequence[str], folder: Path, log: Path, meanwhile: Callable[[], None] = lambda: None
-) -> int:
+def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
     """Run a command in a checkout with its output in a log, and return its exit status.
 
     Args:
         command: program and arguments; it ends with this process.
         folder: the checkout.
         log: file of its output, written over.
-        meanwhile: called each second.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
@@ -257,4 +255,4 @@ def run_logged(
             start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
-        return wait_or_kill(process, meanwhile)
+        return wait_or_kill(process)
