@@ -101,13 +101,11 @@ def run_build(build: Build) -> list[str]:
             if build.second:
                 agreed = agree(build.executed, build.second, verify)
                 progress("agree", agreed[0])
-            manifests = _accepted(build, verify, results, progress)
         else:
             results = _execute(build, pages, into, environment, progress, verify)
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
-            if not build.executed:
-                manifests.update(_accepted(build, verify, results, progress))
+            manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)
 
         progress("render", "all pages")
@@ -216,11 +214,11 @@ def _execute(
     results = execute_pages(
         pages,
         into,
+        build.cache / project.LOGS,
         reuse=not build.release,
         jobs=build.jobs,
         timeout=build.timeout,
         environment=environment,
-        logs=build.cache / project.LOGS,
         report=Lines(partial(progress, "execute")),
         accept=accept,
     )

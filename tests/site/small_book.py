@@ -68,7 +68,7 @@ def as_executed(page: Page, place: Path, seconds: list[float]) -> PageResult:
 
 def executed(pages: list[Page], folder: Path) -> list[PageResult]:
     """Execute pages, and return their results."""
-    results = execute_pages(pages, places(pages, folder / "store"))
+    results = execute_pages(pages, places(pages, folder / "store"), folder / "logs")
     assert {result.status for result in results} == {"executed"}
     return results
 

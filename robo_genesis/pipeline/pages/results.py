@@ -75,7 +75,7 @@ class PageResult:
 
     `bundle` is None if the page declares none. `folder` is the page's folder: in the store, where a
     failed page may be absent, or outside if it is taken over from another machine. `log` is the
-    file with all that an executed page wrote, None if that is not kept.
+    file with all that an executed page wrote, None for other pages.
     """
 
     page: Page

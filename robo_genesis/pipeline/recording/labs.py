@@ -208,9 +208,9 @@ def _run(recording: Recording, page: Page, folder: Path, progress: Progress) -> 
     [result] = execute_pages(
         [page],
         places([page], folder, recording.root, environment),
+        recording.cache / project.LOGS,
         timeout=recording.timeout,
         environment=environment,
-        logs=recording.cache / project.LOGS,
         report=Lines(partial(progress, "execute")),
     )
     if result.failure:
