@@ -7,8 +7,8 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -151,8 +151,7 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 class Trial:
     """The steps in the checkout, each with its log.
 
-    `before` is what the old version built, `failed` what the current step has found: the name of
-    each page that is not accepted → `failed` or `refused`, and why.
+    `before` is what the old version built.
     """
 
     cache: Path
@@ -161,7 +160,6 @@ class Trial:
     work: Path
     progress: Progress
     before: refresh.EngineBuild | None = None
-    failed: dict[str, refresh.Pair] = field(default_factory=dict)
 
     def run(self) -> list[Path]:
         """Resolve, build with the old and the new version, report, test; return the report."""
@@ -180,7 +178,7 @@ class Trial:
         python = f"BASE_PYTHON={sys.executable}"
         self.command("install", "the new lock", "make", ".venv/.installed", python)
         self.command("book", f"with {self.new}", "make", "book")
-        pages = self.write_report()
+        pages = self.write_report({})
         self.command("test", f"with {self.new}", "make", "test")
         return pages
 
@@ -193,36 +191,34 @@ class Trial:
         version = project.engine_pin(self.work)
         log = self.cache / "repin" / "logs" / f"{stage}-{version}.log"
         self.progress(stage, what, f"log: {log}")
-        self.failed = {}
         if run_logged(command, self.work, log):
-            if stage == "book":  # tests print builds of their own
-                self.name_failed(log)
+            text = log.read_text("utf8", errors="replace")
+            found = FAILED.findall(text) if stage == "book" else []  # tests print other builds
             head, lines = f"Failed: {stage} {what}", last_words(log)
             remedy = (
                 f"The checkout still pins {self.old}. Give another version, or change what failed "
                 f"so that it passes with {self.new} too, and commit; then run make repin again. It "
                 "reuses what is compiled and executed, and begins with the pages that failed."
             )
-            pages = self.write_report(head, remedy, *lines)
+            refused = {page: (state, why) for page, state, why in found}
+            pages = self.write_report(refused, head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
             raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
-    def name_failed(self, log: Path) -> None:
-        """Print each page of a build that failed or was refused."""
-        for page, state, why in FAILED.findall(log.read_text("utf8", errors="replace")):
-            if page not in self.failed:
-                self.failed[page] = state, why
-                self.progress("book", page, f"{state}: {why}")
+    def write_report(self, refused: Mapping[str, refresh.Pair], *failed: str) -> list[Path]:
+        """Compare what both versions built, as far as they did, and write the report.
 
-    def write_report(self, *failed: str) -> list[Path]:
-        """Compare what both versions built, as far as they did, and write the report."""
+        Args:
+            refused: the name of each page that is not accepted → `failed` or `refused`, and why.
+            failed: what failed, what to do, and the last lines of the log.
+        """
         found = refresh.Refresh((self.old, self.new))
         if self.before:
             site = self.work / "book" / PUBLISHED / "html"
-            absent = [page for page, (state, _) in self.failed.items() if state == "failed"]
+            absent = [page for page, (state, _) in refused.items() if state == "failed"]
             after = refresh.read_build(self.work, self.new, site, absent)
             found = refresh.compare_builds(self.before, after)
-        found = replace(found, failed=failed, pages=self.failed)
+        found = replace(found, failed=failed, pages=refused)
         folder = self.cache / "reports" / f"repin-{self.old}-{self.new}"
         self.progress("report", refresh.summary(found), str(folder))
         return refresh.document(found).write(folder)

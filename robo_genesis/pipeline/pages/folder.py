@@ -176,8 +176,6 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
             f"its fingerprint is {record.fingerprint}, here it is {fingerprint}: lock, installed "
             "packages, Python, RENDER, the engine's switches or the package differ.",
         )
-    if page.declares_bundle and find_bundle(place / OUTPUTS, record.run_id) is None:
-        raise PageRefused("bundle", f"it has no evidence bundle of run {record.run_id}.")
     return notebook
 
 

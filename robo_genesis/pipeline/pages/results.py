@@ -231,11 +231,6 @@ def _failing_line(ran: NotebookNode) -> int:
     return int(found[-1]) + empty if found else 1
 
 
-def last_lines(text: str) -> tuple[str, ...]:
-    """Return the last lines of a text, colours removed."""
-    return tuple(ANSI.sub("", text).splitlines()[-LOG_LINES:])
-
-
 def failure_report(results: Sequence[PageResult]) -> str:
     """Return one text that names page, cell, exception and last log lines of every failed page.
 

@@ -82,6 +82,8 @@ def result_of(page: Page, place: Path, fingerprint: str) -> PageResult:
     if outcome := unexpected_outcome(page, notebook):
         raise folder.PageRefused("outcome", f"{outcome.error}: {outcome.message}")
     bundle = find_bundle(place / folder.OUTPUTS, record.run_id)
+    if page.declares_bundle and bundle is None:
+        raise folder.PageRefused("bundle", f"it has no evidence bundle of run {record.run_id}.")
     return PageResult(page, "reused", 0.0, record.run_id, bundle, folder=place)
 
 

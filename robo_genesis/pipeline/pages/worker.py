@@ -87,8 +87,8 @@ def work(run: PageRun, connection: Connection) -> None:
     begin = time.monotonic()
     failure = execute_page(run, starts)
     if failure:
-        written = run.log.read_text("utf8", errors="replace")
-        failure = replace(failure, log=results.last_lines(written))
+        written = ANSI.sub("", run.log.read_text("utf8", errors="replace"))
+        failure = replace(failure, log=tuple(written.splitlines()[-results.LOG_LINES :]))
     connection.send((time.monotonic() - begin, failure))
 
 
