@@ -103,8 +103,6 @@ class Installation:
     def empty(self) -> None:
         """Make the folder, or empty it if this module made it."""
         folder = self.folder
-        if ":" in str(folder.absolute()):
-            raise InstallError(f"{folder.absolute()} has a colon, which separates paths; rename it")
         ours = any((folder / name).is_file() for name in (MARK, DONE))
         free = not folder.exists() or (folder.is_dir() and not any(folder.iterdir()))
         if folder.is_symlink() or not (ours or free):

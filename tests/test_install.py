@@ -31,7 +31,6 @@ def here(tmp_path, monkeypatch) -> Installation:
         (".venv/bin/python", ".venv", "or use it as it is: .venv/bin/python"),
         (".venv", ".venv", "was not made by"),
         (f"of-mine/{DONE}", "link", "is a link"),
-        (f"a:b/{DONE}", "a:b", "has a colon"),
         ("of-mine/file", ".venv", None),
         (f".venv/{MARK}", ".venv", None),  # it was interrupted
         (f".venv/{DONE}", ".venv", None),

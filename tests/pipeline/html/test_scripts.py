@@ -60,8 +60,7 @@ def test_scripts_of_the_theme_and_of_the_course_are_known(site, body):
         ("<script>DOCUMENTATION_OPTIONS.pagename = 'index';alert(1);</script>", "is not known"),
         (f"<svg><g><svg:script>{KNOWN}</svg:script></g></svg>", "inside a drawing"),
         ('<script type="text/javascript">alert(1)</script>', "has the type 'text/javascript'"),
-        ('<script type="application/json">alert(1)</script>', "not plain JSON"),
-        ('<script type="application/json">["<!--<script>"]</script>', "not plain JSON"),
+        ('<script type="application/json">["<!--<script>"]</script>', "JSON has '<'"),
         ('<script type="application/json" src="_static/a.js"></script>', "has the type"),
         ('<script src="_downloads/a.txt"></script>', "'_downloads/a.txt' is not known"),
         ('<script src="_static/a.js">alert(1)</script>', "is not known"),
@@ -102,7 +101,6 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:x="http://www.w3.org/1999/x
     ("name", "content", "said"),
     [
         ("_downloads/a.js", "", "the build writes no such script"),
-        ("replay/model-viewer.js", "alert(1)", "the build writes no such script"),
         ("replay/b.js", '(globalThis.replayModels ??= {})["a"] = "YQ==";\nalert(1)\n', "no such"),
         ("_downloads/a.xhtml", "", "may run script in it"),
         ("a.HTML", "", "may run script in it"),
