@@ -34,11 +34,7 @@ FILES_LIMIT = 500
 
 
 class PageRefused(ProjectError):  # noqa: N818 - the word of the domain, as for bundles
-    """A folder is not this page as this checkout executes it. `code` is stable."""
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
+    """A folder is not this page as this checkout executes it; the first word says why."""
 
 
 class Record(Strict):
@@ -126,7 +122,7 @@ def plain_files(folder: Path) -> list[str]:
             if found.st_size > SIZE_LIMIT or len(names) == FILES_LIMIT:
                 reason = f"exceeds a limit: at most {FILES_LIMIT} files, each of {SIZE_LIMIT} bytes"
             if reason:
-                raise PageRefused("files", f"{name} {reason}. Let the page leave only plain files.")
+                raise PageRefused(f"files: {name} {reason}. Let the page leave only plain files.")
             names.append(name)
     return names
 
@@ -142,7 +138,7 @@ def read_record(place: Path) -> Record:
         return Record.model_validate_json((place / RECORD).read_bytes())
     except (OSError, ValidationError) as error:
         what = f"{RECORD} is not what `make execute` writes. Execute the page again."
-        raise PageRefused("record", f"{what}\n{error}") from error
+        raise PageRefused(f"record: {what}\n{error}") from error
 
 
 def require_this_page(place: Path, record: Record, page: Page, fingerprint: str) -> NotebookNode:
@@ -156,25 +152,23 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
     present = set(plain_files(place)) - {RECORD}
     if (record.docname, record.lesson, record.page) != (page.docname, page.lesson, page.page):
         raise PageRefused(
-            "page",
-            f"it is of {record.docname} ({record.lesson}/{record.page}), expected was "
-            f"{page.docname} ({page.lesson}/{page.page}).",
+            f"page: it is of {record.docname} ({record.lesson}/{record.page}), expected was "
+            f"{page.docname} ({page.lesson}/{page.page})."
         )
     absent = sorted({NOTEBOOK, *record.files} - present)
     others = sorted(present - record.files.keys())
     if absent or others:
-        raise PageRefused("files", f"absent are {absent}, not of this page {others}.")
+        raise PageRefused(f"files: absent are {absent}, not of this page {others}.")
     changed = sorted(name for name in present if sha256(place / name) != record.files[name])
     if changed:
-        raise PageRefused("digest", f"{changed} changed since it was stored.")
+        raise PageRefused(f"digest: {changed} changed since it was stored.")
     notebook = nbformat.read(place / NOTEBOOK, as_version=4)
     if code_of(notebook).digests != page.code.digests:
-        raise PageRefused("code", f"its code cells are not those of {page.path}.")
+        raise PageRefused(f"code: its code cells are not those of {page.path}.")
     if record.fingerprint != fingerprint:
         raise PageRefused(
-            "fingerprint",
-            f"its fingerprint is {record.fingerprint}, here it is {fingerprint}: lock, installed "
-            "packages, Python, RENDER, the engine's switches or the package differ.",
+            f"fingerprint: it is {record.fingerprint}, here it is {fingerprint}: lock, installed "
+            "packages, Python, RENDER, the engine's switches or the package differ."
         )
     return notebook
 
