@@ -46,8 +46,6 @@ class Record(Strict):
     """
 
     docname: str
-    lesson: str | None
-    page: str | None
     fingerprint: str
     code: Sha256
     run_id: RunId
@@ -92,8 +90,6 @@ def write_page(
                 keep_outputs(bundle, notebook)
         record = Record(
             docname=page.docname,
-            lesson=page.lesson,
-            page=page.page,
             fingerprint=place.name,
             code=code_digest(page),
             run_id=run_id,
@@ -145,16 +141,12 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
     """Return the notebook of a folder that holds a page as this checkout executes it.
 
     The record has the digest of each file, so they are of one run, and as `write_page` left them.
+    What the front matter declares is what the cells open; see `page_rules`.
 
     Raises:
         PageRefused: it says what was found and what is valid.
     """
     present = set(plain_files(place)) - {RECORD}
-    if (record.docname, record.lesson, record.page) != (page.docname, page.lesson, page.page):
-        raise PageRefused(
-            f"page: it is of {record.docname} ({record.lesson}/{record.page}), expected was "
-            f"{page.docname} ({page.lesson}/{page.page})."
-        )
     absent = sorted({NOTEBOOK, *record.files} - present)
     others = sorted(present - record.files.keys())
     if absent or others:
