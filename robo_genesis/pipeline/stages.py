@@ -215,11 +215,11 @@ def _execute(
         pages,
         into,
         build.cache / project.LOGS,
+        environment,
+        Lines(partial(progress, "execute")),
         reuse=not build.release,
         jobs=build.jobs,
         timeout=build.timeout,
-        environment=environment,
-        report=Lines(partial(progress, "execute")),
         accept=accept,
     )
     failed = [failure_report(results)] if any(result.failure for result in results) else []

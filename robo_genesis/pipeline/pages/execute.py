@@ -61,9 +61,7 @@ class Underway:
 class Lines:
     """Reports pages as lines: each start and end, and now and then how far the pages are."""
 
-    def __init__(
-        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = 30.0
-    ) -> None:
+    def __init__(self, say: Callable[[str, str], None], every: float = 30.0) -> None:
         """Report to `say`, which takes a page's name and an event, or the running pages and "".
 
         Args:
@@ -97,12 +95,12 @@ def execute_pages(
     pages: Sequence[Page],
     places: Mapping[str, Path],
     logs: Path,
+    environment: Mapping[str, str],
+    report: Lines,
     *,
     reuse: bool = True,
     jobs: int = 1,
     timeout: int = TIMEOUT,
-    environment: Mapping[str, str] | None = None,
-    report: Lines | None = None,
     accept: Callable[[PageResult], bool] = lambda result: True,
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
@@ -119,12 +117,11 @@ def execute_pages(
         places: where the store has each page, or will have it; see `page_store.places`. A page
             that fails leaves its place as it is.
         logs: the folder that keeps, for each page, a file with all that its last run wrote.
+        environment: variables for the kernels.
+        report: gets each event, and shows how far the running pages are.
         reuse: whether a page that the store has is not executed again.
         jobs: how many pages run at once.
         timeout: seconds for one cell; a page's front matter may set another.
-        environment: variables for the kernels.
-        report: gets each event, and shows how far the running pages are; by default nothing
-            is shown.
         accept: called once for each page that was executed and did not fail, after the next page
             started; returns whether the page counts as one that did not fail.
 
@@ -134,7 +131,6 @@ def execute_pages(
     Raises:
         OSError: the store cannot be used.
     """
-    report, environment = report or Lines(), environment or {}
     results = _reused(pages, places, report) if reuse else {}
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
     waiting = [page for page in pages if page.docname not in results]

@@ -224,8 +224,6 @@ def _failing_line(ran: NotebookNode) -> int:
         return 1
     text = ANSI.sub("", "\n".join(errors[-1].traceback))
     found = re.findall(rf"^ *Cell In\[{ran.execution_count}\], line (\d+)", text, re.MULTILINE)
-    # A syntax error that is found before the cell is compiled has a line, but no frame.
-    found = found or re.findall(r"\(<\w+>, line (\d+)\)$", errors[-1].evalue)
     # IPython counts from the first line that is not empty.
     empty = len(ran.source) - len(ran.source.lstrip("\n"))
     return int(found[-1]) + empty if found else 1

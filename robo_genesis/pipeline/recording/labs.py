@@ -209,9 +209,9 @@ def _run(recording: Recording, page: Page, folder: Path, progress: Progress) -> 
         [page],
         places([page], folder, recording.root, environment),
         recording.cache / project.LOGS,
+        environment,
+        Lines(partial(progress, "execute")),
         timeout=recording.timeout,
-        environment=environment,
-        report=Lines(partial(progress, "execute")),
     )
     if result.failure:
         raise project.ProjectError(f"{result.failure}\n\n{failure_report([result])}")

@@ -59,7 +59,8 @@ BROKEN = {
 def execute(folder: Path, **settings):
     """Execute the book of a folder with its own store; return results by page."""
     pages = find_pages(folder / "book")
-    results = execute_pages(pages, places(pages, folder / "store"), folder / "logs", **settings)
+    given = {"environment": {}, "report": Lines(lambda name, event: None)} | settings
+    results = execute_pages(pages, places(pages, folder / "store"), folder / "logs", **given)
     return {result.page.docname: result for result in results}
 
 
