@@ -115,7 +115,7 @@ def run_build(build: Build) -> list[str]:
             packing = beside.submit(pack, draft.html)
             site = Site(draft.html, site_root())
             progress("pack", packing.result().name)
-        sums = write_sums(draft.html, draft.digests)  # last of the site's files, before the checks
+        sums = write_sums(draft.html)  # last of the site's files, before the checks
         progress("sums", sums.name)
         try:
             checked = _check(site, progress)

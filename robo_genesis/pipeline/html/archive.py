@@ -2,7 +2,7 @@
 
 import hashlib
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import BinaryIO
 
@@ -68,19 +68,17 @@ def content(path: Path) -> bytes:
     return derived("offline", [data, Path(__file__).read_bytes()], without_offer)
 
 
-def write_sums(html: Path, known: Mapping[str, str]) -> Path:
+def write_sums(html: Path) -> Path:
     """Write the digests of a complete site into the site; return the file.
 
     Args:
         html: the folder of the site with its archive. The archive holds no SHA256SUMS: its pages
             differ from the site's by the offer of the archive, and its own digest is in the file.
-        known: digests by name of the file; the other files are read.
     """
     lines = []
     for path in sorted(html.rglob("*"), key=lambda path: path.relative_to(html).as_posix()):
         name = path.relative_to(html).as_posix()
         if path.is_file() and name != SUMS:
-            digest = known.get(name) or hashlib.sha256(path.read_bytes()).hexdigest()
-            lines.append(f"{digest}  {name}\n")
+            lines.append(f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {name}\n")
     write_whole(html / SUMS, "".join(lines).encode())
     return html / SUMS

@@ -148,8 +148,7 @@ def die_with_parent(scratch: Path) -> None:
         scratch: temporary folder of the build, which no other process would remove.
     """
     parent = multiprocessing.parent_process()
-    if parent is None:
-        return
+    assert parent is not None  # the build starts each worker
 
     def wait_and_die() -> None:
         parent.join()

@@ -243,6 +243,5 @@ def failure_report(results: Sequence[PageResult]) -> str:
             place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
         lines += ["", place, *(f"    {line}" for line in str(failure).splitlines())]
         if failure.log:
-            whole = f" of {log}" if log else ""
-            lines += [f"    last lines{whole}:", *(f"    | {line}" for line in failure.log)]
+            lines += [f"    last lines of {log}:", *(f"    | {line}" for line in failure.log)]
     return "\n".join(lines)

@@ -37,7 +37,7 @@ def test_all_files_but_the_archive_itself_are_packed_to_the_same_bytes_each_time
 def test_every_file_but_the_list_is_listed_in_order(html):
     pack(html)
     for _ in range(2):
-        write_sums(html, {})
+        write_sums(html)
     names = [line.split("  ", 1)[1] for line in (html / SUMS).read_text().splitlines()]
     assert names == sorted([".hidden", "index.html", ARCHIVE, "sub/a page.html"])
     command = [shutil.which("sha256sum"), "--check", "--strict", SUMS]
