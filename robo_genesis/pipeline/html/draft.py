@@ -8,7 +8,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from robo_genesis.core.files import write_whole
+from robo_genesis.core.files import files_below, write_whole
 
 BUILD_INFO = ".buildinfo"
 """A note of Sphinx for its next build, which depends on the checkout's path."""
@@ -36,9 +36,10 @@ class Draft:
         """Make the copy equal to what Sphinx rendered, after it ended; return this draft.
 
         Raises:
-            OSError: a file or folder cannot be read.
+            OSError: a file cannot be read.
         """
-        names = self._names()
+        found = files_below(self.rendered, left_out=(BUILD_INFO,))
+        names = {path.relative_to(self.rendered).as_posix() for path in found}
         for name in self.digests.keys() - names:  # first: a folder may have taken a file's name
             (self.html / name).unlink()
             with suppress(OSError):  # the folder has other files
@@ -48,21 +49,6 @@ class Draft:
             content = (self.rendered / name).read_bytes()
             digest = hashlib.sha256(content).hexdigest()
             if digest != self.digests.get(name):
-                write_whole(
-                    self.html / name, content
-                )  # a browser of `make live` gets no part of it
+                write_whole(self.html / name, content)  # a browser of `make live` gets no part
                 self.digests[name] = digest
         return self
-
-    def _names(self) -> set[str]:
-        """Return the names of the rendered files."""
-
-        def report(error: OSError) -> None:
-            raise error
-
-        return {
-            Path(here, file).relative_to(self.rendered).as_posix()
-            for here, _, files in os.walk(self.rendered, onerror=report, followlinks=True)
-            for file in files
-            if file != BUILD_INFO
-        }
