@@ -1,9 +1,7 @@
-"""Sphinx reads executed pages and runs nothing; pages load no third-party files."""
+"""Sphinx reads executed pages and runs nothing."""
 
 import os
-import re
 from pathlib import Path
-from typing import Any
 
 import myst_nb.sphinx_
 from myst_nb.core.execute.base import NotebookClientBase
@@ -18,8 +16,6 @@ from robo_genesis.pipeline.pages.folder import code_and_kernel
 
 RECOMPUTED: dict[str, set[int]] = {}
 """Of each page that was read, the cells whose outputs but streams `page.show` displayed."""
-
-ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
 
 class ExecutedPage(NotebookClientBase):
@@ -69,19 +65,6 @@ def shorten_tracebacks(cell: NotebookNode) -> None:
             output.traceback = output.traceback[-1:]
 
 
-def drop_third_parties(
-    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Remove scripts and styles of other hosts that other extensions registered."""
-    for name in ("script_files", "css_files"):
-        # Sphinx lists plain strings and asset objects.
-        context[name] = [
-            file
-            for file in context.get(name, [])
-            if not ELSEWHERE.match(str(getattr(file, "filename", file) or ""))
-        ]
-
-
 def setup(app: Sphinx) -> None:
     """Register the extension.
 
@@ -94,4 +77,3 @@ def setup(app: Sphinx) -> None:
     myst_nb.sphinx_.create_client = lambda *arguments: ExecutedPage(*arguments[:4])
     # Jupyter Book always sets this value, also where sphinx_comments is not an extension.
     app.add_config_value("comments_config", None, "html")
-    app.connect("html-page-context", drop_third_parties, priority=900)
