@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from itertools import cycle
 from pathlib import Path
@@ -67,7 +67,10 @@ def bullets(*items: Iterable[str | nodes.Node], **attributes: Any) -> nodes.bull
 
 
 def table(
-    head: Sequence[str], rows: Sequence[Sequence[Cell]], anchors: Sequence[str] = ()
+    head: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    anchors: Sequence[str] = (),
+    **attributes: Any,
 ) -> nodes.table:
     """Return a table; `head` may be empty, `anchors` names the rows.
 
@@ -81,14 +84,7 @@ def table(
     for row, anchor in zip(body, anchors, strict=False):
         row["ids"].append(anchor)
     group += body
-    return nodes.table("", group)
-
-
-def text_table(rows: Sequence[Mapping[str, Cell]]) -> nodes.table:
-    """Return rows of equal keys as a table whose columns are as wide as needed."""
-    found = table(list(rows[0]), [list(row.values()) for row in rows])
-    found["classes"].append("colwidths-auto")
-    return found
+    return nodes.table("", group, **attributes)
 
 
 def _row(cells: Iterable[Cell]) -> nodes.row:

@@ -20,7 +20,7 @@ from sphinx.util import logging
 
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.evidence import ledger_data, measured, refusals
-from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, PageRun
+from robo_genesis.site.evidence.ledger_data import LEDGER, MEASURED, PRINTED, Item, PageRun
 from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin, register
 from robo_genesis.site.frame.executed import RECOMPUTED
 
@@ -62,6 +62,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     book, items = Path(env.srcdir), []
     known, page = all_runs(book), measured_pages(book).get(env.docname)
     recomputed = RECOMPUTED.get(env.docname, set())
+    ledger = app.builder.get_relative_uri(env.docname, LEDGER) if LEDGER in env.found_docs else None
     for node in list(doctree.findall(nodes.Element)):
         texts = printed_texts(node, recomputed)
         is_table, is_picture = isinstance(node, nodes.table), isinstance(node, nodes.image)
@@ -78,7 +79,8 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
             item = replace(item, kind="printed")
         items.append(item)
         line = ledger_data.provenance(item.kind, [known[key] for key in item.runs])
-        add_line(last if texts else holder, line, item.row)
+        address = None if ledger is None else f"{ledger}#{item.row}"
+        add_line(last if texts else holder, line, address)
     env.metadata[env.docname][ITEMS] = items
 
 
@@ -140,16 +142,17 @@ def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> No
     holder["ids"].append(name)
 
 
-def add_line(holder: nodes.Element, text: str, row: str) -> None:
+def add_line(holder: nodes.Element, text: str, address: str | None) -> None:
     """Insert the line of provenance at the end of the caption, or below an item without one.
 
     What a run measured or printed has an icon, and the words appear under the mouse or the focus.
-    Anything else says so in words.
+    Anything else says so in words. `address` is that of its row in the ledger.
     """
-    link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
     caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
-    joint = nodes.inline("", " · " if text[-1] != "." else " ", classes=["provenance-joint"])
-    parts = [nodes.inline("", text, classes=["provenance-text"]), joint, link]
+    parts = [nodes.inline("", text, classes=["provenance-text"])]
+    if address is not None:
+        joint = nodes.inline("", " · " if text[-1] != "." else " ", classes=["provenance-joint"])
+        parts += [joint, nodes.reference("", "ledger", internal=True, refuri=address)]
     classes = ["provenance", *(["as-icon"] if text.startswith((MEASURED, PRINTED)) else [])]
     if caption is not None:
         caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=classes)]
