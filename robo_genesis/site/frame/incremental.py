@@ -19,7 +19,7 @@ Files that pages leave beside the HTML are removed with the last page that left 
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
 from typing import Any, cast
 
@@ -95,15 +95,14 @@ def note_reading(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
 
 
 def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
-    """Return the pages that must be written again, beside those that were read again."""
-    vars(app.builder)["robo_genesis_home"] = True
+    """Choose the pages to write: those that were read, or all if one shows others something new."""
     shown = hashlib.sha256(repr(sorted(_shown(env))).encode()).hexdigest()
     before, vars(env)["robo_genesis_shown"] = vars(env).get("robo_genesis_shown"), shown
-    if before != shown:
-        return sorted(env.found_docs)
-    reads: Sequence[str] = vars(app.builder)["robo_genesis_reads"]
-    vars(app.builder)["robo_genesis_home"] = (home := env.config.root_doc) in reads or not reads
-    return [] if reads else [home]  # without any page, Sphinx would write no style sheet
+    reads: list[str] = vars(app.builder)["robo_genesis_reads"]
+    pages = reads if before == shown else sorted(env.found_docs)
+    # Without any page, Sphinx would write no style sheet.
+    chosen = vars(app.builder)["robo_genesis_writes"] = pages or [env.config.root_doc]
+    return chosen
 
 
 def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
@@ -141,18 +140,11 @@ def drop_downloads(app: Sphinx, builder: Any) -> None:
     shutil.rmtree(Path(builder.outdir) / "_downloads", ignore_errors=True)
 
 
-def leave_out_parents(app: Sphinx, builder: Any) -> None:
-    """Keep Sphinx from writing parents of a changed page and the home page.
-
-    It would write the home page in each build; see `outdated_pages`.
-    """
-    vars(builder)["robo_genesis_parents"] = builder.env.files_to_rebuild
-    builder.env.files_to_rebuild = {}
+def write_chosen(app: Sphinx, builder: Any) -> None:
+    """Keep Sphinx from writing also the parents of a changed page, and always the home page."""
 
     def prepare(names: set[str]) -> None:
-        home = builder.config.root_doc
-        if not vars(builder)["robo_genesis_home"] and os.path.exists(builder.get_outfilename(home)):
-            names.discard(home)
+        names.intersection_update(vars(builder)["robo_genesis_writes"])
         type(builder).prepare_writing(builder, names)
 
     builder.prepare_writing = prepare
@@ -163,12 +155,9 @@ def finish(app: Sphinx, error: Exception | None) -> None:
 
     The names of pictures with equal file names depend on the order in which they were read.
     """
-    env = app.env
-    if parents := vars(app.builder).pop("robo_genesis_parents", None):
-        env.files_to_rebuild = parents
     if error is not None:
         return
-    named = {name: file for file, (_, name) in env.images.items()}
+    named = {name: file for file, (_, name) in app.env.images.items()}
     for path in (Path(app.outdir) / "_images").glob("*"):
         if path.is_file() and path.name not in named:
             path.unlink()
@@ -204,5 +193,5 @@ def setup(app: Sphinx) -> None:
     TocTreeCollector.assign_figure_numbers = number_by_page  # type: ignore[method-assign]
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
-    app.connect("write-started", leave_out_parents)
+    app.connect("write-started", write_chosen)
     app.connect("build-finished", finish)
