@@ -21,11 +21,10 @@ import os
 import shutil
 from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.domains.std import StandardDomain
 from sphinx.environment import BuildEnvironment
 from sphinx.environment.collectors.toctree import TocTreeCollector
 
@@ -60,7 +59,7 @@ def keep_numbers(app: Sphinx, doctree: nodes.document) -> None:
 def numbered_kind(env: BuildEnvironment, node: nodes.Node) -> str | None:
     """Return as what a node is numbered; figures, tables and code are if they have a caption."""
     standard, math = env.domains["std"], env.domains["math"]
-    captioned = cast(StandardDomain, standard).get_numfig_title(node)
+    captioned = standard.get_numfig_title(node) is not None
     return (standard if captioned else math).get_enumerable_node_type(node)
 
 
@@ -190,7 +189,7 @@ def setup(app: Sphinx) -> None:
     app.connect("env-before-read-docs", note_reading)
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
     app.connect("doctree-read", keep_numbers, priority=950)  # after the others, which may add ids
-    TocTreeCollector.assign_figure_numbers = number_by_page  # type: ignore[method-assign]
+    TocTreeCollector.assign_figure_numbers = number_by_page  # type: ignore[assignment,method-assign]
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
     app.connect("write-started", write_chosen)

@@ -33,7 +33,7 @@ from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
-from robo_genesis.site.takeaways.notebooks import executed_notebook, student_notebook, version_check
+from robo_genesis.site.takeaways.notebooks import CHECK, executed_notebook, student_notebook
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
 NOT_SHOWN = "*(your run measures it)*"
@@ -96,7 +96,7 @@ def write_takeaways(
     predicate = bundle.read_manifest(run).predicate
     origin = partial(origin_of, page, predicate, commands, config)
     needed = {project.ENGINE: project.engine_pin(), project.COURSE: package_facts()["version"]}
-    check = version_check(needed, wheel.name)
+    check = CHECK.format(needed=needed, wheel=wheel.name)
     address = f"{site_address()}{page.docname}.html" if site_address() else ""
     writer = Writer(page.path.parent, lambda _: NOT_SHOWN, address)
     _write(student, student_notebook(page, origin("student notebook"), check, writer))

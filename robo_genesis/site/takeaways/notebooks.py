@@ -1,7 +1,7 @@
 """A lab as two notebooks: one to work in, without outputs or solutions, and one executed."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Sequence, Set
 from itertools import pairwise
 from textwrap import indent
 
@@ -60,16 +60,7 @@ def check_versions(needed):
 
 check_versions({needed!r})
 del check_versions"""
-
-
-def version_check(needed: Mapping[str, str], wheel: str) -> str:
-    """Return code that requires versions of packages, and otherwise names the command to install.
-
-    Args:
-        needed: version by package.
-        wheel: file name of the course's package.
-    """
-    return CHECK.format(needed=needed, wheel=wheel)
+"""Code that requires versions by package, and otherwise says how to install the named wheel."""
 
 
 def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> NotebookNode:
@@ -80,7 +71,7 @@ def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> Not
     Args:
         page: the lab.
         origin: Markdown of the first cell.
-        check: code of the second; see `version_check`.
+        check: code of the second; see `CHECK`.
         writer: of its prose; it must not return measured values.
     """
     start = [new_markdown_cell(origin), new_code_cell(check)]

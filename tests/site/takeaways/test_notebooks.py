@@ -24,7 +24,7 @@ CELLS = (
     '\n+++ {"tags": ["site-only"]}\n\nOnly on the site.\n',
 )
 PINNED = {"genesis-world": "1.2.3", "robo-genesis": "0.1.0"}
-CHECK = notebooks.version_check(PINNED, "robo.whl")
+CHECK = notebooks.CHECK.format(needed=PINNED, wheel="robo.whl")
 
 
 def student_of(page):
