@@ -11,7 +11,6 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import fast_simplification
 import numpy as np
 import pygltflib as gltf
 import trimesh
@@ -165,10 +164,7 @@ def simplified(part: Part) -> trimesh.Trimesh:
     mesh.merge_vertices(merge_norm=True)
     if len(mesh.faces) > UNCHANGED:
         target = max(round(KEPT * len(mesh.faces)), FEWEST)
-        vertices, faces = fast_simplification.simplify(
-            _float32(mesh.vertices), np.asarray(mesh.faces), target_count=target
-        )
-        mesh = trimesh.Trimesh(vertices, faces, process=False)
+        mesh = mesh.simplify_quadric_decimation(face_count=target)
     mesh.update_faces(mesh.nondegenerate_faces())
     return trimesh.graph.smooth_shade(mesh, angle=CREASE)
 
