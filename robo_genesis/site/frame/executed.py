@@ -46,9 +46,8 @@ class ExecutedPage(NotebookClientBase):
         for cell in self.notebook.cells:
             if cell.cell_type == "code":
                 source = next(executed_cells)
-                cell.outputs, cell.execution_count = source.outputs, source.execution_count
-                if "raises-exception" in cell.metadata.get("tags", []):
-                    shorten_tracebacks(cell)
+                cell.outputs = [*map(without_stack, source.outputs)]
+                cell.execution_count = source.execution_count
         RECOMPUTED[page.as_posix()] = {
             index
             for index, cell in enumerate(self.notebook.cells)
@@ -58,11 +57,10 @@ class ExecutedPage(NotebookClientBase):
             self.notebook.metadata["language_info"] = executed.metadata["language_info"]
 
 
-def shorten_tracebacks(cell: NotebookNode) -> None:
-    """Keep only the last line of an expected error; its stack contains paths of the build."""
-    for output in cell.outputs:
-        if output.output_type == "error":
-            output.traceback = output.traceback[-1:]
+def without_stack(output: NotebookNode) -> NotebookNode:
+    """Return an output; of an expected error only the last line, as its stack has private paths."""
+    is_error = output.output_type == "error"
+    return NotebookNode(output | {"traceback": output.traceback[-1:]}) if is_error else output
 
 
 def setup(app: Sphinx) -> None:
