@@ -13,6 +13,7 @@ from dataclasses import replace
 from functools import lru_cache
 from itertools import chain, count
 from pathlib import Path
+from typing import Any, TypeAlias
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -28,7 +29,10 @@ LOG = "the engine's log"
 TITLE = 80  # Longest title in the ledger, in characters
 ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
 
-WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
+Keys: TypeAlias = tuple[str, ...] | None
+"""The origin of an item; see `origin`."""
+
+WITHOUT_RUN: dict[Keys, str] = {
     None: "illustration", (): "settings", NO_BUNDLE: "unbound",
 }  # fmt: skip
 """The kind of an item that belongs to no run, by its origin."""
@@ -74,7 +78,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
             logger.warning(UNBOUND.format("table" if is_table else "picture"), location=env.docname)
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
-        item = describe(holder, node, env.docname, keys, book, texts)
+        item = describe(holder, node, env, keys, texts)
         if item.runs and cell is not None and cell.get("cell_index") not in recomputed:
             item = replace(item, kind="printed")
         items.append(item)
@@ -95,15 +99,10 @@ def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Elemen
 
 
 def describe(
-    holder: nodes.Element,
-    node: nodes.Element,
-    docname: str,
-    keys: tuple[str, ...] | None,
-    book: Path,
-    texts: Sequence[nodes.Element],
+    holder: nodes.Element, node: nodes.Element, env: Any, keys: Keys, texts: Sequence[nodes.Element]
 ) -> Item:
     """Return the ledger's item of a table, picture or texts, and give `holder` an anchor."""
-    is_picture = isinstance(node, nodes.image)
+    docname, is_picture = env.docname, isinstance(node, nodes.image)
     section = next(above(holder, nodes.section), None)
     heading = section.next_node(nodes.title).astext() if section is not None else docname
     if not holder["ids"]:
@@ -118,7 +117,7 @@ def describe(
         title = f"{heading}: {[LOG, *lines][-1]}"
         holder["classes"].append("printed")
     elif is_picture:
-        caption, path = holder.next_node(nodes.caption), book / node["uri"]
+        caption, path = holder.next_node(nodes.caption), Path(env.srcdir, node["uri"])
         title = caption.astext() if caption is not None else str(node.get("alt", anchor))
         kind = node.get("kind") or ledger_data.picture_kind(path)
         data, file = path.read_bytes(), node["uri"]

@@ -59,7 +59,7 @@ from robo_genesis.site.replay import controls
 from robo_genesis.site.replay import directive as replays
 
 if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Camera  # loads slowly
+    from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
 
 CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
 """Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
@@ -126,9 +126,7 @@ def explorer_block(
     elif parts["postures"] is not None:
         block["classes"].append("replay-block")
         files = "-".join(("postures", *key.split("/"), *name))
-        runs = {**recorded.experiment.traces, **(parts["traces"] or {})}
-        traces = {name: with_target(runs[name], of) for name, of in parts["postures"].items()}
-        block += postures(directive, files, recorded, data, traces, parts["tables"] or {})
+        block += postures(directive, files, recorded, data, parts)
     else:
         block += [opening("", data), panel(data)]
     return block
@@ -186,8 +184,7 @@ def postures(
     name: str,
     recorded: Recorded,
     data: Mapping[str, Any],
-    traces: Mapping[str, Trace],
-    found: Mapping[str, Sequence[Mapping[str, Any]]],
+    parts: Mapping[str, Any],
 ) -> Iterator[nodes.Node]:
     """Yield the answers of a page in 3D, and leave one model with an animation for each map.
 
@@ -196,20 +193,23 @@ def postures(
         name: of the model's files.
         recorded: the bundle of the page.
         data: see the module's table.
-        traces: of the postures with their targets, by map.
-        found: as the key `tables` there.
+        parts: the keys `postures`, `traces` and `tables` there.
     """
-    from robo_genesis.site.replay.scenery import fitted  # it loads slowly
+    from robo_genesis.site.replay import model  # these load slowly
+    from robo_genesis.site.replay.scenery import fitted
 
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
+    runs = {**run.traces, **(parts["traces"] or {})}
+    traces = {name: with_target(runs[name], of) for name, of in parts["postures"].items()}
     shape = replays.shape_file(recorded.lesson, replay.thing)
     thing = data.get("thing", replay.thing)
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
     inputs = [name.encode(), shape.read_bytes(), *replays.bundle_inputs(recorded.folder)]
     alt = f"The {thing} at the start, drawn from the recorded poses."
-    parts = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
+    drawn = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
+    what = with_cross(drawn, camera), [*run.links, CROSS], traces, replay.credit
     files, weight, still = replays.leave_model(
-        env, name, inputs, lambda: glb(parts, run.links, traces, camera, replay.credit), camera, alt
+        env, name, inputs, lambda: model.glb(*what), camera, alt
     )
     words = files | {"orbit": camera.orbit, "target": camera.target}
     words["alt"] = f"The {thing} in 3D, in the chosen posture."
@@ -218,8 +218,8 @@ def postures(
     caption = f"Recorded postures of the {thing}. Yellow cross: the target."
     yield replays.stage(still, over, caption, f"{name}-model")
     yield panel(data, f"Show in 3D loads the {thing}: {weight} kB.")
-    if found:
-        yield from fold(directive, found)
+    if parts["tables"]:
+        yield from fold(directive, parts["tables"])
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 
 
@@ -239,32 +239,16 @@ def with_target(trace: Trace, targets: FloatArray) -> Trace:
     )
 
 
-def glb(
-    parts: Sequence[Part],
-    links: Sequence[str],
-    traces: Mapping[str, Trace],
-    camera: "Camera",
-    credit: str | None,
-) -> bytes:
-    """Return the model of all answers, one animation a map, with the cross and a floor.
-
-    Args:
-        parts: of the robot, and of what is drawn around it.
-        links: of the record, without the cross.
-        traces: with the cross, by map.
-        camera: of the model.
-        credit: copyright of the shape, None where it needs no notice.
-    """
+def with_cross(parts: Sequence[Part], camera: "Camera") -> "Scenery":
+    """Return parts with the cross at the target and a floor, as a camera sees them."""
     import trimesh  # these load slowly
 
-    from robo_genesis.site.replay import model
     from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
 
     half = CROSS_LENGTH / 2 * np.eye(3)
     rods = [trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half]
     cross = [Part(CROSS, AXIS_RGB, rod.vertices, rod.faces) for rod in rods]
-    scenery = Scenery([*parts, *cross, *floor_of(parts)], camera)
-    return model.glb(scenery, [*links, CROSS], traces, credit)
+    return Scenery([*parts, *cross, *floor_of(parts)], camera)
 
 
 def setup(app: Sphinx) -> None:

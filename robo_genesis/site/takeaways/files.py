@@ -10,7 +10,7 @@ import shutil
 import sys
 import tempfile
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import cycle
@@ -30,9 +30,11 @@ from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.install import CONSTRAINTS, ENVIRONMENT
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
+from robo_genesis.pipeline.pages import built
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
+from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.takeaways.notebooks import CHECK, executed_notebook, student_notebook
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
@@ -67,24 +69,16 @@ class Takeaways:
     commands: tuple[str, ...]
 
 
-def write_takeaways(
-    page: Page,
-    executed: NotebookNode,
-    run: Path,
-    folder: Path,
-    measured: Callable[[str], str],
-    config: Config,
-) -> Takeaways:
+def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
     """Write everything that a reader takes from a lab.
 
     Args:
-        page: the lab.
-        executed: its code cells with outputs.
-        run: the accepted bundle of that run.
+        page: the lab, whose bundle of this build was accepted.
         folder: gets the wheel, the constraints, and a folder for the lab.
-        measured: returns a measured value as the site writes it.
         config: of the book.
     """
+    executed = built.executed_notebook(page.docname, page.notebook)
+    run = built.page_outputs(f"{page.lesson}/{page.page}") / BACKEND
     name = f"{page.lesson}-{page.page}"
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)
@@ -100,7 +94,7 @@ def write_takeaways(
     address = f"{site_address()}{page.docname}.html" if site_address() else ""
     writer = Writer(page.path.parent, lambda _: NOT_SHOWN, address)
     _write(student, student_notebook(page, origin("student notebook"), check, writer))
-    writer = replace(writer, measured=measured)
+    writer = replace(writer, measured=lambda value: measured(*value.split(" ", 1))[0])
     _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
     units = Path(shutil.copy(run / "arrays.json", own))
     arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))
