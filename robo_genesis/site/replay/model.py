@@ -9,7 +9,7 @@ world moves against it. Nothing is compressed: the page would have to load a dec
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pygltflib as gltf
@@ -43,6 +43,9 @@ SHADOW, FLAT, ABOVE = (105, 105, 105), 1e-4, 1e-3
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 """Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
 
+
+Simple: TypeAlias = Sequence[tuple[Part, trimesh.Trimesh]]
+"""Parts, each with its simplified mesh."""
 
 COMPONENTS = {
     "float32": gltf.FLOAT, "uint16": gltf.UNSIGNED_SHORT, "uint32": gltf.UNSIGNED_INT,
@@ -132,14 +135,11 @@ def glb(
 
 
 def _mesh(
-    binary: Binary,
-    link: str,
-    shape: Sequence[tuple[Part, trimesh.Trimesh]],
-    colour: Sequence[float] | None = None,
+    binary: Binary, link: str, shape: Simple, colour: Sequence[float] | None = None
 ) -> int | None:
     """Add a link's mesh and return its number, None where the link has no parts.
 
-    `shape` has each part with its simplified mesh; `colour` replaces those of the parts.
+    `colour` replaces those of the parts.
     """
     model, primitives = binary.model, []
     for part, mesh in (pair for pair in shape if pair[0].link == link):
