@@ -5,7 +5,6 @@ The package is a wheel, built without the network: the same files give the same 
 
 import json
 import os
-import re
 import shutil
 import sys
 import tempfile
@@ -40,8 +39,6 @@ from robo_genesis.site.takeaways.plain_markdown import Writer
 
 NOT_SHOWN = "*(your run measures it)*"
 """Replaces in the student notebook a value that the site measured."""
-
-CHECKOUT = "robo-genesis"  # Replaces the folder that the site was built in
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z"), "finger": ("left", "right")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
@@ -149,13 +146,7 @@ def origin_of(
 
 
 def _write(path: Path, notebook: NotebookNode) -> None:
-    path.write_text(without_places(nbformat.writes(notebook)) + "\n", "utf8")
-
-
-def without_places(text: str, root: Path = project.ROOT) -> str:
-    """Return a text with the checkout's folder replaced by its name, and home folders by `~`."""
-    checkout = rf"(?<![\w.-]){re.escape(str(root))}(?![\w.-])"
-    return project.without_home(re.sub(checkout, CHECKOUT, text))
+    path.write_text(project.without_folders(nbformat.writes(notebook)) + "\n", "utf8")
 
 
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
