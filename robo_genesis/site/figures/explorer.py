@@ -50,6 +50,7 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.bound import accepted_experiment
+from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
@@ -75,7 +76,7 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        recorded = Recorded(lesson_page.split("/")[0], replays.bundle_of(lesson_page))
+        recorded = Recorded(lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND)
         return [explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)]
 
 
