@@ -67,12 +67,9 @@ def bullets(*items: Iterable[str | nodes.Node], **attributes: Any) -> nodes.bull
 
 
 def table(
-    head: Sequence[str],
-    rows: Sequence[Sequence[Cell]],
-    anchors: Sequence[str] = (),
-    **attributes: Any,
+    head: Sequence[str], rows: Sequence[Sequence[Cell]], ids: Sequence[str] = (), **attributes: Any
 ) -> nodes.table:
-    """Return a table; `head` may be empty, `anchors` names the rows.
+    """Return a table; `head` may be empty, `ids` are those of the rows.
 
     A cell is one node or text, or several that become paragraphs.
     """
@@ -81,8 +78,8 @@ def table(
     if head:
         group += nodes.thead("", _row(head))
     body = nodes.tbody("", *map(_row, rows))
-    for row, anchor in zip(body, anchors, strict=False):
-        row["ids"].append(anchor)
+    for row, name in zip(body, ids, strict=False):
+        row["ids"].append(name)
     group += body
     return nodes.table("", group, **attributes)
 
