@@ -32,7 +32,7 @@ from functools import cached_property
 from html import escape
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from docutils import nodes
@@ -65,6 +65,10 @@ if TYPE_CHECKING:
 CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
 """Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
 are longer than the hand, which hides the target when it is there."""
+
+
+Data: TypeAlias = Mapping[str, Any]
+"""See the module's table."""
 
 
 class ExplorerDirective(PageDirective):
@@ -133,7 +137,7 @@ def explorer_block(
     return block
 
 
-def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:
+def opening(kind: str, data: Data, **words: str) -> nodes.Node:
     """Return the start of an explorer, with what `_static/explorer.js` needs to know."""
     start = controls.opening(
         f"explorer {kind}".strip(), {"explorer": controls.as_json(data)} | words
@@ -142,7 +146,7 @@ def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:
     return html(start + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else ""))
 
 
-def panel(data: Mapping[str, Any], loads: str = "") -> nodes.Node:
+def panel(data: Data, loads: str = "") -> nodes.Node:
     """Return the controls and the end of an explorer; the script fills and shows them.
 
     A map has the choices of it, places for its cells, a question and a sentence; a picture has a
@@ -181,11 +185,7 @@ def picture(
 
 
 def postures(
-    directive: SphinxDirective,
-    name: str,
-    recorded: Recorded,
-    data: Mapping[str, Any],
-    parts: Mapping[str, Any],
+    directive: SphinxDirective, name: str, recorded: Recorded, data: Data, parts: Data
 ) -> Iterator[nodes.Node]:
     """Yield the answers of a page in 3D, and leave one model with an animation for each map.
 
