@@ -19,6 +19,7 @@ from robo_genesis.pipeline.pages.built import built_pages
 from robo_genesis.site.course.course_map import MapDirective, named, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE, lesson_statuses, status_list
+from robo_genesis.site.evidence.plain_nodes import paragraph
 from robo_genesis.site.evidence.provenance import all_runs
 
 EVIDENCE = "evidence/index"  # The page that explains the evidence
@@ -30,12 +31,10 @@ class CourseMeasured(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return the line, with a link to the page on evidence where the book has it."""
-        line = nodes.paragraph("", measured_line(all_runs(Path(self.env.srcdir)).values()))
-        if EVIDENCE in self.env.found_docs:
-            link = page_link(self.env.docname, EVIDENCE, "How to read the evidence")
-            line += [nodes.Text(" "), link]
-        line["classes"].append("course-measured")
-        return [line]
+        line = measured_line(all_runs(Path(self.env.srcdir)).values())
+        link = page_link(self.env.docname, EVIDENCE, "How to read the evidence")
+        more = [" ", link] if EVIDENCE in self.env.found_docs else []
+        return [paragraph(line, *more, classes=["course-measured"])]
 
 
 def measured_line(runs: Iterable[PageRun]) -> str:
