@@ -14,7 +14,7 @@ from robo_genesis.maintain.report import EngineBuild, changed_sentences, compare
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.folder import write_page
-from robo_genesis.site.evidence.ledger import LEDGER
+from robo_genesis.site.evidence.ledger_data import LEDGER
 
 
 @pytest.fixture

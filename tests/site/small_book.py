@@ -19,11 +19,11 @@ from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.course.course_map import FILE
 from robo_genesis.site.text import glossary
 
-FEATURED_CARD = {"page": "page", "outcomes": ["read a `qpos`", "stop"], "featured": True}
+PUBLISHED = {"page": "page", "outcomes": ["read a `qpos`", "stop"]}
 MAP = [
     {"id": "L01", "title": "One"},
     {"id": "L02", "title": "Two", "needs": []},
-    {"id": "L04", "title": "Four", "needs": ["L01", "L02"], **FEATURED_CARD},
+    {"id": "L04", "title": "Four", "needs": ["L01", "L02"], **PUBLISHED},
     {"id": "L06", "title": "Six", "page": "lessons/l06-six/lecture", "outcomes": ["walk"]},
 ]
 CARDS = "```{course-map}\n```\n"

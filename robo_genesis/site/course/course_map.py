@@ -1,9 +1,9 @@
-"""The lessons of the course, from `course_map.yml`: the map, links to lessons, the featured one.
+"""The lessons of the course, from `course_map.yml`: the map, links to lessons, what needs one.
 
 | in a page | shows |
 |---|---|
 | {course-map} (directive) | published lessons as cards, planned ones as a list of titles |
-| {featured} L04 (directive) | its content, while the map features this lesson |
+| {featured} L04 (directive) | its content, while the map has this lesson published |
 | {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
 
@@ -38,7 +38,6 @@ class Lesson:
 
     `needs` is None where it is not decided yet. `page` is the lecture, None while the lesson is
     planned. `outcomes` is what a student can do after a published lesson, with code in backticks.
-    The home page shows the measurements of the `featured` lesson.
     """
 
     id: str
@@ -46,7 +45,6 @@ class Lesson:
     needs: tuple[str, ...] | None = None
     page: str | None = None
     outcomes: tuple[str, ...] = ()
-    featured: bool = False
 
 
 def read_map(book: Path) -> list[Lesson]:
@@ -54,7 +52,7 @@ def read_map(book: Path) -> list[Lesson]:
 
     Raises:
         ValueError: the file is not a list of lessons, an id occurs twice, a lesson needs one
-            that does not come before it, a published one has no outcomes, or two are featured.
+            that does not come before it, or a published one has no outcomes.
     """
     try:
         rows = yaml.safe_load((book / FILE).read_text("utf8"))
@@ -76,9 +74,6 @@ def read_map(book: Path) -> list[Lesson]:
                 f"{FILE}: {lesson.id} is published and has no outcomes. Add `outcomes:` with up to "
                 "three things that a student can do after it."
             )
-    featured = [lesson.id for lesson in lessons if lesson.featured]
-    if len(featured) > 1:
-        raise ValueError(f"{FILE} features {' and '.join(featured)}; keep one `featured`.")
     return lessons
 
 
@@ -101,15 +96,15 @@ class MapDirective(PageDirective):
 
 
 class Featured(MapDirective):
-    """Show content about one lesson while the map features it, otherwise nothing."""
+    """Show content about one lesson while the map has it published, otherwise nothing."""
 
     required_arguments = 1
     has_content = True
 
     def shown(self) -> list[nodes.Node]:
         """Return the content; without the lesson it is not even parsed."""
-        featured = [lesson.id for lesson in self.lessons() if lesson.featured and lesson.page]
-        return self.parse_content_to_nodes() if self.arguments == featured else []
+        published = [lesson.id for lesson in self.lessons() if lesson.page]
+        return self.parse_content_to_nodes() if self.arguments[0] in published else []
 
 
 class LessonLink(PageRole):

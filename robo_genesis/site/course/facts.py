@@ -40,19 +40,12 @@ def keep_facts(app: Sphinx, document: nodes.document) -> None:
     section = document.next_node(nodes.section)
     paragraphs = (n for n in section or () if isinstance(n, nodes.paragraph))
     if node := next(paragraphs, None):
-        facts["og:description"] = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
-
-
-def write_description(
-    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Write the description into the page's head."""
-    if text := app.env.metadata.get(page, {}).get("og:description"):
-        context["metatags"] += f'<meta name="description" content="{escape(text)}" />'
+        text = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
+        facts["og:description"] = text  # for the social card
+        document.insert(0, nodes.meta("", name="description", content=text))
 
 
 def setup(app: Sphinx) -> None:
     """Register the additions."""
     app.connect("doctree-read", keep_facts)
-    app.connect("html-page-context", write_description, priority=400)  # read by others at 500
     app.connect("doctree-resolved", add_facts)

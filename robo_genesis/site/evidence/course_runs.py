@@ -18,10 +18,12 @@ from robo_genesis.core.text import listed
 from robo_genesis.pipeline.pages.built import built_pages
 from robo_genesis.site.course.course_map import MapDirective, named, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, status_list
+from robo_genesis.site.evidence.measured import BACKEND, READABLE, lesson_statuses, status_list
+from robo_genesis.site.evidence.plain_nodes import paragraph
 from robo_genesis.site.evidence.provenance import all_runs
 
 EVIDENCE = "evidence/index"  # The page that explains the evidence
+NONE_ACCEPTED = "No run of this build was accepted."
 
 
 class CourseMeasured(SphinxDirective):
@@ -29,32 +31,25 @@ class CourseMeasured(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return the line, with a link to the page on evidence where the book has it."""
-        line = nodes.paragraph("", measured_line(all_runs(Path(self.env.srcdir)).values()))
-        if EVIDENCE in self.env.found_docs:
-            link = page_link(self.env.docname, EVIDENCE, "How to read the evidence")
-            line += [nodes.Text(" "), link]
-        line["classes"].append("course-measured")
-        return [line]
+        line = measured_line(all_runs(Path(self.env.srcdir)).values())
+        link = page_link(self.env.docname, EVIDENCE, "How to read the evidence")
+        more = [" ", link] if EVIDENCE in self.env.found_docs else []
+        return [paragraph(line, *more, classes=["course-measured"])]
 
 
 def measured_line(runs: Iterable[PageRun]) -> str:
-    """Return backend, engine version and dates of the accepted runs that were not recorded.
+    """Return engine version and dates of the accepted runs that were not recorded.
 
     Args:
         runs: of this build, and recorded ones, which are left out.
     """
-    own = [run for run in runs if not run.recorded]
-    accepted = [(run, run.predicate) for run in own if run.predicate is not None]
+    accepted = [run.predicate for run in runs if run.predicate and not run.recorded]
     if not accepted:
-        return "No run of this build was accepted."
-    backends = sorted({READABLE.get(run.status.backend, run.status.backend) for run, _ in accepted})
-    engines = sorted({predicate.engine.version for _, predicate in accepted})
-    dates = sorted({predicate.started[:10] for _, predicate in accepted})
+        return NONE_ACCEPTED
+    engines = sorted({predicate.engine.version for predicate in accepted})
+    dates = sorted({predicate.started[:10] for predicate in accepted})
     when = f"on {dates[0]}" if len(dates) == 1 else f"from {dates[0]} to {dates[-1]}"
-    line = f"Measured on {listed(backends)} with Genesis {listed(engines)} {when}."
-    if lacking := len(own) - len(accepted):
-        line += f" {lacking} of {len(own)} runs were not accepted."
-    return line
+    return f"Measured on {READABLE[BACKEND]} with Genesis {listed(engines)} {when}."
 
 
 class CourseProcessors(SphinxDirective):
@@ -70,9 +65,7 @@ class CourseProcessors(SphinxDirective):
 def executed_once(runs: Iterable[PageRun]) -> str:
     """Return the processors of this build's runs; recorded runs are left out."""
     found = {run.predicate.host.cpu for run in runs if run.predicate and not run.recorded}
-    if not found:
-        return "No run of this build was accepted."
-    return f"Each page was executed once, on {listed(sorted(found))}."
+    return f"Each page was executed once, on {listed(sorted(found))}." if found else NONE_ACCEPTED
 
 
 class CourseStatus(MapDirective):

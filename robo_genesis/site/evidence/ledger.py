@@ -22,7 +22,6 @@ from robo_genesis.site.evidence.plain_nodes import Cell, between, html, paragrap
 from robo_genesis.site.evidence.provenance import ITEMS, all_runs, measured_pages
 from robo_genesis.site.pages import PageDirective
 
-LEDGER = "evidence/ledger"
 DOWNLOADS = "_downloads/evidence"
 COLUMNS = (
     "what", "kind", "page", "run", "backend", "Genesis", "measured (UTC)", "checks", "sha256",
@@ -48,13 +47,7 @@ class Ledger(PageDirective):
 
 
 def fill_in(app: Sphinx, doctree: nodes.document, docname: str) -> None:
-    """Link the lines of provenance to the ledger, and write the ledger's parts."""
-    for link in list(doctree.findall(lambda n: "ledger_row" in getattr(n, "attributes", {}))):
-        if LEDGER in app.env.found_docs:
-            target = app.builder.get_relative_uri(docname, LEDGER)
-            link["refuri"] = f"{target}#{link['ledger_row']}"
-        else:
-            link.parent.remove(link)
+    """Write the ledger's parts."""
     for part in list(doctree.findall(ledger_part)):
         if part["part"] == "runs":
             runs = all_runs(Path(app.srcdir)).values()
@@ -136,7 +129,7 @@ def scroll_box(label: str, *inside: nodes.Node) -> between:
 
 def write_downloads(app: Sphinx, exception: Exception | None) -> None:
     """Write the tables, texts and bundles that the ledger links to."""
-    if exception is not None or LEDGER not in app.env.found_docs:
+    if exception is not None or ledger_data.LEDGER not in app.env.found_docs:
         return
     folder = Path(app.outdir) / DOWNLOADS
     for item in chain.from_iterable(page.get(ITEMS, ()) for page in app.env.metadata.values()):

@@ -13,6 +13,8 @@ from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.html.archive import write_zip
 
+LEDGER = "evidence/ledger"  # The page
+
 MEASURED, PRINTED = "Measured", "Printed by this run"
 """How the line below an item begins whose runs are all accepted."""
 

@@ -23,11 +23,12 @@ from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import course_marks, find_replay
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, page_run, recorded_runs
-from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, text_table
+from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, table
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
 
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
+AS_NEEDED = ["colwidths-auto"]  # The class of a table whose columns are as wide as needed
 RECORDING = "{doc}`/evidence/recording` says what that machine needs."
 
 
@@ -98,7 +99,7 @@ def backend_facts(predicate: Predicate) -> nodes.Node:
         "recorded": predicate.started[:10],
         "run": predicate.run_id[:8],
     }
-    return text_table([{"what": name, "value": value} for name, value in facts.items()])
+    return table(("what", "value"), list(facts.items()), classes=AS_NEEDED)
 
 
 def response(
@@ -183,9 +184,8 @@ def compared_table(
     """
     head = (what, *both, "difference", "allowed", "verdict")
     shown = (row for section in found.sections if section.title in titles for row in section.rows)
-    cells = ((r.what, r.old, r.new, r.delta or "–", r.allowed or "–", r.state) for r in shown)
-    rows = [dict(zip(head, row, strict=True)) for row in cells]
-    return [text_table(rows)] if rows else []
+    rows = [(r.what, r.old, r.new, r.delta or "–", r.allowed or "–", r.state) for r in shown]
+    return [table(head, rows, classes=AS_NEEDED)] if rows else []
 
 
 def warnings_html(warnings: Sequence[str]) -> str:

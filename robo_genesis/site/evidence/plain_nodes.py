@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from itertools import cycle
 from pathlib import Path
@@ -67,9 +67,9 @@ def bullets(*items: Iterable[str | nodes.Node], **attributes: Any) -> nodes.bull
 
 
 def table(
-    head: Sequence[str], rows: Sequence[Sequence[Cell]], anchors: Sequence[str] = ()
+    head: Sequence[str], rows: Sequence[Sequence[Cell]], ids: Sequence[str] = (), **attributes: Any
 ) -> nodes.table:
-    """Return a table; `head` may be empty, `anchors` names the rows.
+    """Return a table; `head` may be empty, `ids` are those of the rows.
 
     A cell is one node or text, or several that become paragraphs.
     """
@@ -78,17 +78,10 @@ def table(
     if head:
         group += nodes.thead("", _row(head))
     body = nodes.tbody("", *map(_row, rows))
-    for row, anchor in zip(body, anchors, strict=False):
-        row["ids"].append(anchor)
+    for row, name in zip(body, ids, strict=False):
+        row["ids"].append(name)
     group += body
-    return nodes.table("", group)
-
-
-def text_table(rows: Sequence[Mapping[str, Cell]]) -> nodes.table:
-    """Return rows of equal keys as a table whose columns are as wide as needed."""
-    found = table(list(rows[0]), [list(row.values()) for row in rows])
-    found["classes"].append("colwidths-auto")
-    return found
+    return nodes.table("", group, **attributes)
 
 
 def _row(cells: Iterable[Cell]) -> nodes.row:

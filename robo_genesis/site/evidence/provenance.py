@@ -13,6 +13,7 @@ from dataclasses import replace
 from functools import lru_cache
 from itertools import chain, count
 from pathlib import Path
+from typing import Any, TypeAlias
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -20,7 +21,7 @@ from sphinx.util import logging
 
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.evidence import ledger_data, measured, refusals
-from robo_genesis.site.evidence.ledger_data import MEASURED, PRINTED, Item, PageRun
+from robo_genesis.site.evidence.ledger_data import LEDGER, MEASURED, PRINTED, Item, PageRun
 from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin, register
 from robo_genesis.site.frame.executed import RECOMPUTED
 
@@ -28,7 +29,10 @@ LOG = "the engine's log"
 TITLE = 80  # Longest title in the ledger, in characters
 ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
 
-WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
+Keys: TypeAlias = tuple[str, ...] | None
+"""The origin of an item; see `origin`."""
+
+WITHOUT_RUN: dict[Keys, str] = {
     None: "illustration", (): "settings", NO_BUNDLE: "unbound",
 }  # fmt: skip
 """The kind of an item that belongs to no run, by its origin."""
@@ -62,6 +66,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     book, items = Path(env.srcdir), []
     known, page = all_runs(book), measured_pages(book).get(env.docname)
     recomputed = RECOMPUTED.get(env.docname, set())
+    ledger = app.builder.get_relative_uri(env.docname, LEDGER) if LEDGER in env.found_docs else None
     for node in list(doctree.findall(nodes.Element)):
         texts = printed_texts(node, recomputed)
         is_table, is_picture = isinstance(node, nodes.table), isinstance(node, nodes.image)
@@ -73,12 +78,13 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
             logger.warning(UNBOUND.format("table" if is_table else "picture"), location=env.docname)
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
-        item = describe(holder, node, env.docname, keys, book, texts)
+        item = describe(holder, node, env, keys, texts)
         if item.runs and cell is not None and cell.get("cell_index") not in recomputed:
             item = replace(item, kind="printed")
         items.append(item)
         line = ledger_data.provenance(item.kind, [known[key] for key in item.runs])
-        add_line(last if texts else holder, line, item.row)
+        address = None if ledger is None else f"{ledger}#{item.row}"
+        add_line(last if texts else holder, line, address)
     env.metadata[env.docname][ITEMS] = items
 
 
@@ -93,15 +99,10 @@ def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Elemen
 
 
 def describe(
-    holder: nodes.Element,
-    node: nodes.Element,
-    docname: str,
-    keys: tuple[str, ...] | None,
-    book: Path,
-    texts: Sequence[nodes.Element],
+    holder: nodes.Element, node: nodes.Element, env: Any, keys: Keys, texts: Sequence[nodes.Element]
 ) -> Item:
     """Return the ledger's item of a table, picture or texts, and give `holder` an anchor."""
-    is_picture = isinstance(node, nodes.image)
+    docname, is_picture = env.docname, isinstance(node, nodes.image)
     section = next(above(holder, nodes.section), None)
     heading = section.next_node(nodes.title).astext() if section is not None else docname
     if not holder["ids"]:
@@ -116,7 +117,7 @@ def describe(
         title = f"{heading}: {[LOG, *lines][-1]}"
         holder["classes"].append("printed")
     elif is_picture:
-        caption, path = holder.next_node(nodes.caption), book / node["uri"]
+        caption, path = holder.next_node(nodes.caption), Path(env.srcdir, node["uri"])
         title = caption.astext() if caption is not None else str(node.get("alt", anchor))
         kind = node.get("kind") or ledger_data.picture_kind(path)
         data, file = path.read_bytes(), node["uri"]
@@ -140,16 +141,17 @@ def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> No
     holder["ids"].append(name)
 
 
-def add_line(holder: nodes.Element, text: str, row: str) -> None:
+def add_line(holder: nodes.Element, text: str, address: str | None) -> None:
     """Insert the line of provenance at the end of the caption, or below an item without one.
 
     What a run measured or printed has an icon, and the words appear under the mouse or the focus.
-    Anything else says so in words.
+    Anything else says so in words. `address` is that of its row in the ledger.
     """
-    link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
     caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
-    joint = nodes.inline("", " · " if text[-1] != "." else " ", classes=["provenance-joint"])
-    parts = [nodes.inline("", text, classes=["provenance-text"]), joint, link]
+    parts = [nodes.inline("", text, classes=["provenance-text"])]
+    if address is not None:
+        joint = nodes.inline("", " · " if text[-1] != "." else " ", classes=["provenance-joint"])
+        parts += [joint, nodes.reference("", "ledger", internal=True, refuri=address)]
     classes = ["provenance", *(["as-icon"] if text.startswith((MEASURED, PRINTED)) else [])]
     if caption is not None:
         caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=classes)]

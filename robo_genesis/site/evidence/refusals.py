@@ -1,6 +1,5 @@
 """Refuses markup of a page that only a run may create."""
 
-import os
 from collections.abc import Iterator, Set
 from pathlib import Path
 
@@ -62,7 +61,8 @@ def _imitated(node: nodes.Element | None, written: Set[str]) -> Iterator[str]:
 
 
 def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
-    if isinstance(node, nodes.image) and _is_evidence(node["uri"], book):
+    recorded = (book / "evidence").resolve()  # links are followed
+    if isinstance(node, nodes.image) and (book / node["uri"]).resolve().is_relative_to(recorded):
         yield (
             f"the picture {node['uri']} lies below evidence/, where it may be stale. "
             "Use the {evidence} directive: it shows only accepted bundles."
@@ -91,10 +91,3 @@ def _raw(node: nodes.Element, html: BeautifulSoup) -> Iterator[str]:
         )
     for name in sorted({tag.name for tag in (html.find_all() if made else of_page)}):
         yield f"{where} <{name}> as raw HTML, which would have no line in the ledger. {instead}"
-
-
-def _is_evidence(uri: str, book: Path) -> bool:
-    """Return whether a picture is in the folder of recorded bundles, links included."""
-    path, folder = book / uri, book / "evidence"
-    normal = Path(os.path.normpath(path))
-    return normal.is_relative_to(folder) or path.resolve().is_relative_to(folder.resolve())

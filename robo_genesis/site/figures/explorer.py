@@ -32,7 +32,7 @@ from functools import cached_property
 from html import escape
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from docutils import nodes
@@ -50,6 +50,7 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.bound import accepted_experiment
+from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
@@ -59,11 +60,15 @@ from robo_genesis.site.replay import controls
 from robo_genesis.site.replay import directive as replays
 
 if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Camera  # loads slowly
+    from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
 
 CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
 """Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
 are longer than the hand, which hides the target when it is there."""
+
+
+Data: TypeAlias = Mapping[str, Any]
+"""See the module's table."""
 
 
 class ExplorerDirective(PageDirective):
@@ -75,7 +80,7 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        recorded = Recorded(lesson_page.split("/")[0], replays.bundle_of(lesson_page))
+        recorded = Recorded(lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND)
         return [explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)]
 
 
@@ -126,15 +131,13 @@ def explorer_block(
     elif parts["postures"] is not None:
         block["classes"].append("replay-block")
         files = "-".join(("postures", *key.split("/"), *name))
-        runs = {**recorded.experiment.traces, **(parts["traces"] or {})}
-        traces = {name: with_target(runs[name], of) for name, of in parts["postures"].items()}
-        block += postures(directive, files, recorded, data, traces, parts["tables"] or {})
+        block += postures(directive, files, recorded, data, parts)
     else:
         block += [opening("", data), panel(data)]
     return block
 
 
-def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:
+def opening(kind: str, data: Data, **words: str) -> nodes.Node:
     """Return the start of an explorer, with what `_static/explorer.js` needs to know."""
     start = controls.opening(
         f"explorer {kind}".strip(), {"explorer": controls.as_json(data)} | words
@@ -143,7 +146,7 @@ def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:
     return html(start + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else ""))
 
 
-def panel(data: Mapping[str, Any], loads: str = "") -> nodes.Node:
+def panel(data: Data, loads: str = "") -> nodes.Node:
     """Return the controls and the end of an explorer; the script fills and shows them.
 
     A map has the choices of it, places for its cells, a question and a sentence; a picture has a
@@ -182,12 +185,7 @@ def picture(
 
 
 def postures(
-    directive: SphinxDirective,
-    name: str,
-    recorded: Recorded,
-    data: Mapping[str, Any],
-    traces: Mapping[str, Trace],
-    found: Mapping[str, Sequence[Mapping[str, Any]]],
+    directive: SphinxDirective, name: str, recorded: Recorded, data: Data, parts: Data
 ) -> Iterator[nodes.Node]:
     """Yield the answers of a page in 3D, and leave one model with an animation for each map.
 
@@ -196,20 +194,23 @@ def postures(
         name: of the model's files.
         recorded: the bundle of the page.
         data: see the module's table.
-        traces: of the postures with their targets, by map.
-        found: as the key `tables` there.
+        parts: the keys `postures`, `traces` and `tables` there.
     """
-    from robo_genesis.site.replay.scenery import fitted  # it loads slowly
+    from robo_genesis.site.replay import model  # these load slowly
+    from robo_genesis.site.replay.scenery import fitted
 
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
+    runs = {**run.traces, **(parts["traces"] or {})}
+    traces = {name: with_target(runs[name], of) for name, of in parts["postures"].items()}
     shape = replays.shape_file(recorded.lesson, replay.thing)
     thing = data.get("thing", replay.thing)
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
     inputs = [name.encode(), shape.read_bytes(), *replays.bundle_inputs(recorded.folder)]
     alt = f"The {thing} at the start, drawn from the recorded poses."
-    parts = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
+    drawn = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
+    what = with_cross(drawn, camera), [*run.links, CROSS], traces, replay.credit
     files, weight, still = replays.leave_model(
-        env, name, inputs, lambda: glb(parts, run.links, traces, camera, replay.credit), camera, alt
+        env, name, inputs, lambda: model.glb(*what), camera, alt
     )
     words = files | {"orbit": camera.orbit, "target": camera.target}
     words["alt"] = f"The {thing} in 3D, in the chosen posture."
@@ -218,8 +219,8 @@ def postures(
     caption = f"Recorded postures of the {thing}. Yellow cross: the target."
     yield replays.stage(still, over, caption, f"{name}-model")
     yield panel(data, f"Show in 3D loads the {thing}: {weight} kB.")
-    if found:
-        yield from fold(directive, found)
+    if parts["tables"]:
+        yield from fold(directive, parts["tables"])
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 
 
@@ -239,32 +240,16 @@ def with_target(trace: Trace, targets: FloatArray) -> Trace:
     )
 
 
-def glb(
-    parts: Sequence[Part],
-    links: Sequence[str],
-    traces: Mapping[str, Trace],
-    camera: "Camera",
-    credit: str | None,
-) -> bytes:
-    """Return the model of all answers, one animation a map, with the cross and a floor.
-
-    Args:
-        parts: of the robot, and of what is drawn around it.
-        links: of the record, without the cross.
-        traces: with the cross, by map.
-        camera: of the model.
-        credit: copyright of the shape, None where it needs no notice.
-    """
+def with_cross(parts: Sequence[Part], camera: "Camera") -> "Scenery":
+    """Return parts with the cross at the target and a floor, as a camera sees them."""
     import trimesh  # these load slowly
 
-    from robo_genesis.site.replay import model
     from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
 
     half = CROSS_LENGTH / 2 * np.eye(3)
     rods = [trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half]
     cross = [Part(CROSS, AXIS_RGB, rod.vertices, rod.faces) for rod in rods]
-    scenery = Scenery([*parts, *cross, *floor_of(parts)], camera)
-    return model.glb(scenery, [*links, CROSS], traces, credit)
+    return Scenery([*parts, *cross, *floor_of(parts)], camera)
 
 
 def setup(app: Sphinx) -> None:

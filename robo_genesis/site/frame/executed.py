@@ -1,9 +1,7 @@
-"""Sphinx reads executed pages and runs nothing; pages load no third-party files."""
+"""Sphinx reads executed pages and runs nothing."""
 
 import os
-import re
 from pathlib import Path
-from typing import Any
 
 import myst_nb.sphinx_
 from myst_nb.core.execute.base import NotebookClientBase
@@ -18,8 +16,6 @@ from robo_genesis.pipeline.pages.built import executed_notebook
 
 RECOMPUTED: dict[str, set[int]] = {}
 """Of each page that was read, the cells whose outputs but streams `page.show` displayed."""
-
-ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
 
 class ExecutedPage(NotebookClientBase):
@@ -50,9 +46,8 @@ class ExecutedPage(NotebookClientBase):
         for cell in self.notebook.cells:
             if cell.cell_type == "code":
                 source = next(executed_cells)
-                cell.outputs, cell.execution_count = source.outputs, source.execution_count
-                if "raises-exception" in cell.metadata.get("tags", []):
-                    shorten_tracebacks(cell)
+                cell.outputs = [*map(without_stack, source.outputs)]
+                cell.execution_count = source.execution_count
         RECOMPUTED[page.as_posix()] = {
             index
             for index, cell in enumerate(self.notebook.cells)
@@ -62,24 +57,10 @@ class ExecutedPage(NotebookClientBase):
             self.notebook.metadata["language_info"] = executed.metadata["language_info"]
 
 
-def shorten_tracebacks(cell: NotebookNode) -> None:
-    """Keep only the last line of an expected error; its stack contains paths of the build."""
-    for output in cell.outputs:
-        if output.output_type == "error":
-            output.traceback = output.traceback[-1:]
-
-
-def drop_third_parties(
-    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Remove scripts and styles of other hosts that other extensions registered."""
-    for name in ("script_files", "css_files"):
-        # Sphinx lists plain strings and asset objects.
-        context[name] = [
-            file
-            for file in context.get(name, [])
-            if not ELSEWHERE.match(str(getattr(file, "filename", file) or ""))
-        ]
+def without_stack(output: NotebookNode) -> NotebookNode:
+    """Return an output; of an expected error only the last line, as its stack has private paths."""
+    is_error = output.output_type == "error"
+    return NotebookNode(output | {"traceback": output.traceback[-1:]}) if is_error else output
 
 
 def setup(app: Sphinx) -> None:
@@ -94,4 +75,3 @@ def setup(app: Sphinx) -> None:
     myst_nb.sphinx_.create_client = lambda *arguments: ExecutedPage(*arguments[:4])
     # Jupyter Book always sets this value, also where sphinx_comments is not an extension.
     app.add_config_value("comments_config", None, "html")
-    app.connect("html-page-context", drop_third_parties, priority=900)

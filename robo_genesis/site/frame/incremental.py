@@ -19,29 +19,24 @@ Files that pages leave beside the HTML are removed with the last page that left 
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence, Set
-from copy import deepcopy
+from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
 from typing import Any
 
 from docutils import nodes
-from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
-from sphinx.util.nodes import clean_astext
+from sphinx.environment.collectors.toctree import TocTreeCollector
 
 from robo_genesis.pipeline.html.kept import UNFIT
 from robo_genesis.site.text.glossary import glossary_terms
 
 REPLAYS, TAKEAWAYS = "replay", "takeaways"  # Folders of such files in the site
 
-HEADS = (nodes.caption, nodes.title, nodes.literal_block)
-"""What a numbered figure, table or code block has for children."""
+NUMBERS, FILES = "robo_genesis_numbers", "robo_genesis_files"
+"""Metadata of a page: see `keep_numbers` and `note_files`."""
 
-OUTLINE, FILES = "robo_genesis_outline", "robo_genesis_files"
-"""Metadata of a page: see `outline` and `note_files`."""
-
-OWN = {"og:description", "source_map", "wordcount", OUTLINE, FILES}
+OWN = {"og:description", "source_map", "wordcount", NUMBERS, FILES}
 """Metadata of a page that no other page shows."""
 
 SHOWN = (
@@ -51,52 +46,28 @@ SHOWN = (
 """Attributes of the environment that pages show of one another, beside metadata and terms."""
 
 
-def outline(env: BuildEnvironment, node: nodes.Element) -> list[nodes.Element]:
-    """Return what numbers the figures below a node, in their order: a small part of a doctree.
-
-    Sphinx numbers the figures of all pages in each build, and would load all doctrees for it.
-    Sections, contents, and what a domain numbers are kept. What has no id gets no number.
-    """
-    domains = env.domains.values()
-    found: list[nodes.Element] = []
-    for child in node.children:
-        if not isinstance(child, nodes.Element):
-            continue
-        inside = outline(env, child)
-        is_numbered = any(domain.get_enumerable_node_type(child) for domain in domains)
-        if (is_numbered and child["ids"]) or isinstance(child, nodes.section | addnodes.toctree):
-            heads = (part for part in child.children if isinstance(part, HEADS))
-            kept = type(child)("", **child.attributes)
-            kept.extend([*(type(part)("", clean_astext(part)) for part in heads), *inside])
-            found.append(kept)
-        else:
-            found += inside
-    return found
+def keep_numbers(app: Sphinx, doctree: nodes.document) -> None:
+    """Keep the numbers of a page's figures, tables, code and equations, which begin at one."""
+    kinds: dict[str, dict[str, tuple[int, ...]]] = {}
+    for node in doctree.findall(lambda n: isinstance(n, nodes.Element) and bool(n["ids"])):
+        if kind := numbered_kind(app.env, node):
+            numbers = kinds.setdefault(kind, {})
+            numbers[node["ids"][0]] = (len(numbers) + 1,)
+    app.env.metadata[app.env.docname][NUMBERS] = kinds
 
 
-def keep_outline(app: Sphinx, doctree: nodes.document) -> None:
-    """Keep the outline of a page that was read."""
-    kept = nodes.container("", *outline(app.env, doctree))
-    app.env.metadata[app.env.docname][OUTLINE] = kept
+def numbered_kind(env: BuildEnvironment, node: nodes.Node) -> str | None:
+    """Return as what a node is numbered; figures, tables and code are if they have a caption."""
+    standard, math = env.domains["std"], env.domains["math"]
+    captioned = standard.get_numfig_title(node) is not None
+    return (standard if captioned else math).get_enumerable_node_type(node)
 
 
-def number_by_outlines(app: Sphinx, env: BuildEnvironment) -> list[str]:
-    """Give Sphinx outlines in place of doctrees until `outdated_pages` is called.
-
-    It compares its numbers with those that it gave before.
-    """
-    env.toc_fignumbers = vars(env).get("robo_genesis_numbers", {})
-    vars(env)["get_doctree"] = lambda name: env.metadata[name][OUTLINE]
-    return []
-
-
-def number_by_page(app: Sphinx, env: BuildEnvironment) -> list[str]:
-    """Number figures, tables and code of each page from one, where Sphinx counts through a book."""
-    vars(env)["robo_genesis_numbers"] = deepcopy(env.toc_fignumbers)
-    for kinds in env.toc_fignumbers.values():
-        for numbers in kinds.values():
-            numbers.update({name: (k,) for k, name in enumerate(numbers, 1)})
-    return []
+def number_by_page(collector: TocTreeCollector, env: BuildEnvironment) -> list[str]:
+    """Number each page by itself; Sphinx counts through a book, and loads all doctrees for it."""
+    pages = env.metadata.items()
+    env.toc_fignumbers = {name: page[NUMBERS] for name, page in pages if NUMBERS in page}
+    return []  # `outdated_pages` finds the pages that show other numbers
 
 
 def including_pages(
@@ -123,16 +94,14 @@ def note_reading(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
 
 
 def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
-    """Return the pages that must be written again, beside those that were read again."""
-    vars(app.builder)["robo_genesis_home"] = True
-    vars(env).pop("get_doctree", None)
+    """Choose the pages to write: those that were read, or all if one shows others something new."""
     shown = hashlib.sha256(repr(sorted(_shown(env))).encode()).hexdigest()
     before, vars(env)["robo_genesis_shown"] = vars(env).get("robo_genesis_shown"), shown
-    if before != shown:
-        return sorted(env.found_docs)
-    reads: Sequence[str] = vars(app.builder)["robo_genesis_reads"]
-    vars(app.builder)["robo_genesis_home"] = (home := env.config.root_doc) in reads or not reads
-    return [] if reads else [home]  # without any page, Sphinx would write no style sheet
+    reads: list[str] = vars(app.builder)["robo_genesis_reads"]
+    pages = reads if before == shown else sorted(env.found_docs)
+    # Without any page, Sphinx would write no style sheet.
+    chosen = vars(app.builder)["robo_genesis_writes"] = pages or [env.config.root_doc]
+    return chosen
 
 
 def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
@@ -170,18 +139,11 @@ def drop_downloads(app: Sphinx, builder: Any) -> None:
     shutil.rmtree(Path(builder.outdir) / "_downloads", ignore_errors=True)
 
 
-def leave_out_parents(app: Sphinx, builder: Any) -> None:
-    """Keep Sphinx from writing parents of a changed page and the home page.
-
-    It would write the home page in each build; see `outdated_pages`.
-    """
-    vars(builder)["robo_genesis_parents"] = builder.env.files_to_rebuild
-    builder.env.files_to_rebuild = {}
+def write_chosen(app: Sphinx, builder: Any) -> None:
+    """Keep Sphinx from writing also the parents of a changed page, and always the home page."""
 
     def prepare(names: set[str]) -> None:
-        home = builder.config.root_doc
-        if not vars(builder)["robo_genesis_home"] and os.path.exists(builder.get_outfilename(home)):
-            names.discard(home)
+        names.intersection_update(vars(builder)["robo_genesis_writes"])
         type(builder).prepare_writing(builder, names)
 
     builder.prepare_writing = prepare
@@ -192,12 +154,9 @@ def finish(app: Sphinx, error: Exception | None) -> None:
 
     The names of pictures with equal file names depend on the order in which they were read.
     """
-    env = app.env
-    if parents := vars(app.builder).pop("robo_genesis_parents", None):
-        env.files_to_rebuild = parents
     if error is not None:
         return
-    named = {name: file for file, (_, name) in env.images.items()}
+    named = {name: file for file, (_, name) in app.env.images.items()}
     for path in (Path(app.outdir) / "_images").glob("*"):
         if path.is_file() and path.name not in named:
             path.unlink()
@@ -229,10 +188,9 @@ def setup(app: Sphinx) -> None:
     app.connect("env-get-outdated", including_pages)
     app.connect("env-before-read-docs", note_reading)
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
-    app.connect("doctree-read", keep_outline, priority=950)  # after the others, which may add ids
-    app.connect("env-get-updated", number_by_outlines, priority=0)
-    app.connect("env-get-updated", number_by_page, priority=600)  # after Sphinx's own numbers
+    app.connect("doctree-read", keep_numbers, priority=950)  # after the others, which may add ids
+    TocTreeCollector.assign_figure_numbers = number_by_page  # type: ignore[assignment,method-assign]
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
-    app.connect("write-started", leave_out_parents)
+    app.connect("write-started", write_chosen)
     app.connect("build-finished", finish)

@@ -47,11 +47,11 @@ def complete_index(app: Sphinx) -> list[Any]:
 
 def found_entries(entries: Iterable[tuple[str, str, str, str, str | None]]) -> list[Any]:
     """Return a page's entries of the general index as the index of the search has them."""
-    found = set()
-    for kind, value, target, main, _ in entries:
-        texts = split_index_msg(kind, value)
-        shown = texts + texts[:1] if kind in ("see", "seealso") else texts
-        found |= {(text, target or "", main) for text in shown}
+    found = {
+        (text, target or "", main)
+        for kind, value, target, main, _ in entries
+        for text in split_index_msg(kind, value)
+    }
     return sorted(found)
 
 

@@ -3,7 +3,6 @@
 A phone that fetches one sheet instead of sixteen shows a page earlier.
 """
 
-import json
 import re
 import tempfile
 from collections.abc import Iterable, Mapping
@@ -13,7 +12,7 @@ from urllib.parse import urlsplit
 
 from bs4 import BeautifulSoup
 
-from robo_genesis.core.files import derived, write_whole
+from robo_genesis.core.files import derived_value, write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.command import output_of
@@ -30,10 +29,10 @@ TRIMMED = (*SHEETS[:4], *SHEETS[7:9])
 """The sheets of the theme and its extensions that have rules for other sites."""
 JOINED = "_static/styles/site.css"
 
-NAMES = (re.compile(rb' class="([^"]*)"'), re.compile(rb' id="([^"]*)"'))
+NAMES = re.compile(r' (?:class|id)="([^"]*)"')
 """Classes and identifiers of a page, which its tags name."""
-WORD = re.compile(rb"[\w-]+")
-OTHER_WORD = re.compile(rb"(?<![.#\w-])[\w-]+")
+WORD = re.compile(r"[\w-]+", re.ASCII)
+OTHER_WORD = re.compile(r"(?<![.#\w-])[\w-]+", re.ASCII)
 """A word of a sheet that is neither a class nor an identifier: elements, attributes, states."""
 ADDRESS = re.compile(r"url\(\s*([\"']?)(?![\"']?(?:data:|https?:|[/#]))")
 """The beginning of an address that is relative to its sheet."""
@@ -76,14 +75,11 @@ def join_sheets(html: Path) -> None:
         ProjectError: PurgeCSS failed; the message holds its output.
     """
     sheets = [path for pattern in SHEETS for path in sorted(html.glob(pattern))]
-    trimmed = {p.name: p.read_bytes() for pattern in TRIMMED for p in html.glob(pattern)}
+    trimmed = {p.name: p.read_text("utf8") for pattern in TRIMMED for p in html.glob(pattern)}
     present = used_names(html) | words(trimmed.values(), OTHER_WORD)
-    names = b"\n".join(sorted(present & words(trimmed.values(), WORD)))
-    lock = (ROOT / "package-lock.json").read_bytes()  # names the version of PurgeCSS
-    inputs = [names, *trimmed.values(), Path(__file__).read_bytes(), lock]
-    found = json.loads(
-        derived("sheets", inputs, lambda: json.dumps(_purged(trimmed, names)).encode())
-    )
+    names = "\n".join(sorted(present & words(trimmed.values(), WORD)))
+    lock = (ROOT / "package-lock.json").read_text("utf8")  # names the version of PurgeCSS
+    found = derived_value("sheets", [names, trimmed, lock], lambda: _purged(trimmed, names))
     joined = html / JOINED
     texts = []
     for path in sheets:
@@ -92,26 +88,24 @@ def join_sheets(html: Path) -> None:
     write_whole(joined, "\n".join(texts).encode())
 
 
-def used_names(html: Path) -> set[bytes]:
+def used_names(html: Path) -> set[str]:
     """Return the classes and identifiers of all pages, and all words of their common scripts."""
-    pages = [path.read_bytes() for path in html.rglob("*.html")]
-    attributes = (set(pattern.findall(page)) for page in pages for pattern in NAMES)
-    names = {name for values in attributes for value in values for name in value.split()}
-    return names | words((path.read_bytes() for path in html.glob("_static/**/*.js")), WORD)
+    attributes = words((path.read_text("utf8") for path in html.rglob("*.html")), NAMES)
+    names = {name for value in attributes for name in value.split()}
+    return names | words((path.read_text("utf8") for path in html.glob("_static/**/*.js")), WORD)
 
 
-def words(texts: Iterable[bytes], pattern: re.Pattern[bytes]) -> set[bytes]:
+def words(texts: Iterable[str], pattern: re.Pattern[str]) -> set[str]:
     """Return all matches of a pattern in texts."""
     return {word for text in texts for word in pattern.findall(text)}
 
 
-def _purged(content: Mapping[str, bytes], names: bytes) -> dict[str, str]:
+def _purged(content: Mapping[str, str], names: str) -> dict[str, str]:
     """Return the sheets without the rules that name none of some words."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "names.txt").write_bytes(names)
-        for sheet, text in content.items():
-            (folder / sheet).write_bytes(text)
+        for file, text in {"names.txt": names, **content}.items():
+            (folder / file).write_text(text, "utf8")
         (folder / "out").mkdir()
         command = [str(npm.node()), str(npm.packages() / PURGE), "--keyframes"]
         command += ["--content", "names.txt", "--output", "out", "--css", *content]

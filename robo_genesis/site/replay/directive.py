@@ -61,20 +61,8 @@ class ReplayDirective(PageDirective):
         stops = [n for n in above if isinstance(n, question) or "replay-block" in n["classes"]]
         if blind and not first_page and not (stops and isinstance(stops[-1], question)):
             raise LookupError("`:blind:` needs a question above it, as `{choice}` or `{number}`.")
-        key, folder = f"{lesson_page}/{BACKEND}", bundle_of(lesson_page)
+        key, folder = f"{lesson_page}/{BACKEND}", page_outputs(lesson_page) / BACKEND
         return [replay_block(self, key, folder, *chosen, brief=brief, blind=blind)]
-
-
-def bundle_of(lesson_page: str) -> Path:
-    """Return the folder of the bundle that a page wrote in this build.
-
-    Raises:
-        LookupError: it has none.
-    """
-    folder = page_outputs(lesson_page) / BACKEND
-    if not (folder / "manifest.json").is_file():
-        raise LookupError(f"{lesson_page} has no bundle on {BACKEND}.")
-    return folder
 
 
 def replay_block(

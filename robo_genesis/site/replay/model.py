@@ -9,8 +9,8 @@ world moves against it. Nothing is compressed: the page would have to load a dec
 
 import json
 from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
 
-import fast_simplification
 import numpy as np
 import pygltflib as gltf
 import trimesh
@@ -43,6 +43,9 @@ SHADOW, FLAT, ABOVE = (105, 105, 105), 1e-4, 1e-3
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 """Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
 
+
+Simple: TypeAlias = Sequence[tuple[Part, trimesh.Trimesh]]
+"""Parts, each with its simplified mesh."""
 
 COMPONENTS = {
     "float32": gltf.FLOAT, "uint16": gltf.UNSIGNED_SHORT, "uint32": gltf.UNSIGNED_INT,
@@ -95,39 +98,36 @@ def glb(
     """
     model = gltf.GLTF2(asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=credit))
     binary = Binary(model)
-    model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP, children=[])]
+    model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP)]
+
+    def add(name: str, parent: int = 0, **attributes: Any) -> int:
+        """Add a node below another one and return its number."""
+        model.nodes[parent].children.append(len(model.nodes))
+        model.nodes.append(gltf.Node(name=name, **attributes))
+        return len(model.nodes) - 1
+
     first = next(iter(traces.values()))
     simple = [(part, simplified(part)) for part in scenery.parts]
     for k, link in enumerate(links):
         place = first.link_pos[0, k].astype(float).tolist()
         turn = rotations(first.link_quat[:1, k])[0].astype(float).tolist()
-        mesh = _mesh(binary, link, simple)
-        model.nodes.append(gltf.Node(name=link, translation=place, rotation=turn, mesh=mesh))
-    still = _mesh(binary, WORLD, simple)
-    if still is not None:
-        model.nodes.append(gltf.Node(name=STILL, mesh=still))
-    model.nodes[0].children = list(range(1, len(model.nodes)))
-    if scenery.target:
-        model.nodes[0].children.append(len(model.nodes))
-        below = range(len(model.nodes) + 1, len(model.nodes) + 1 + len(scenery.target))
-        model.nodes.append(gltf.Node(name=TARGET, children=list(below)))
+        add(link, translation=place, rotation=turn, mesh=_mesh(binary, link, simple))
+    if (still := _mesh(binary, WORLD, simple)) is not None:
+        add(STILL, mesh=still)
+    copies = add(TARGET) if scenery.target else 0
     for link, pose in scenery.target.items():
-        mesh, matrix = _mesh(binary, link, simple, GHOST), pose.T.ravel().tolist()
-        model.nodes.append(gltf.Node(name=f"{TARGET}_{link}", matrix=matrix, mesh=mesh))
-    first_shadow, flat = len(model.nodes) + 1, [1.0, 1.0, FLAT]
-    shadows = gltf.Node(name=SHADOWS, translation=[0.0, 0.0, scenery.ground + ABOVE], scale=flat)
-    shadows.children = list(range(first_shadow, first_shadow + len(links)))
-    model.nodes[0].children.append(len(model.nodes))
-    model.nodes.append(shadows)
-    for k, link in enumerate(links, 1):
-        place, turn = model.nodes[k].translation, model.nodes[k].rotation
+        matrix, mesh = pose.T.ravel().tolist(), _mesh(binary, link, simple, GHOST)
+        add(f"{TARGET}_{link}", copies, matrix=matrix, mesh=mesh)
+    ground = [0.0, 0.0, scenery.ground + ABOVE]
+    shadows = add(SHADOWS, translation=ground, scale=[1.0, 1.0, FLAT])
+    for link, node in zip(links, model.nodes[1:], strict=False):
         mesh = _mesh(binary, link, simple, SHADOW)
-        name = f"shadow_{link}"
-        model.nodes.append(gltf.Node(name=name, translation=place, rotation=turn, mesh=mesh))
+        moved = {"translation": node.translation, "rotation": node.rotation}
+        add(f"shadow_{link}", shadows, mesh=mesh, **moved)
     followed = scenery.followed
     if followed is not None:
         model.nodes[0].translation = opposite(first, followed)[0].astype(float).tolist()
-    model.animations = [_animation(binary, *run, followed, first_shadow) for run in traces.items()]
+    model.animations = [_animation(binary, *run, followed, shadows + 1) for run in traces.items()]
     model.scene, model.scenes = 0, [gltf.Scene(nodes=[0])]
     model.buffers = [gltf.Buffer(byteLength=len(binary.data))]
     model.set_binary_blob(bytes(binary.data))
@@ -135,14 +135,11 @@ def glb(
 
 
 def _mesh(
-    binary: Binary,
-    link: str,
-    shape: Sequence[tuple[Part, trimesh.Trimesh]],
-    colour: Sequence[float] | None = None,
+    binary: Binary, link: str, shape: Simple, colour: Sequence[float] | None = None
 ) -> int | None:
     """Add a link's mesh and return its number, None where the link has no parts.
 
-    `shape` has each part with its simplified mesh; `colour` replaces those of the parts.
+    `colour` replaces those of the parts.
     """
     model, primitives = binary.model, []
     for part, mesh in (pair for pair in shape if pair[0].link == link):
@@ -167,10 +164,7 @@ def simplified(part: Part) -> trimesh.Trimesh:
     mesh.merge_vertices(merge_norm=True)
     if len(mesh.faces) > UNCHANGED:
         target = max(round(KEPT * len(mesh.faces)), FEWEST)
-        vertices, faces = fast_simplification.simplify(
-            _float32(mesh.vertices), np.asarray(mesh.faces), target_count=target
-        )
-        mesh = trimesh.Trimesh(vertices, faces, process=False)
+        mesh = mesh.simplify_quadric_decimation(face_count=target)
     mesh.update_faces(mesh.nondegenerate_faces())
     return trimesh.graph.smooth_shade(mesh, angle=CREASE)
 

@@ -39,9 +39,6 @@ ASPECT = 4 / 3  # Width of the picture by its height, as in `replay.css`
 
 ROOM = 1.2  # Size of the picture by that of the motion in it
 
-OF_LINKS = ("link_pos", "link_quat", "link_vel", "link_ang")
-"""The arrays with an axis of links; free bodies have them all, robots the first two."""
-
 
 @dataclass(frozen=True, slots=True)
 class Camera:
@@ -269,8 +266,8 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
         )
     arrays: dict[str, Any] = {
         name: np.concatenate([getattr(trace, name) for _, trace in traces], axis=1)
-        for name in OF_LINKS
-        if all(hasattr(trace, name) for _, trace in traces)
+        for name, stored in runs.first.arrays().items()
+        if "link" in stored.dims
     }
     moved = [np.tile([x, y, 0.0], (len(runs.links), 1)) for x, y in places]
     arrays["link_pos"] = arrays["link_pos"] + np.concatenate(moved)

@@ -17,8 +17,6 @@ from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.built import executed_notebook, page_outputs
-from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.evidence.plain_nodes import bullets
 from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.pages import PageDirective
@@ -37,13 +35,9 @@ class TakeawaysBox(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the box and the list."""
-        name, files = self.arguments[0], Path(self.env.app.outdir) / TAKEAWAYS
-        page, run = self.page(name), page_outputs(name) / BACKEND
+        page, files = self.page(self.arguments[0]), Path(self.env.app.outdir) / TAKEAWAYS
         self.env.note_dependency(self.env.doc2path(page.docname, base=False))
-        found = write_takeaways(
-            page, executed_notebook(page.docname, page.notebook), run, files,
-            lambda value: measured(*value.split(" ", 1))[0], self.config,
-        )  # fmt: skip
+        found = write_takeaways(page, files, self.config)
         note_files(self.env, found.wheel, found.constraints, *found.student.parent.iterdir())
         links = partial(link, relative_uri(f"{self.env.docname}.html", TAKEAWAYS), files)
         return [self.box(found, links), *self.downloads(found, links)]

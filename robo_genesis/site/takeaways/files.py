@@ -5,12 +5,11 @@ The package is a wheel, built without the network: the same files give the same 
 
 import json
 import os
-import re
 import shutil
 import sys
 import tempfile
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import cycle
@@ -30,16 +29,16 @@ from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.install import CONSTRAINTS, ENVIRONMENT
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
+from robo_genesis.pipeline.pages import built
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
-from robo_genesis.site.takeaways.notebooks import executed_notebook, student_notebook, version_check
+from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.takeaways.notebooks import CHECK, executed_notebook, student_notebook
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
 NOT_SHOWN = "*(your run measures it)*"
 """Replaces in the student notebook a value that the site measured."""
-
-CHECKOUT = "robo-genesis"  # Replaces the folder that the site was built in
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z"), "finger": ("left", "right")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
@@ -67,24 +66,16 @@ class Takeaways:
     commands: tuple[str, ...]
 
 
-def write_takeaways(
-    page: Page,
-    executed: NotebookNode,
-    run: Path,
-    folder: Path,
-    measured: Callable[[str], str],
-    config: Config,
-) -> Takeaways:
+def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
     """Write everything that a reader takes from a lab.
 
     Args:
-        page: the lab.
-        executed: its code cells with outputs.
-        run: the accepted bundle of that run.
+        page: the lab, whose bundle of this build was accepted.
         folder: gets the wheel, the constraints, and a folder for the lab.
-        measured: returns a measured value as the site writes it.
         config: of the book.
     """
+    executed = built.executed_notebook(page.docname, page.notebook)
+    run = built.page_outputs(f"{page.lesson}/{page.page}") / BACKEND
     name = f"{page.lesson}-{page.page}"
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)
@@ -96,11 +87,11 @@ def write_takeaways(
     predicate = bundle.read_manifest(run).predicate
     origin = partial(origin_of, page, predicate, commands, config)
     needed = {project.ENGINE: project.engine_pin(), project.COURSE: package_facts()["version"]}
-    check = version_check(needed, wheel.name)
+    check = CHECK.format(needed=needed, wheel=wheel.name)
     address = f"{site_address()}{page.docname}.html" if site_address() else ""
     writer = Writer(page.path.parent, lambda _: NOT_SHOWN, address)
     _write(student, student_notebook(page, origin("student notebook"), check, writer))
-    writer = replace(writer, measured=measured)
+    writer = replace(writer, measured=lambda value: measured(*value.split(" ", 1))[0])
     _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
     units = Path(shutil.copy(run / "arrays.json", own))
     arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))
@@ -155,13 +146,7 @@ def origin_of(
 
 
 def _write(path: Path, notebook: NotebookNode) -> None:
-    path.write_text(without_places(nbformat.writes(notebook)) + "\n", "utf8")
-
-
-def without_places(text: str, root: Path = project.ROOT) -> str:
-    """Return a text with the checkout's folder replaced by its name, and home folders by `~`."""
-    checkout = rf"(?<![\w.-]){re.escape(str(root))}(?![\w.-])"
-    return project.without_home(re.sub(checkout, CHECKOUT, text))
+    path.write_text(project.without_folders(nbformat.writes(notebook)) + "\n", "utf8")
 
 
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:

@@ -1,7 +1,7 @@
 """A lab as two notebooks: one to work in, without outputs or solutions, and one executed."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Sequence, Set
 from itertools import pairwise
 from textwrap import indent
 
@@ -11,9 +11,9 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from robo_genesis.core.project import solutions_shown
-from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import WORK_SHEET, Page
 from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
+from robo_genesis.site.frame.executed import without_stack
 from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
@@ -60,16 +60,7 @@ def check_versions(needed):
 
 check_versions({needed!r})
 del check_versions"""
-
-
-def version_check(needed: Mapping[str, str], wheel: str) -> str:
-    """Return code that requires versions of packages, and otherwise names the command to install.
-
-    Args:
-        needed: version by package.
-        wheel: file name of the course's package.
-    """
-    return CHECK.format(needed=needed, wheel=wheel)
+"""Code that requires versions by package, and otherwise says how to install the named wheel."""
 
 
 def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> NotebookNode:
@@ -80,7 +71,7 @@ def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> Not
     Args:
         page: the lab.
         origin: Markdown of the first cell.
-        check: code of the second; see `version_check`.
+        check: code of the second; see `CHECK`.
         writer: of its prose; it must not return measured values.
     """
     start = [new_markdown_cell(origin), new_code_cell(check)]
@@ -195,17 +186,10 @@ def _code(
     elif hidden:
         code.metadata["jupyter"] = hidden
     if ran is not None:
-        code.outputs = [_output(output) for output in ran.outputs]
+        code.outputs = [*map(without_stack, ran.outputs)]
         code.execution_count = ran.execution_count
     caption = cell.metadata.get("mystnb", {}).get("figure", {}).get("caption")
     return [code, *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else [])]
-
-
-def _output(output: NotebookNode) -> NotebookNode:
-    """Return an output; an expected error keeps only its last line: its stack has private paths."""
-    if output.output_type != "error":
-        return output
-    return NotebookNode(output | {"traceback": [ANSI.sub("", t) for t in output.traceback[-1:]]})
 
 
 def _notebook(cells: list[NotebookNode]) -> NotebookNode:

@@ -69,29 +69,21 @@ class question(between):  # noqa: N801 - docutils names nodes in lower case
     """A question; its text is between the parts that the build writes."""
 
 
-def choice(*, attributes: str = "", **shown: Any) -> question:
-    """Return a multiple choice, in which each option has its feedback, which choice.js announces.
+def asked(value: float | None = None, tolerance: float = 0.0, **shown: Any) -> question:
+    """Return a question: a multiple choice, or for a number if the right `value` is given.
 
-    Args:
-        attributes: of the element, for choice.js.
-        shown: `name` of its fields, unique on the page; `answer`, what was measured, and its
-            `origin`; `options`, for each one (text, right, cause).
-    """
-    closing = filled(Path(__file__).with_name("question.html"), **shown)
-    return question(opening=f'<fieldset class="choice"{attributes}><legend>', closing=closing)
-
-
-def number(value: float, tolerance: float, **shown: Any) -> question:
-    """Return a question for a number; choice.js shows the feedback that fits what is typed.
+    `choice.js` announces the feedback of the chosen option, or that which fits what is typed.
 
     Args:
         value: the right number.
         tolerance: how far from it a number counts as right.
-        shown: as of `choice`, without options; `unit` of the number, empty for none; `feedback`,
-            (key, text) by the keys of the directive.
+        shown: `name` of its fields, unique on the page; `answer`, what was measured, and its
+            `origin`. Of a choice also `options`, for each one (text, right, cause). Of a number
+            its `unit`, empty for none, and `feedback`, (key, text) by the keys of the directive.
     """
-    right = f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
-    return choice(attributes=right, **shown)
+    right = "" if value is None else f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
+    closing = filled(Path(__file__).with_name("question.html"), **shown)
+    return question(opening=f'<fieldset class="choice"{right}><legend>', closing=closing)
 
 
 def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:
@@ -147,7 +139,7 @@ class Choice(Question):
         smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
         resolution = small(smallest, found.unit)
         shown = options(found.unit, found.order, resolution, causes, found.margin)
-        return text, choice(name=name, answer=answer, origin=origin, options=shown)
+        return text, asked(name=name, answer=answer, origin=origin, options=shown)
 
 
 def percents(text: str) -> float:
@@ -177,7 +169,7 @@ class Number(Question):
         if "tolerance" not in self.options:
             raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
         percent, unit = self.options["tolerance"], self.options.get("unit", "")
-        return text, number(name=name, **asked_number(page, metric, percent, causes, unit))
+        return text, asked(name=name, **asked_number(page, metric, percent, causes, unit))
 
 
 def asked_number(

@@ -58,7 +58,6 @@ def test_the_list_of_decision_records_has_each_of_them():
         ([MAP[0], MAP[0]], "names L01 twice"),
         ([MAP[0], MAP[2]], "L04 needs L02; before it come L01"),
         ([{"id": "L01", "title": "One", "needs": ["L01"]}], "L01 needs L01; before it come none"),
-        ([MAP[2] | {"id": name, "needs": []} for name in ("L04", "L05")], "features L04 and L05"),
     ],
 )
 def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):

@@ -113,7 +113,8 @@ def test_the_comparison_names_both_runs_and_all_else_one(folder, tmp_path, recor
     runs = accepted("l04/lab", folder), record("cuda")
     monkeypatch.setattr(provenance, "measured_pages", lambda book: {})
     monkeypatch.setattr(provenance, "all_runs", lambda book: {run.key: run for run in runs})
-    env = SimpleNamespace(srcdir=tmp_path / "book", docname="page", metadata=defaultdict(dict))
+    facts = {"docname": "page", "metadata": defaultdict(dict), "found_docs": ()}
+    env = SimpleNamespace(srcdir=tmp_path / "book", **facts)
     document = new_document("page")
     document += Panel(tmp_path / "book").panel(runs[1])
     for image in document.findall(nodes.image):
@@ -122,7 +123,7 @@ def test_the_comparison_names_both_runs_and_all_else_one(folder, tmp_path, recor
 
     ours, theirs = (ledger_data.provenance("table", [of]).removeprefix("Measured ") for of in runs)
     lines = [n.astext() for n in document.findall(lambda n: "provenance" in classes(n))]
-    alone, compared = f"Measured {theirs} · ledger", f"Measured {ours} and {theirs} · ledger"
+    alone, compared = f"Measured {theirs}", f"Measured {ours} and {theirs}"
     assert (ours[:9], theirs[:10]) == ("on cpu · ", "on cuda · ")
     assert lines == [alone] * 6 + [compared] * 2
     both = ("l04/lab/cpu", "l04/lab/cuda/recorded")

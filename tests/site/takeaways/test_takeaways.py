@@ -182,11 +182,3 @@ def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
         f"PYTHONPATH={wheel} python3 -m robo_genesis.install \\\n  https://example.org/cpu\n"
         "course/bin/jupyter lab lab.ipynb\n```"
     )
-
-
-def test_a_notebook_names_no_folder_of_the_builder():
-    text = "/srv/site/robo_genesis/page.py, /srv/site, /srv/site-2/a, x/srv/site, /home/me/b"
-    assert files.without_places(text, Path("/srv/site")) == (
-        "robo-genesis/robo_genesis/page.py, robo-genesis, /srv/site-2/a, x/srv/site, ~/b"
-    )
-    assert files.without_places(f"{project.ROOT}/a") == "robo-genesis/a"

@@ -110,7 +110,7 @@ MEASURED = {"answer": "G1 < G2", "origin": "Measured"}
 
 def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
     shown = questions.options("s", "higher", "5 ms", {"lower": "F < 9"}, 0.0)
-    html = written(questions.choice(name="choice-3", options=shown, **MEASURED))
+    html = written(questions.asked(name="choice-3", options=shown, **MEASURED))
     assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
         ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
         ("wrong", "No", "G1 &lt; G2"),
@@ -142,9 +142,9 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 @pytest.mark.browser
 def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(page):
     shown = questions.options("s", None, "5 ms", {"lower": "Why"}, 0.0)
-    first = questions.choice(name="choice-3", options=shown, **MEASURED)
+    first = questions.asked(name="choice-3", options=shown, **MEASURED)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
-    second = questions.number(name="choice-4", **MEASURED, **given)
+    second = questions.asked(name="choice-4", **MEASURED, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
     html = written(first) + written(second)
     page.set_content(f"<!doctype html><style>{style.read_text()}</style>{html}")
@@ -182,7 +182,7 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
 )
 def test_the_rest_of_a_section_waits_for_an_answer(page, answer):
     given = {"value": 4.0, "tolerance": 0.1, "unit": "", "feedback": FEEDBACK}
-    asked = questions.number(name="choice-5", **MEASURED, **given)
+    asked = questions.asked(name="choice-5", **MEASURED, **given)
     rest = '<div><p id="result">4</p></div></section><section><p id="later">Next</p></section>'
     style, script = (BOOK / "_static" / name for name in ("course.css", "choice.js"))
     head = f"<!doctype html><style>{style.read_text()}</style>"
