@@ -40,12 +40,12 @@ from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
 from robo_genesis.pipeline.html.address import site_address
-from robo_genesis.site.evidence.measured import measured
+from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.evidence.plain_nodes import bullets
 from robo_genesis.site.figures.explorer import Recorded
 from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.replay.directive import bundle_of
 from robo_genesis.site.takeaways.directive import link
 from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
@@ -70,7 +70,7 @@ class DatasetDownload(PageDirective):
         """Return the link to the archive, its size and its digest."""
         lesson_page, source = self.arguments[0], Path(self.env.doc2path(self.env.docname))
         lesson = lesson_page.split("/")[0]
-        run = Recorded(lesson, bundle_of(lesson_page)).experiment
+        run = Recorded(lesson, page_outputs(lesson_page) / BACKEND).experiment
         address = f"{site_address()}{self.env.docname}.html" if site_address() else ""
         writer = Writer(source.parent, lambda value: measured(*value.split(" ", 1))[0], address)
         title = f"> {self.config.html_title}. © {self.config.author}. {address}".rstrip()
