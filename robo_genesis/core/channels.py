@@ -66,7 +66,7 @@ class Replay:
     | `rest` | height of a body at rest [m]; curves then show its clearance, close to zero |
     | `until` | end of the motion [s], which is shown first; None for the end of the runs |
     | `places` | for all cases in one view, the horizontal position (x, y) of each [m] |
-    | `repeats` | whether what does not move stands at each of these places |
+    | `repeats` | whether each of these places also has what does not move |
     | `credit` | authors of the shape, None for a shape of the scene itself |
     | `view` | alternative text of the 3D view |
     | `filmed` | subject of the camera frames |

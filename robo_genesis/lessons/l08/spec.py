@@ -86,7 +86,7 @@ SHOWN = {"placed": 105, "slipped": 199, "tipped": 224, "pushed": 246}
 """Episodes of `ASKEW` that the replay shows, and their environments."""
 
 PLACES = ((0.0, -0.5), (0.0, 0.5), (-1.4, -0.5), (-1.4, 0.5))
-"""Where they stand in one view [m]."""
+"""Places of their robots in one view [m]."""
 
 REACH = {"placed": 7, "slipped": 3, "tipped": 2, "pushed": 1}
 """How many rungs each of them reaches; not fitted to a run."""

@@ -7,8 +7,8 @@ import numpy as np
 from robo_genesis.core.scene import FRAME_SHAPE
 
 SHRINK = 5
-"""How many pixels of the camera in a row or column become one, and how many pictures stand in a row
-or column of a sheet."""
+"""Pixels of the camera, in each direction, that become one, and pictures in a row or column of a
+sheet."""
 
 PICTURE = (FRAME_SHAPE[0] // SHRINK, FRAME_SHAPE[1] // SHRINK, FRAME_SHAPE[2])
 """Rows, columns and colours of a picture."""
