@@ -105,9 +105,9 @@ def check_out(root: Path, folder: Path, cache: Path, shared: Sequence[str]) -> P
     return work
 
 
-def environment(work: Path, *without: str) -> dict[str, str]:
+def environment(work: Path) -> dict[str, str]:
     """Return the variables for a command in a checkout: those of this process, with fewer names."""
-    kept = {name: os.environ[name] for name in os.environ.keys() - {*OUTER, *without}}
+    kept = {name: os.environ[name] for name in os.environ.keys() - {*OUTER}}
     return kept | {"PYTHONPATH": str(work)}
 
 
