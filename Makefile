@@ -26,6 +26,7 @@ agree_READS := FIRST SECOND
 serve_READS := PORT
 live_READS := EXECUTE PORT RENDER SOLUTIONS
 repin_READS := GENESIS JOBS RENDER SITE_URL SOLUTIONS
+bench_READS := ROWS RUNS
 $(foreach name,clean distclean help home-picture lint lock pages .venv/.installed,$(eval $(name)_READS :=))
 ALWAYS := BASE_PYTHON PYTHON TORCH_INDEX
 GOALS := $(or $(MAKECMDGOALS),help)
@@ -196,6 +197,11 @@ lock: $(ENVIRONMENT) ## resolve requirements.lock again from pyproject.toml
 .PHONY: repin
 repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (GENESIS=version)
 	@"$(PY)" build_scripts/repin.py
+
+# ROWS and RUNS reach the script as environment variables.
+.PHONY: bench
+bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=names RUNS=n; a quiet machine)
+	@"$(PY)" build_scripts/bench.py
 
 # Packages by the names of their modules; recording needs no linter and no test.
 NEEDED = genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib check_jsonschema

@@ -8,10 +8,13 @@ Exit status: 0 recorded, 1 nothing was started, 130 interrupted, otherwise that 
 failed.
 """
 
+import os
+import shutil
 import sys
 
+from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline.command import run
-from robo_genesis.pipeline.recording.rocm_container import record
+from robo_genesis.pipeline.recording.rocm_container import Host, record
 
 if __name__ == "__main__":
-    sys.exit(run(record, "recorded"))
+    sys.exit(run(lambda: record(Host(ROOT, shutil.which, os.environ)), "recorded"))

@@ -34,7 +34,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from robo_genesis.core import project
 from robo_genesis.core.text import ended, printable
@@ -181,15 +181,23 @@ def read_report(file: str) -> dict[str, Any]:
     """Return a saved report.
 
     Raises:
-        ValueError: the file is not a report of this format.
+        ValueError: the file is not a report of this format, or of no complete examination.
     """
-    from pydantic import BaseModel, ValidationError
+    from pydantic import AfterValidator, BaseModel, ValidationError
 
-    from robo_genesis.sim.diagnosis import StepResult
+    from robo_genesis.sim.diagnosis import STEPS, StepResult
+
+    def complete(steps: list[StepResult]) -> list[StepResult]:
+        names, states = [step.__name__ for step in STEPS], [one.state for one in steps]
+        done = states.index("broken") + 1 if "broken" in states else len(names)
+        in_order = [one.step for one in steps] == names[: max(done, len(steps))]
+        if not in_order or "not run" in states[:done]:
+            raise ValueError(f"not every step was done: {', '.join(names)}")
+        return steps
 
     class Report(BaseModel):
         format: Literal[4]
-        steps: list[StepResult]
+        steps: Annotated[list[StepResult], AfterValidator(complete)]
         machine: dict[str, str]
 
     try:

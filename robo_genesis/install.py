@@ -103,6 +103,8 @@ class Installation:
     def empty(self) -> None:
         """Make the folder, or empty it if this module made it."""
         folder = self.folder
+        if ":" in str(folder.absolute()):
+            raise InstallError(f"{folder.absolute()} has a colon, which separates paths; rename it")
         ours = any((folder / name).is_file() for name in (MARK, DONE))
         free = not folder.exists() or (folder.is_dir() and not any(folder.iterdir()))
         if folder.is_symlink() or not (ours or free):
@@ -122,8 +124,14 @@ class Installation:
         """Install Torch by a command of its own: its index has no other package of the course."""
         version = re.search(r"^torch==\S+$", self.lock.read_text("utf8"), re.MULTILINE)
         wanted = (version[0] if version else "torch", "-c", str(self.lock))
-        index = ("--extra-index-url", self.torch_index, "--timeout", "15") * bool(self.torch_index)
-        self.pip(*index, *wanted)
+        if self.torch_index:
+            try:
+                return self.pip("--extra-index-url", self.torch_index, "--timeout", "15", *wanted)
+            except InstallError as error:
+                if not str(error).startswith(self.torch_index):
+                    raise
+                self.say(f"install  {error}. pip's own index follows, whose Torch can have CUDA")
+        return self.pip(*wanted)
 
     def pip(self, *arguments: str) -> None:
         """Install packages."""
@@ -133,7 +141,8 @@ class Installation:
         """Run Python, by default that of the environment, and report how far pip is.
 
         Raises:
-            InstallError: its exit status is not in `statuses`.
+            InstallError: its exit status is not in `statuses`, or an index cannot be reached; then
+                the message begins with its address.
         """
         command = [python or str(self.folder / "bin" / "python"), *arguments]
         given = os.environ.keys() - REDIRECTIONS - {"PYTHONPATH", "PYTHONHOME"}
@@ -151,10 +160,7 @@ class Installation:
             raise InstallError(failure if status > 0 and failure else ended(status))
 
     def follow(self, printed: Iterable[str]) -> str:
-        """Write what a process prints into the log; return its first error, or its last line.
-
-        If an index cannot be reached, pip goes on with the others: Torch then comes with CUDA.
-        """
+        """Write what a process prints into the log; return its first error, or its last line."""
         most = self.lock.read_text("utf8").count("\n")
         indexes, error, line, taken, due = [PYPI], "", "", 0, time.monotonic() + EVERY
         with (self.folder / LOG).open("a", encoding="utf8") as log:
@@ -163,9 +169,8 @@ class Installation:
                 taken += bool(TAKEN.match(line))
                 if line.startswith(LOOKING):
                     indexes = line.removeprefix(LOOKING).strip().split(", ")
-                if (lost := LOST.search(line)) and not error:
-                    error = unreachable(lost[1], lost[2], indexes)
-                    self.say(f"install  {error}. pip goes on with other indexes")
+                if lost := LOST.search(line):
+                    raise InstallError(unreachable(lost[1], lost[2], indexes))
                 if line.startswith("ERROR: ") and not error:
                     error = line.removeprefix("ERROR: ")
                 if line.startswith("Installing collected packages"):

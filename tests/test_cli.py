@@ -43,11 +43,11 @@ def make(folder: Path, *words: str, **set_: str) -> subprocess.CompletedProcess[
 @pytest.mark.parametrize("target", ["serve", "evidence-rocm"])
 def test_paths_and_settings_may_contain_spaces_and_a_container_needs_no_venv(checkout, target):
     words = [] if target == "evidence-rocm" else [f"PYTHON={python(checkout)}"]
-    done = make(checkout, target, *words, TO="a folder", REPORT="a live=fast", PAGE="")
+    done = make(checkout, target, *words, TO="a folder", ROWS="prose live=fast", PAGE="")
     assert done.returncode == 0, done.stderr
     assert {str(checkout), "a folder"} <= {*done.stdout.splitlines()}
     assert not (checkout / ".venv").exists()
-    assert f"make {target} does not read REPORT TO, which the environment has" in done.stderr
+    assert f"make {target} does not read ROWS TO, which the environment has" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -129,4 +129,4 @@ def test_a_port_in_use_is_refused(tmp_path):
         given = os.environ | {"PYTHONPATH": str(tmp_path), "PORT": port}
         done = subprocess.run(command, env=given, capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
-    assert f"PORT={port}: Address already in use. Choose a free port.\n" in done.stderr
+    assert done.stderr == f"PORT={port}: Address already in use. Choose a free port.\n"

@@ -325,6 +325,8 @@ NEW = f"make a new one with {doctor.MAKE_REPORT}"
         (None, SAVED, ("'report.json' cannot be read as a report: ", "No such file", NEW)),
         ("no JSON", SAVED, ("Invalid JSON", NEW)),
         (SOUND | {"format": 3}, SAVED, ("format",)),
+        (SOUND | {"steps": rows("ok")}, SAVED, ("report.steps", "step was done: version, libr")),
+        (SOUND | {"steps": rows("ok", *["not run"] * 10)}, SAVED, ("not every step was done",)),
         (SOUND | {"steps": rows("odd")}, SAVED, ("steps.0.state",)),
         (SOUND | {"machine": {"engine": 1}}, SAVED, ("machine.engine",)),
         (None, ["--like", "nowhere"], ("'nowhere' is neither a folder nor a zip archive",)),

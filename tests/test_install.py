@@ -31,6 +31,7 @@ def here(tmp_path, monkeypatch) -> Installation:
         (".venv/bin/python", ".venv", "or use it as it is: .venv/bin/python"),
         (".venv", ".venv", "was not made by"),
         (f"of-mine/{DONE}", "link", "is a link"),
+        (f"a:b/{DONE}", "a:b", "has a colon"),
         ("of-mine/file", ".venv", None),
         (f".venv/{MARK}", ".venv", None),  # it was interrupted
         (f".venv/{DONE}", ".venv", None),
@@ -84,13 +85,23 @@ def test_what_failed_is_one_line(here, monkeypatch, printed, said):
     assert printed[-1] in (here.folder / LOG).read_text()
 
 
-def test_torch_is_looked_for_at_its_index_too(here, monkeypatch):
-    given = []
-    monkeypatch.setattr(Installation, "pip", lambda self, *arguments: given.append(arguments))
-    here.torch()
-    Installation(here.folder, here.lock, ()).torch()
-    torch = ("torch==2.13.0", "-c", "lock")
-    assert given == [("--extra-index-url", CPU, "--timeout", "15", *torch), torch]
+def test_an_unreachable_index_of_torch_is_named_and_pips_own_follows(here, monkeypatch):
+    lines, given = [], []
+    lost = InstallError(f"{CPU} cannot be reached (refused)")
+
+    def pip(self, *arguments):
+        given.append("--extra-index-url" in arguments)
+        assert "torch==2.13.0" in arguments
+        if given[-1]:
+            raise lost
+
+    monkeypatch.setattr(Installation, "pip", pip)
+    Installation(here.folder, here.lock, (), torch_index=CPU, say=lines.append).torch()
+    assert given == [True, False]
+    assert [f"{CPU} cannot be reached (refused)" in line for line in lines] == [True]
+    lost = InstallError("https://pypi.org/simple cannot be reached")
+    with pytest.raises(InstallError):
+        here.torch()
 
 
 def test_an_index_that_refuses_ends_pip_after_its_attempts(here, monkeypatch):

@@ -7,8 +7,8 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -151,7 +151,8 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 class Trial:
     """The steps in the checkout, each with its log.
 
-    `before` is what the old version built.
+    `before` is what the old version built, `failed` what the current step has found: the name of
+    each page that is not accepted → `failed` or `refused`, and why.
     """
 
     cache: Path
@@ -160,6 +161,7 @@ class Trial:
     work: Path
     progress: Progress
     before: refresh.EngineBuild | None = None
+    failed: dict[str, refresh.Pair] = field(default_factory=dict)
 
     def run(self) -> Path:
         """Resolve, build with the old and the new version, report, test; return the report."""
@@ -178,7 +180,7 @@ class Trial:
         python = f"BASE_PYTHON={sys.executable}"
         self.command("install", "the new lock", "make", ".venv/.installed", python)
         self.command("book", f"with {self.new}", "make", "book")
-        report = self.write_report({})
+        report = self.write_report()
         self.command("test", f"with {self.new}", "make", "test")
         return report
 
@@ -191,33 +193,34 @@ class Trial:
         version = project.engine_pin(self.work)
         log = self.cache / "repin" / "logs" / f"{stage}-{version}.log"
         self.progress(stage, what, f"log: {log}")
-        if run_logged(command, self.work, log):
-            text = log.read_text("utf8", errors="replace")
-            found = FAILED.findall(text) if stage == "book" else []  # tests print other builds
+        self.failed = {}
+        if run_logged(command, self.work, log, lambda: self.name_failed(stage, log)):
+            self.name_failed(stage, log)
             head, lines = f"Failed: {stage} {what}", last_words(log)
             remedy = (
                 f"The checkout still pins {self.old}. Give another version, or change what failed "
                 f"so that it passes with {self.new} too, and commit; then run make repin again. It "
                 "reuses what is compiled and executed, and begins with the pages that failed."
             )
-            refused = {page: (state, why) for page, state, why in found}
-            places = [f"Log: {log}", f"Report: {self.write_report(refused, head, remedy, *lines)}"]
+            places = [f"Log: {log}", f"Report: {self.write_report(head, remedy, *lines)}"]
             raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
-    def write_report(self, refused: Mapping[str, refresh.Pair], *failed: str) -> Path:
-        """Compare what both versions built, as far as they did, and write the report.
+    def name_failed(self, stage: str, log: Path) -> None:
+        """Print each page of a build that failed or was refused since the last call."""
+        for page, state, why in FAILED.findall(log.read_text("utf8", errors="replace")):
+            if stage == "book" and page not in self.failed:  # tests print builds of their own
+                self.failed[page] = state, why
+                self.progress(stage, page, f"{state}: {why}")
 
-        Args:
-            refused: the name of each page that is not accepted → `failed` or `refused`, and why.
-            failed: what failed, what to do, and the last lines of the log.
-        """
+    def write_report(self, *failed: str) -> Path:
+        """Compare what both versions built, as far as they did, and write the report."""
         found = refresh.Refresh((self.old, self.new))
         if self.before:
             site = self.work / "book" / PUBLISHED / "html"
-            absent = [page for page, (state, _) in refused.items() if state == "failed"]
+            absent = [page for page, (state, _) in self.failed.items() if state == "failed"]
             after = refresh.read_build(self.work, self.new, site, absent)
             found = refresh.compare_builds(self.before, after)
-        found = replace(found, failed=failed, pages=refused)
+        found = replace(found, failed=failed, pages=self.failed)
         folder = self.cache / "reports" / f"repin-{self.old}-{self.new}"
         self.progress("report", refresh.summary(found), str(folder))
         return refresh.document(found).write(folder)
@@ -230,13 +233,16 @@ def last_words(log: Path) -> list[str]:
     return [line.rstrip() for line in after.splitlines() if line.strip()][-LINES:]
 
 
-def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
+def run_logged(
+    command: Sequence[str], folder: Path, log: Path, meanwhile: Callable[[], None] = lambda: None
+) -> int:
     """Run a command in a checkout with its output in a log, and return its exit status.
 
     Args:
         command: program and arguments; it ends with this process.
         folder: the checkout.
         log: file of its output, written over.
+        meanwhile: called each second.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
@@ -250,4 +256,4 @@ def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
             start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
-        return wait_or_kill(process)
+        return wait_or_kill(process, meanwhile)

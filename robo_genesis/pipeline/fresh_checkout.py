@@ -38,7 +38,14 @@ SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "ROB
 NETWORK = ("HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY", "NODE_EXTRA_CA_CERTS")
 """What npm needs to fetch the locked packages; it compares them with the lock."""
 
-GIT_CONFIG = "[safe]\ndirectory = *\n"
+GIT_CONFIG = """\
+[safe]
+directory = *
+[core]
+attributesFile = /dev/null
+excludesFile = /dev/null
+autocrlf = false
+"""
 """The whole configuration of the git that makes the checkout. A container's user may differ from
 the owner of the checkout, which git would refuse."""
 
@@ -91,9 +98,9 @@ def check_out(root: Path, folder: Path, cache: Path, shared: Sequence[str]) -> P
     shutil.rmtree(folder, ignore_errors=True)
     work = folder / CHECKOUT
     work.mkdir(parents=True)
-    (folder / ".gitconfig").write_text(GIT_CONFIG)
-    own = dict.fromkeys(("HOME", "XDG_CONFIG_HOME"), str(folder))
-    own |= {"GIT_CONFIG_NOSYSTEM": "1", "GIT_ATTR_NOSYSTEM": "1"}
+    config = folder / "gitconfig"
+    config.write_text(GIT_CONFIG)
+    own = {"GIT_CONFIG_GLOBAL": str(config), "GIT_CONFIG_NOSYSTEM": "1", "GIT_ATTR_NOSYSTEM": "1"}
     git(work, "init", "--quiet", "--template=", **own)
     source = root.resolve().as_uri()
     git(work, "fetch", "--quiet", "--no-tags", "--update-shallow", source, "HEAD", **own)
@@ -105,9 +112,9 @@ def check_out(root: Path, folder: Path, cache: Path, shared: Sequence[str]) -> P
     return work
 
 
-def environment(work: Path) -> dict[str, str]:
+def environment(work: Path, *without: str) -> dict[str, str]:
     """Return the variables for a command in a checkout: those of this process, with fewer names."""
-    kept = {name: os.environ[name] for name in os.environ.keys() - {*OUTER}}
+    kept = {name: os.environ[name] for name in os.environ.keys() - {*OUTER, *without}}
     return kept | {"PYTHONPATH": str(work)}
 
 

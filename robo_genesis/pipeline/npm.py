@@ -69,25 +69,30 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
 def published(name: str, root: Path = ROOT, cache: Path = CACHE) -> bytes:
     """Return a file of `PUBLISHED` after comparing it with its digest.
 
+    If the cache holds another content, the packages are fetched again, once.
+
     Args:
         name: place of the file in `node_modules`.
         root: see `packages`.
         cache: see `packages`.
 
     Raises:
-        ProjectError: the file differs, or npm failed.
+        ProjectError: the fetched file differs as well, or npm failed.
     """
-    file = packages(root, cache) / name
-    content = file.read_bytes() if file.is_file() else b""
-    digest = hashlib.sha256(content).hexdigest()
-    if digest != PUBLISHED[name]:
-        raise ProjectError(
-            f"{file} has the digest {digest}, expected is {PUBLISHED[name]}. If package-lock.json "
-            "names a new version, read what changed in the file and write its digest into "
-            f"robo_genesis/pipeline/npm.sha256. Else remove {cache / 'npm'}: the packages are then "
-            "fetched again."
-        )
-    return content
+    for attempt in (1, 2):
+        file = packages(root, cache) / name
+        content = file.read_bytes() if file.is_file() else b""
+        digest = hashlib.sha256(content).hexdigest()
+        if digest == PUBLISHED[name]:
+            return content
+        if attempt == 1:
+            print(f"{file} is not the locked file: fetching all packages anew")
+            shutil.rmtree(packages(root, cache).parent)
+    raise ProjectError(
+        f"npm's file {name} has the digest {digest}, expected is {PUBLISHED[name]}. If "
+        "package-lock.json names a new version, read what changed in the file and write its "
+        "digest into robo_genesis/pipeline/npm.sha256."
+    )
 
 
 def require_published() -> None:

@@ -101,11 +101,13 @@ def run_build(build: Build) -> list[str]:
             if build.second:
                 agreed = agree(build.executed, build.second, verify)
                 progress("agree", agreed[0])
+            manifests = _accepted(build, verify, results, progress)
         else:
             results = _execute(build, pages, into, environment, progress, verify)
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
-            manifests.update(_accepted(build, verify, results, progress))
+            if not build.executed:
+                manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)
 
         progress("render", "all pages")
@@ -115,7 +117,7 @@ def run_build(build: Build) -> list[str]:
             packing = beside.submit(pack, draft.html)
             site = Site(draft.html, site_root())
             progress("pack", packing.result().name)
-        sums = write_sums(draft.html)  # last of the site's files, before the checks
+        sums = write_sums(draft.html, draft.digests)  # last of the site's files, before the checks
         progress("sums", sums.name)
         try:
             checked = _check(site, progress)
@@ -214,12 +216,12 @@ def _execute(
     results = execute_pages(
         pages,
         into,
-        build.cache / project.LOGS,
-        environment,
-        Lines(partial(progress, "execute")),
         reuse=not build.release,
         jobs=build.jobs,
         timeout=build.timeout,
+        environment=environment,
+        logs=build.cache / project.LOGS,
+        report=Lines(partial(progress, "execute")),
         accept=accept,
     )
     failed = [failure_report(results)] if any(result.failure for result in results) else []

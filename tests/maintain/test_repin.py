@@ -36,11 +36,12 @@ open("requirements.lock", "w").write(lock)
 """
 
 MAKEFILE = """
+NAMED := timeout 20 sh -c 'until test -f named; do sleep 0.1; done'
 PIN := $(shell sed -n 's/^genesis-world==//p' requirements.lock)
 .PHONY: book test
 book:
 \t@echo "[    1.0 s] execute  2 pages"
-\t@test "$(PIN)" != %(book)s || { cat failed; \\
+\t@test "$(PIN)" != %(book)s || { cat failed; $(NAMED) && \\
 \t  printf 'lab, code cell 3, line 7: rise()\\n  no rise'; false; }
 \t@test -n "$(PYTHON)" || test -f .venv/.installed
 \t@mkdir -p book/_build/html
@@ -127,9 +128,9 @@ def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root):
     ],
 )
 def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree(root, stage, why, packages):
-    before = state(root)
-    with pytest.raises(ProjectError) as caught:
-        repin(root, FAILS[stage])
+    before, named = state(root), root / ".cache" / "repin" / "work" / "checkout" / "named"
+    with pytest.raises(ProjectError) as caught:  # the build ends when each page was named
+        repin(root, FAILS[stage], say=lambda line: "deeper  refused: " in line and named.touch())
     message = str(caught.value)
     remedy = f"The checkout still pins {OLD}. Give another version, or change what failed so that"
     places = re.findall("^(?:Log|Report): (.*)$", message, re.MULTILINE)

@@ -24,7 +24,7 @@ def executed(folder, docname, files: dict[str, bytes], run_id, fingerprint="f") 
     for name, content in files.items():
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_bytes(content)
-    of_page = {"docname": docname, "engine": None, "files": {}}
+    of_page = {"docname": docname, "lesson": None, "page": None, "engine": None, "files": {}}
     of_run = {"fingerprint": fingerprint, "code": "0" * 64, "run_id": run_id, "seconds": 1.0}
     record = Record(**of_page, **of_run, cell_seconds=[])
     (place / RECORD).write_text(record.model_dump_json())

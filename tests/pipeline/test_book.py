@@ -20,6 +20,7 @@ from robo_genesis.pipeline.pages.kernels import kill_with_descendants
 from robo_genesis.pipeline.stages import Build, BuildError, build_lock, run_build
 
 LAB = lab("cpu")
+NO_CAMERA = LAB.replace('"camera" if camera', '"skip" if camera')
 FORGED = """\
 from IPython.display import display
 of = {"function": "robo_genesis.lessons.l04.tables.metric_table", "arguments": []}
@@ -94,12 +95,13 @@ def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built
     ("page", "settings", "error", "said"),
     [
         (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
+        (NO_CAMERA, {}, BuildError, "render.mode is skip, expected camera"),
         (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: number of measured outputs is 1"),
         ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
         (LAB, {"executed": Path()}, ProjectError, r"lab is not among them\.\nExecute these pages"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
     ],
-    ids=["bundle", "output", "site", "missing page", "changed tree"],
+    ids=["bundle", "another contract", "output", "site", "missing page", "changed tree"],
 )
 def test_a_refused_build_leaves_the_old_site(tmp_path, monkeypatch, page, settings, error, said):
     (tmp_path / "empty").mkdir()

@@ -12,7 +12,7 @@ from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.execute import Lines, execute_pages
+from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import write_page
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.store import places
@@ -68,8 +68,7 @@ def as_executed(page: Page, place: Path, seconds: list[float]) -> PageResult:
 
 def executed(pages: list[Page], folder: Path) -> list[PageResult]:
     """Execute pages, and return their results."""
-    silent = Lines(lambda name, event: None)
-    results = execute_pages(pages, places(pages, folder / "store"), folder / "logs", {}, silent)
+    results = execute_pages(pages, places(pages, folder / "store"))
     assert {result.status for result in results} == {"executed"}
     return results
 

@@ -1,11 +1,13 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from robo_genesis.core.files import derived_value
+from robo_genesis.core.project import BACKEND, RENDER, environment_contract
 from robo_genesis.evidence.bundle import Manifest
-from robo_genesis.evidence.refusals import BundleRefused
+from robo_genesis.evidence.refusals import BundleRefused, expect
+from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown
 from robo_genesis.pipeline.pages.folder import MARK, RECORD, stored_notebook
@@ -32,6 +34,7 @@ def verify_results(
     Returns:
         The accepted manifests by page name, and a line for each refused bundle.
     """
+    contract = environment_contract()
     manifests: dict[str, Any] = {}
     refused: list[str] = []
     for result in results:
@@ -39,6 +42,7 @@ def verify_results(
             continue
         try:
             manifest = verify(result.bundle, result.run_id)
+            require_contract(manifest.predicate, contract)
             compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
             progress(stage, result.page.docname, f"accepted, {compared} outputs compared")
@@ -71,3 +75,21 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> int:
         return shown.require_shown(result.page, stored_notebook(result), bundle, manifest)
 
     return int(derived_value("shown", inputs, compare))
+
+
+def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
+    """Raise BundleRefused if a bundle's backend or camera is not the requested one.
+
+    A page that declares no camera must have none.
+
+    Args:
+        predicate: the predicate of the bundle's manifest.
+        contract: the variables that requested it.
+    """
+    remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
+    backend, render = contract[BACKEND], contract[RENDER]
+    camera = render == "1" and find_page(predicate.lesson, predicate.page).camera
+    mode = "camera" if camera else "skip"
+    found = predicate.backend.requested
+    expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
+    expect("frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy)

@@ -114,6 +114,9 @@ def recorded_status(
     """
     absent = f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
     folder = book / "evidence" / lesson / backend
+    if folder.parent.is_symlink():
+        reason = f"evidence/{lesson} is a link, expected a folder. Replace the link."
+        return Status("refused", backend, reason, None, "path", UNREADABLE)
     runs = [folder.with_name("cpu"), *([lab] if (lab := labs.get(lesson)) else [])]
     return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root, cpu_runs=runs)
 

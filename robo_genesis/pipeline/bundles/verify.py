@@ -4,16 +4,18 @@ An accepted bundle has the evidence key of the current checkout.
 """
 
 import json
+import os
 import shutil
 import tempfile
 from datetime import datetime
 from functools import lru_cache, partial
+from glob import glob
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.comparison import differences
-from robo_genesis.core.files import NO_SOURCE, derived, derived_value, files_below
+from robo_genesis.core.files import derived, derived_value
 from robo_genesis.core.git import git, git_or_none
 from robo_genesis.core.scene import SEED
 from robo_genesis.core.text import quoted
@@ -72,18 +74,24 @@ def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
     Raises:
         BundleRefused: `lesson`, the book has no such page.
     """
-    found = files_below(book, (project.PUBLISHED,), NO_SOURCE)
-    files = sorted(path for path in found if path.suffix == ".md" or path.name == "_toc.yml")
+    files = _page_files(book)
     inputs = [path.relative_to(book).as_posix().encode() for path in files]
     readers = [Path(syntax.__file__).with_name("book.py"), Path(syntax.__file__)]
     inputs += [path.read_bytes() for path in (*files, *readers)]
     listed = json.loads(derived("page-code", inputs, partial(_read_codes, book)))
-    codes = {(lesson, page): (digest, names) for lesson, page, digest, names in listed}
-    if (lesson, page) not in codes:
-        wanted, pages = f"{lesson}/{page}", " or ".join(sorted(map("/".join, codes)))
+    found = {(lesson, page): (digest, names) for lesson, page, digest, names in listed}
+    if (lesson, page) not in found:
+        wanted, pages = f"{lesson}/{page}", " or ".join(sorted(map("/".join, found)))
         remedy = "Put the bundle into the folder of its own lesson."
         expect("lesson", "manifest.json", "lesson and page", wanted, pages, remedy)
-    return codes[lesson, page]
+    return found[lesson, page]
+
+
+def _page_files(book: Path) -> list[Path]:
+    """Return the table of contents and every file that may be a page, also in linked folders."""
+    found = glob("**/*.md", root_dir=book, recursive=True)  # follows links, skips hidden names
+    pages = sorted(name for name in found if not name.startswith(f"{project.PUBLISHED}{os.sep}"))
+    return [*book.glob("_toc.yml"), *(book / name for name in pages)]
 
 
 def _read_codes(book: Path) -> bytes:
@@ -231,5 +239,5 @@ def verify_bundle(
 @lru_cache(maxsize=1)
 def _code() -> bytes:
     """Return the whole code of the course and its data files."""
-    files = sorted(files_below(project.ROOT / "robo_genesis"))
-    return b"\0".join(path.read_bytes() for path in files)
+    files = sorted(path for path in (project.ROOT / "robo_genesis").rglob("*") if path.is_file())
+    return b"\0".join(path.read_bytes() for path in files if "__pycache__" not in path.parts)

@@ -2,13 +2,14 @@
 
 import hashlib
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
 from bs4 import BeautifulSoup
 
 from robo_genesis.core.files import derived, write_whole
+from robo_genesis.core.project import ProjectError
 
 ARCHIVE = "offline/robo-genesis-site.zip"
 """The archive's place in the site, for the link of the home page: unpack it, open `index.html`."""
@@ -68,17 +69,27 @@ def content(path: Path) -> bytes:
     return derived("offline", [data, Path(__file__).read_bytes()], without_offer)
 
 
-def write_sums(html: Path) -> Path:
+def write_sums(html: Path, known: Mapping[str, str]) -> Path:
     """Write the digests of a complete site into the site; return the file.
 
     Args:
         html: the folder of the site with its archive. The archive holds no SHA256SUMS: its pages
             differ from the site's by the offer of the archive, and its own digest is in the file.
+        known: digests by name of the file; the other files are read.
+
+    Raises:
+        ProjectError: a file is a link, or its name has a character that `sha256sum` would escape.
     """
     lines = []
     for path in sorted(html.rglob("*"), key=lambda path: path.relative_to(html).as_posix()):
         name = path.relative_to(html).as_posix()
+        if path.is_symlink() or set(name) & set("\\\n\r"):
+            raise ProjectError(
+                f"The site's file {name!r} is a link, or has a backslash or a new line in its "
+                f"name. {SUMS} lists plain files with plain names. Rename or copy it."
+            )
         if path.is_file() and name != SUMS:
-            lines.append(f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {name}\n")
+            digest = known.get(name) or hashlib.sha256(path.read_bytes()).hexdigest()
+            lines.append(f"{digest}  {name}\n")
     write_whole(html / SUMS, "".join(lines).encode())
     return html / SUMS

@@ -13,8 +13,7 @@ from bs4 import BeautifulSoup, Tag
 from robo_genesis.core.files import derived_value
 from robo_genesis.pipeline.html import scripts
 
-ADDRESSES = {"href", "src", "srcset", "poster", "data", "action", "data-model", "data-viewer"}
-"""Attributes with addresses. The script of the replays loads the last two."""
+ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
 NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "index", "search"}
 ELSEWHERE = re.compile(r"^(?:https?|wss?|ftp):|^//", re.IGNORECASE)
@@ -78,11 +77,11 @@ class Site:
 
     def _facts(self, path: Path) -> PageFacts:
         text = path.read_text("utf8")
-        inputs = [text, self.name(path), Path(scripts.__file__).read_text("utf8")]
+        inputs = [text, self.name(path), self.base, Path(scripts.__file__).read_text("utf8")]
 
         def make() -> dict[str, Any]:
             parsed = BeautifulSoup(text, "html.parser")
-            return asdict(page_facts(self.name(path).removesuffix(".html"), parsed, text))
+            return asdict(page_facts(scripts.Page(self.root, self.base, path, parsed, text)))
 
         return PageFacts(**derived_value("checked", inputs, make))
 
@@ -101,28 +100,30 @@ class Site:
         return path.relative_to(self.root).as_posix()
 
 
-def page_facts(name: str, page: BeautifulSoup, text: str) -> PageFacts:
-    """Return what the checks use of a page; see `scripts.page_problems`."""
-    tags = page.find_all(True)
-    names = (tag.get(attribute) for tag in tags for attribute in ("id", "name"))
+def page_facts(page: scripts.Page) -> PageFacts:
+    """Return what the checks use of a page."""
+    tags = page.parsed.find_all(True)
+    names = (tag.get(name) for tag in tags for name in ("id", "name"))
     style = [tag.get_text() for tag in tags if tag.name == "style"]
     style += [str(tag["style"]) for tag in tags if tag.has_attr("style")]
+    inline = page.parsed.find_all("script", src=False)
     found = [(url, _is_loaded(tag)) for tag in tags for url in _addresses(tag)]
-    found += [(url, True) for each in style for url in _in_style(each)]
-    images = [*page.find_all("img"), *page.find_all("svg", class_="drawing")]
+    found += [(url, True) for text in style for url in _in_style(text)]
+    in_scripts = [url for tag in inline for url in SCRIPT_ADDRESS.findall(tag.get_text())]
+    images = _images(page.parsed)
     return PageFacts(
-        anchors=sorted({str(anchor) for anchor in names if anchor}),
+        anchors=sorted({str(name) for name in names if name}),
         addresses=[url for url, _ in found],
-        loaded=[url for url, is_loaded in found if is_loaded],
+        loaded=[url for url, is_loaded in found if is_loaded] + in_scripts,
         examined={
             "alt texts": len(images),
-            "scripts": len(page.find_all("script")),
+            "scripts": len(page.parsed.find_all("script")),
             "leftovers": 1,
         },
         problems={
             "alt texts": list(_alt_problems(images)),
-            "scripts": sorted(set(scripts.page_problems(name, page, text))),
-            "leftovers": list(_leftovers(page)),
+            "scripts": sorted(set(scripts.page_problems(page))),
+            "leftovers": list(_leftovers(page.parsed)),
         },
     )
 
@@ -191,6 +192,11 @@ def check_third_parties(site: Site) -> SiteCheck:
     found += site.in_style_sheets + _services(site)
     problems = sorted({f"{site.name(path)}: {url}" for path, url in found if ELSEWHERE.match(url)})
     return SiteCheck("third parties", len(found), tuple(problems))
+
+
+def _images(page: BeautifulSoup) -> list[Tag]:
+    """Return a page's images and drawings."""
+    return [*page.find_all("img"), *page.find_all("svg", class_="drawing")]
 
 
 def _alt_problems(images: Iterable[Tag]) -> Iterator[str]:

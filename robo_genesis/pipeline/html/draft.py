@@ -8,7 +8,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from robo_genesis.core.files import files_below, write_whole
+from robo_genesis.core.files import write_whole
 
 BUILD_INFO = ".buildinfo"
 """A note of Sphinx for its next build, which depends on the checkout's path."""
@@ -36,10 +36,9 @@ class Draft:
         """Make the copy equal to what Sphinx rendered, after it ended; return this draft.
 
         Raises:
-            OSError: a file cannot be read.
+            OSError: a file or folder cannot be read.
         """
-        found = files_below(self.rendered, left_out=(BUILD_INFO,))
-        names = {path.relative_to(self.rendered).as_posix() for path in found}
+        names = self._names()
         for name in self.digests.keys() - names:  # first: a folder may have taken a file's name
             (self.html / name).unlink()
             with suppress(OSError):  # the folder has other files
@@ -49,6 +48,21 @@ class Draft:
             content = (self.rendered / name).read_bytes()
             digest = hashlib.sha256(content).hexdigest()
             if digest != self.digests.get(name):
-                write_whole(self.html / name, content)  # a browser of `make live` gets no part
+                write_whole(
+                    self.html / name, content
+                )  # a browser of `make live` gets no part of it
                 self.digests[name] = digest
         return self
+
+    def _names(self) -> set[str]:
+        """Return the names of the rendered files."""
+
+        def report(error: OSError) -> None:
+            raise error
+
+        return {
+            Path(here, file).relative_to(self.rendered).as_posix()
+            for here, _, files in os.walk(self.rendered, onerror=report, followlinks=True)
+            for file in files
+            if file != BUILD_INFO
+        }

@@ -10,7 +10,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Sequence
 from contextlib import suppress
@@ -41,11 +40,15 @@ RELOAD = Path(__file__).with_name("live_reload.html").read_bytes()
 Seen = dict[Path, tuple[int, int]]
 
 
+class LiveEndedError(project.ProjectError):
+    """`stop` was called."""
+
+
 class Live:
     """A book that is rendered again after each change.
 
-    `execute` runs the pages that changed, with `timeout` seconds for a cell; otherwise they are
-    shown with the outputs of their last run.
+    One thread calls the methods; another may call `stop`. `execute` runs the pages that changed,
+    with `timeout` seconds for a cell; otherwise they are shown with the outputs of their last run.
     """
 
     def __init__(
@@ -56,6 +59,8 @@ class Live:
         self.work, self.site = self.folder / "work", self.folder / "site" / "html"
         self.sphinx: SphinxProcess | None = None
         self.draft: Draft | None = None
+        self.started: list[subprocess.Popen[str]] = []
+        self.is_ended = False
         self.runs = BuiltPages()
         self.reported: set[Path | str] = set()
         self.seen = self.look()
@@ -92,9 +97,10 @@ class Live:
                 return True
         except (project.ProjectError, OSError, ValueError) as error:
             complaints = str(error).splitlines()
-        more = len(complaints) - SHOWN_LINES
-        say("\n".join(complaints[:SHOWN_LINES]) + (f"  (+{more} lines)" * (more > 0)))
-        say("The browser keeps the last good state.")
+        if not self.is_ended:
+            more = len(complaints) - SHOWN_LINES
+            say("\n".join(complaints[:SHOWN_LINES]) + (f"  (+{more} lines)" * (more > 0)))
+            say("The browser keeps the last good state.")
         return False
 
     def built(self, pages: Sequence[Page]) -> BuiltPages:
@@ -140,28 +146,41 @@ class Live:
         say(f"{page.docname}: runs ...")
         command = [sys.executable, str(project.ROOT / "build_scripts" / "execute.py")]
         command += [f"--book={self.book}", f"--cache={self.cache}", f"--timeout={self.timeout}"]
-        done = subprocess.run(
+        running = subprocess.Popen(
             command,
             env=os.environ | {"PAGE": page.docname, "TO": str(self.folder / "executed")},
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
-            check=False,
             preexec_fn=end_with_parent(signal.SIGTERM),
         )
-        if done.returncode:
-            say(done.stderr.partition("\n\nFAILED: ")[0].strip())
+        self.note(running)
+        _, report = running.communicate()
+        if running.returncode and not self.is_ended:
+            say(report.partition("\n\nFAILED: ")[0].strip())
             say(
                 f"{page.docname}: the outputs of its last run are shown. It runs again when its "
                 "code changes, or code that it imports."
             )
 
+    def note(self, process: subprocess.Popen[str]) -> None:
+        """Note a started process, which `stop` ends.
+
+        Raises:
+            LiveEndedError: `stop` was called meanwhile; the process was ended.
+        """
+        self.started = [other for other in self.started if other.poll() is None] + [process]
+        if self.is_ended:  # set before `stop` reads the list, so one of the two finds the process
+            end(process)
+            raise LiveEndedError
+
     def restart(self, built: BuiltPages) -> None:
         """Start Sphinx; what it kept is used if only pages changed since the last good state."""
         if self.sphinx is not None:
-            self.sphinx.end()
+            end(self.sphinx.process)
         kept.prepare(self.work, kept.read_state(self.book, built))
         self.runs, self.sphinx = built, SphinxProcess(self.book, self.folder / "sphinx.log")
+        self.note(self.sphinx.process)
 
     def show(self) -> None:
         """Copy what changed to the folder that is served."""
@@ -179,6 +198,20 @@ class Live:
             state = kept.read_state(self.book, self.runs)
             if self.look() == self.seen:
                 kept.keep(self.work, state, state)
+
+    def stop(self) -> None:
+        """End the processes that this one started; later ones are ended when they start."""
+        self.is_ended = True
+        for process in self.started:
+            end(process)
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    """End a process, and the group that it leads if it has one, by SIGTERM; wait for it."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGTERM)
+    process.terminate()
+    process.wait()
 
 
 class State(RequestHandler):
@@ -213,8 +246,6 @@ class LiveFile(SiteFile):
 async def serve(live: Live, port: int) -> None:
     """Serve a book until this task is cancelled, and render it after each change.
 
-    A thread renders, which ends with this process. Linux then ends what the thread started.
-
     Args:
         live: the book.
         port: of localhost; 0 takes a free one.
@@ -224,15 +255,17 @@ async def serve(live: Live, port: int) -> None:
     """
     with locked(live.folder / "lock", "Another make live"):
         at = listen(port, live.site, LiveFile, (("/live-reload", State),))
-        threading.Thread(target=watch, args=(live, at), daemon=True).start()
-        await asyncio.Event().wait()
+        try:
+            await asyncio.to_thread(watch, live, at)
+        finally:
+            live.stop()
 
 
 def watch(live: Live, port: int) -> None:
-    """Render a book, say where it is served, and render it after each change."""
+    """Render a book, say where it is served, and render it after each change until it is ended."""
     live.update(set())
     say(f"http://localhost:{port}/ Ctrl-C ends it.")
-    while True:
+    while not live.is_ended:
         time.sleep(INTERVAL)
         paths = live.changed()
         if paths and live.update(paths):

@@ -1,20 +1,21 @@
 """The check of scripts: a page runs the scripts of the theme and of the course, and no others.
 
 A page reaches this check as it will be published. An inline script is known by its digest, a script
-file by its folder; the checks of links and third parties require that it is one of the site.
-Whatever else could run script is refused, whoever wrote it: handlers other than the theme's own,
-`javascript:` addresses, frames, plug-ins, refreshes. Each `<script` of the text must be an element,
-so that this parser and a browser's agree; the last step of a render escapes `<` in tags.
+file by its folder. Whatever else could run script is refused, whoever wrote it: handlers other than
+the theme's own, `javascript:` addresses, frames, plug-ins, refreshes. Two rules keep this parser
+and a browser's from disagreeing: each `<script` of the text is an element, and no tag contains `<`.
 """
 
 import hashlib
 import io
+import json
 import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 from bs4 import BeautifulSoup, Comment, Tag
 
@@ -42,10 +43,14 @@ REFUSED = {"applet", "base", "embed", "foreignobject", "frame", "frameset", "ifr
 """Elements that load another document, a plug-in, or change what addresses mean."""
 
 VIEWER = "model-viewer.js"
-"""The script in `replay/` that `site/replay/viewer.py` makes of a file with a known digest."""
+VIEWER_SHA256 = "4ba524218533577b1acd9a14afa2a1584ad70290ffd15fe72a65f85aaa72a875"
+"""The digest of `replay/model-viewer.js`, which `site/replay/viewer.py` makes of npm's file."""
 
 MODEL = re.compile(rb'\(globalThis\.replayModels \?\?= \{\}\)\["[\w-]+"\] = "[A-Za-z0-9+/=]+";\n')
 """The whole of a script that holds the model of a replay."""
+
+LOADED_BY_SCRIPTS = {"data-model", "data-viewer"}
+"""Attributes whose address the script of the replays adds to the page as a script."""
 
 OTHER_PAGES = {".htm", ".mjs", ".shtml", ".xht", ".xhtml", ".xml", ".xsl", ".xslt"}
 """Suffixes of files that a browser shows or runs, and that no build writes."""
@@ -58,37 +63,53 @@ RUNNING_ADDRESS = re.compile(
     r"(?:javascript|vbscript):|^blob:|^data:(?!image/(?:png|jpeg);base64,)", re.IGNORECASE
 )
 UNSEEN = re.compile(r"[\x00-\x20\x7f]+")  # Characters that browsers leave out of an address
+CONTENT = re.compile(r"<(script|style)\b.*?</\1\s*>", re.IGNORECASE | re.DOTALL)
+TAG_IN_TAG = re.compile(r"<[a-z/!?][^<>]*<", re.IGNORECASE)
 EARLY_END = re.compile(r"^-?>|--!>|<!--")  # What ends or begins a comment for some parsers only
 
 
-def page_problems(name: str, parsed: BeautifulSoup, text: str) -> Iterator[str]:
-    """Yield each problem of a page: what it could run besides the known scripts.
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page of a site: the site's folder and path on its server, and the page as file and parsed.
 
-    Args:
-        name: the page's address from the home page, without `.html`.
-        parsed: the page.
-        text: the content of its file.
+    `base` has a slash at both ends; `text` is the content of the file.
     """
+
+    root: Path
+    base: str
+    path: Path
+    parsed: BeautifulSoup
+    text: str
+
+
+def page_problems(page: Page) -> Iterator[str]:
+    """Yield each problem of a page: what it could run besides the known scripts."""
     scripts = 0
-    for tag in parsed.find_all(True):
-        element = _plain(tag.name)
-        if element == "script":
+    for tag in page.parsed.find_all(True):
+        name = _plain(tag.name)
+        if name == "script":
             scripts += 1
-            yield from _script(name, tag)
+            yield from _script(page, tag)
         values = {
-            key: " ".join(value) if isinstance(value, list) else str(value)
-            for key, value in tag.attrs.items()
+            name: " ".join(value) if isinstance(value, list) else str(value)
+            for name, value in tag.attrs.items()
         }
-        yield from _element(element, values)
-    written = text.lower().count("<script")
+        yield from _element(name, values)
+        for name in LOADED_BY_SCRIPTS & values.keys():
+            if not _is_script_of(page, values[name], "replay"):
+                yield f"{name}={values[name]!r} is not a script of replay/, as replays load."
+    written = page.text.lower().count("<script")
     if written != scripts:
         yield (
             f"the text has {written} times '<script', the parsed page {scripts} scripts. "
             "Escape the others as &lt;script."
         )
-    for comment in parsed.find_all(string=lambda text: isinstance(text, Comment)):
+    for comment in page.parsed.find_all(string=lambda text: isinstance(text, Comment)):
         if EARLY_END.search(comment):
             yield f"a comment ends early for some browsers: {comment[:80]!r}. Remove it."
+    for found in TAG_IN_TAG.findall(CONTENT.sub("", page.text)):
+        if not found.startswith("<!--"):
+            yield f"a tag contains '<': {found[:80]!r}. Escape it as &lt;."
 
 
 def file_problems(root: Path) -> Iterator[str]:
@@ -104,22 +125,23 @@ def file_problems(root: Path) -> Iterator[str]:
             yield from (f"{name}: {found}" for found in _drawing_problems(text))
 
 
-def _script(page: str, script: Tag) -> Iterator[str]:
-    """Yield why a script element of a page is not a known one."""
+def _script(page: Page, script: Tag) -> Iterator[str]:
+    """Yield why a script element is not a known one."""
     kind, text = script.get("type"), script.string or script.get_text()
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    own_name = PAGE_NAME.format(page.path.relative_to(page.root).as_posix().removesuffix(".html"))
     if script.parent is not None and script.find_parent(["svg", "math"]):
         yield f"a script is inside a drawing or formula: {text[:80]!r}. Remove it."
     elif kind not in SCRIPT_TYPES or (kind == "application/json" and script.has_attr("src")):
         yield f"a script has the type {kind!r}. Valid: none, 'module', or data as application/json."
     elif script.has_attr("src"):
         address = str(script["src"])
-        if text.strip() or not urlsplit(address).path.endswith(".js"):
-            yield f"the script file {address!r} is not known. Valid: .js files in _static/."
+        if text.strip() or not _is_script_of(page, address, "_static", "searchindex.js"):
+            yield f"the script file {address!r} is not known. Valid: files in _static/."
     elif kind == "application/json":
-        if "<" in text:  # no browser runs it, but '<' could end it early
-            yield f"a script of JSON has '<': {text[:80]!r}. Escape it as \\u003c."
-    elif digest not in KNOWN and text != PAGE_NAME.format(page):
+        if "<" in text or not _is_json(text):
+            yield f"a script of JSON is not plain JSON without '<': {text[:80]!r}."
+    elif digest not in KNOWN and text != own_name:
         yield (
             f"the inline script {digest} is not known: {text.strip()[:120]!r}. If it is new in the "
             "theme, read it and add its digest to KNOWN in html/scripts.py; else remove it."
@@ -165,8 +187,30 @@ def _known_file(root: Path, path: Path) -> bool:
     """Whether a script file is one that the build writes."""
     parts = path.relative_to(root).parts
     if parts[0] == "replay" and len(parts) == 2:
-        return path.name == VIEWER or bool(MODEL.fullmatch(path.read_bytes()))
+        if path.name == VIEWER:
+            return hashlib.sha256(path.read_bytes()).hexdigest() == VIEWER_SHA256
+        return bool(MODEL.fullmatch(path.read_bytes()))
     return parts[0] == "_static" or parts == ("searchindex.js",)
+
+
+def _is_script_of(page: Page, address: str, *places: str) -> bool:
+    """Whether an address of a page is a script file in one of these places of the site."""
+    parts = urlsplit(address)
+    place = unquote(parts.path)
+    if parts.scheme or parts.netloc or not place.endswith(".js"):
+        return False
+    base = page.root if place.startswith("/") else page.path.parent
+    target = (base / place.removeprefix(page.base)).resolve()
+    inside = target.is_relative_to(page.root)
+    return inside and target.relative_to(page.root).parts[0] in places
+
+
+def _is_json(text: str) -> bool:
+    try:
+        json.loads(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _plain(name: str) -> str:

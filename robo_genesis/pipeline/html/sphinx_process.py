@@ -55,9 +55,6 @@ class SphinxProcess:
         return self
 
     def __exit__(self, *error: object) -> None:
-        self.end()
-
-    def end(self) -> None:
         """End the process and what it started: a child would keep the pipes open."""
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)

@@ -3,7 +3,9 @@
 import pickle
 import re
 from collections.abc import Iterable, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import cast
 
@@ -184,13 +186,20 @@ def read_notebook(path: Path) -> NotebookNode | None:
     try:
         text = path.read_text("utf8")
         # Parse first: MyST-NB mistakes a notebook with a broken front matter for plain text.
-        notebook = _parsed(path, text) if text.startswith("---") else None
+        notebook = deepcopy(_parsed(path, text)) if text.startswith("---") else None
     except Exception as error:  # the parser raises exceptions of many types
         why = f"the page cannot be read: {error}\nFront matter and options of cells are YAML."
         raise PageError(_said(path, [(_line_of_error(error, path), why)])) from error
-    return notebook if is_myst_markdown_notebook(text) else None
+    return notebook if _is_notebook(text) else None
 
 
+@lru_cache(maxsize=128)
+def _is_notebook(text: str) -> bool:
+    """Return whether the text of a page has code cells."""
+    return bool(is_myst_markdown_notebook(text))
+
+
+@lru_cache(maxsize=64)
 def _parsed(path: Path, text: str) -> NotebookNode:
     """Return a page as a notebook; a build needs each page several times, in two processes."""
     read = derived(

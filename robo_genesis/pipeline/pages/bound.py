@@ -47,6 +47,11 @@ NAME = re.compile(r'(\sid="|url\(#|href="#)([^")]*)')
 """A name in a drawing. Matplotlib makes some of them from coordinates."""
 
 
+Shown = dict[str, Any]
+"""One call that shows an output: its `function`, the name, and its `arguments`, a list; so is the
+metadata of the output."""
+
+
 def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Manifest) -> int:
     """Require that all outputs of an executed page are those of its bundle.
 
@@ -122,11 +127,8 @@ def calls_of(page: Page) -> list[list[ast.Call]]:
     return found
 
 
-def names(call: ast.Call, says: dict[str, Any]) -> bool:
-    """Return whether a call, as it is written, shows what the metadata of an output say.
-
-    They have its `function`, the name, and its `arguments`, a list.
-    """
+def names(call: ast.Call, says: Shown) -> bool:
+    """Return whether a call, as it is written, shows what the metadata of an output say."""
     if ast.unparse(call.func) == FINISH:
         return says == {"function": shown.CHECKS, "arguments": []}
     name, *arguments = map(ast.unparse, [*call.args, *call.keywords] or [call.func])

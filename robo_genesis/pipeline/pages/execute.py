@@ -31,22 +31,23 @@ class Underway:
     `cells` is the number of its code cells and `cell` the one that runs, counted from 1; 0 while
     the kernel starts. It `waits` before its first cell that must run alone, and is `alone` from
     there on. `last` is the record of its last stored run, `log` the file that gets what the engine
-    writes. Times are seconds of the monotonic clock.
+    writes, None if it is not kept. Times are seconds of the monotonic clock.
     """
 
     name: str
     cells: int
-    log: Path
-    last: Record | None = None
     alone: bool = False
     waits: bool = False
+    last: Record | None = None
+    log: Path | None = None
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
 
     def started(self) -> str:
         """Return what the line at its start says."""
         expected = f", about {self.last.seconds:.0f} s" if self.last else ""
-        return f"started: {self.cells} cells{expected}; its log: {self.log}"
+        followed = f"; its log: {self.log}" if self.log else ""
+        return f"started: {self.cells} cells{expected}{followed}"
 
     def state(self, now: float) -> str:
         """Return cell, elapsed time and estimated remaining time."""
@@ -61,7 +62,9 @@ class Underway:
 class Lines:
     """Reports pages as lines: each start and end, and now and then how far the pages are."""
 
-    def __init__(self, say: Callable[[str, str], None], every: float = 30.0) -> None:
+    def __init__(
+        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = 30.0
+    ) -> None:
         """Report to `say`, which takes a page's name and an event, or the running pages and "".
 
         Args:
@@ -94,13 +97,13 @@ Running = dict[Any, tuple[Any, PageRun, Underway]]
 def execute_pages(
     pages: Sequence[Page],
     places: Mapping[str, Path],
-    logs: Path,
-    environment: Mapping[str, str],
-    report: Lines,
     *,
     reuse: bool = True,
     jobs: int = 1,
     timeout: int = TIMEOUT,
+    environment: Mapping[str, str] | None = None,
+    logs: Path | None = None,
+    report: Lines | None = None,
     accept: Callable[[PageResult], bool] = lambda result: True,
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
@@ -116,12 +119,14 @@ def execute_pages(
         pages: the pages of the book.
         places: where the store has each page, or will have it; see `page_store.places`. A page
             that fails leaves its place as it is.
-        logs: the folder that keeps, for each page, a file with all that its last run wrote.
-        environment: variables for the kernels.
-        report: gets each event, and shows how far the running pages are.
         reuse: whether a page that the store has is not executed again.
         jobs: how many pages run at once.
         timeout: seconds for one cell; a page's front matter may set another.
+        environment: variables for the kernels.
+        logs: the folder that keeps, for each page, a file with all that its last run wrote. By
+            default it is not kept.
+        report: gets each event, and shows how far the running pages are; by default nothing
+            is shown.
         accept: called once for each page that was executed and did not fail, after the next page
             started; returns whether the page counts as one that did not fail.
 
@@ -131,6 +136,7 @@ def execute_pages(
     Raises:
         OSError: the store cannot be used.
     """
+    report, environment = report or Lines(), environment or {}
     results = _reused(pages, places, report) if reuse else {}
     last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
     waiting = [page for page in pages if page.docname not in results]
@@ -141,7 +147,7 @@ def execute_pages(
     if labs and project.nothing_compiled(environment):
         first = [labs[0], *(page for page in waiting if page.own_kernels and not page.alone)]
         waiting.sort(key=lambda page: first.index(page) if page in first else len(first))
-    for folder in [*(places[page.docname].parent for page in waiting), logs]:
+    for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
     ended: list[PageResult] = []
@@ -152,9 +158,10 @@ def execute_pages(
                 while waiting and (waiting[0] in first or not first) and _room(running, jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
-                    log = logs / f"{place.parent.name}.log"
+                    log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
-                    underway = Underway(page.docname, cells, log, last[page.docname])
+                    before, kept = last[page.docname], log if logs else None
+                    underway = Underway(page.docname, cells, last=before, log=kept)
                     report.say(page.docname, underway.started())
                     _start(run, underway, running)
                 for done in ended:

@@ -34,7 +34,11 @@ FILES_LIMIT = 500
 
 
 class PageRefused(ProjectError):  # noqa: N818 - the word of the domain, as for bundles
-    """A folder is not this page as this checkout executes it; the first word says why."""
+    """A folder is not this page as this checkout executes it. `code` is stable."""
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(f"{code}: {message}")
+        self.code = code
 
 
 class Record(Strict):
@@ -46,6 +50,8 @@ class Record(Strict):
     """
 
     docname: str
+    lesson: str | None
+    page: str | None
     fingerprint: str
     code: Sha256
     run_id: RunId
@@ -90,6 +96,8 @@ def write_page(
                 keep_outputs(bundle, notebook)
         record = Record(
             docname=page.docname,
+            lesson=page.lesson,
+            page=page.page,
             fingerprint=place.name,
             code=code_digest(page),
             run_id=run_id,
@@ -118,7 +126,7 @@ def plain_files(folder: Path) -> list[str]:
             if found.st_size > SIZE_LIMIT or len(names) == FILES_LIMIT:
                 reason = f"exceeds a limit: at most {FILES_LIMIT} files, each of {SIZE_LIMIT} bytes"
             if reason:
-                raise PageRefused(f"files: {name} {reason}. Let the page leave only plain files.")
+                raise PageRefused("files", f"{name} {reason}. Let the page leave only plain files.")
             names.append(name)
     return names
 
@@ -134,35 +142,64 @@ def read_record(place: Path) -> Record:
         return Record.model_validate_json((place / RECORD).read_bytes())
     except (OSError, ValidationError) as error:
         what = f"{RECORD} is not what `make execute` writes. Execute the page again."
-        raise PageRefused(f"record: {what}\n{error}") from error
+        raise PageRefused("record", f"{what}\n{error}") from error
 
 
 def require_this_page(place: Path, record: Record, page: Page, fingerprint: str) -> NotebookNode:
     """Return the notebook of a folder that holds a page as this checkout executes it.
 
-    The record has the digest of each file, so they are of one run, and as `write_page` left them.
-    What the front matter declares is what the cells open; see `page_rules`.
-
     Raises:
         PageRefused: it says what was found and what is valid.
     """
     present = set(plain_files(place)) - {RECORD}
+    if (record.docname, record.lesson, record.page) != (page.docname, page.lesson, page.page):
+        raise PageRefused(
+            "page",
+            f"it is of {record.docname} ({record.lesson}/{record.page}), expected was "
+            f"{page.docname} ({page.lesson}/{page.page}).",
+        )
     absent = sorted({NOTEBOOK, *record.files} - present)
-    others = sorted(present - record.files.keys())
+    own = f"{OUTPUTS}/" if page.declares_bundle else NOTEBOOK
+    others = {name for name in present if not (name == NOTEBOOK or name.startswith(own))}
+    others |= present - record.files.keys()
     if absent or others:
-        raise PageRefused(f"files: absent are {absent}, not of this page {others}.")
+        raise PageRefused("files", f"absent are {absent}, not of this page {sorted(others)}.")
     changed = sorted(name for name in present if sha256(place / name) != record.files[name])
     if changed:
-        raise PageRefused(f"digest: {changed} changed since it was stored.")
-    notebook = nbformat.read(place / NOTEBOOK, as_version=4)
-    if code_of(notebook).digests != page.code.digests:
-        raise PageRefused(f"code: its code cells are not those of {page.path}.")
+        raise PageRefused("digest", f"{changed} changed since it was stored.")
+    try:
+        notebook = nbformat.reads((place / NOTEBOOK).read_text("utf8"), as_version=4)
+        nbformat.validate(notebook)
+    except Exception as error:  # nbformat passes on a dozen kinds of exceptions
+        raise PageRefused("notebook", f"{NOTEBOOK} is not a notebook: {error}") from error
+    timed = sum(bool(cell.source.strip()) for cell in notebook.cells if cell.cell_type == "code")
+    if len(record.cell_seconds) != timed:
+        seconds = len(record.cell_seconds)
+        raise PageRefused("record", f"it has the times of {seconds} cells, expected {timed}.")
+    cells = code_and_kernel(notebook) == code_and_kernel(page.notebook)
+    if not cells or record.code != code_digest(page):
+        raise PageRefused("code", f"its code cells are not those of {page.path}.")
     if record.fingerprint != fingerprint:
         raise PageRefused(
-            f"fingerprint: it is {record.fingerprint}, here it is {fingerprint}: lock, installed "
-            "packages, Python, RENDER, the engine's switches or the package differ."
+            "fingerprint",
+            f"its fingerprint is {record.fingerprint}, here it is {fingerprint}: lock, installed "
+            "packages, Python, RENDER, the engine's switches or the package differ.",
         )
+    metadata = notebook.metadata.get("robo_genesis")
+    run_id = metadata.get("run_id") if isinstance(metadata, dict) else None
+    if run_id != record.run_id:
+        raise PageRefused("run", f"{NOTEBOOK} is of run {run_id}, {RECORD} of {record.run_id}.")
+    if page.declares_bundle and find_bundle(place / OUTPUTS, record.run_id) is None:
+        raise PageRefused("bundle", f"it has no evidence bundle of run {record.run_id}.")
     return notebook
+
+
+def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
+    """Return the digests of a notebook's code cells and the name of the kernel that executes them.
+
+    Comments and layout of the cells do not count.
+    """
+    return code_of(notebook).digests, notebook.metadata.get("kernelspec", {}).get("name")
 
 
 def stored_notebook(result: PageResult) -> NotebookNode:

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import threading
 import uuid
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -111,10 +111,20 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def wait_or_kill(process: subprocess.Popen[bytes]) -> int:
-    """Wait for a process and return its exit status; an exception kills it and all below it."""
+def wait_or_kill(
+    process: subprocess.Popen[bytes], meanwhile: Callable[[], object] = lambda: None
+) -> int:
+    """Wait for a process and return its exit status; an exception kills it and all below it.
+
+    Args:
+        process: see above.
+        meanwhile: called each second.
+    """
     try:
-        return process.wait()
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                return process.wait(timeout=1)
+            meanwhile()
     finally:
         if process.poll() is None:
             kill_with_descendants([process.pid])
@@ -148,7 +158,8 @@ def die_with_parent(scratch: Path) -> None:
         scratch: temporary folder of the build, which no other process would remove.
     """
     parent = multiprocessing.parent_process()
-    assert parent is not None  # the build starts each worker
+    if parent is None:
+        return
 
     def wait_and_die() -> None:
         parent.join()

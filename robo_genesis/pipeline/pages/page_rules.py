@@ -242,6 +242,8 @@ def _of_text(text: str, line: int) -> Iterator[Problem]:
         elif token.type in ("inline", "html_block"):
             shown = INLINE_CODE.sub("", token.content)
             yield from ((at, HTML.format(found[0])) for found in HIDDEN.finditer(shown))
+            if shown.count("$$") % 2:
+                yield at, "the formula that begins with $$ is not closed. Close it with $$."
 
 
 def _of_block(token: Token, lines: Sequence[str], at: int) -> Iterator[Problem]:

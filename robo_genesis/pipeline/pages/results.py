@@ -75,7 +75,7 @@ class PageResult:
 
     `bundle` is None if the page declares none. `folder` is the page's folder: in the store, where a
     failed page may be absent, or outside if it is taken over from another machine. `log` is the
-    file with all that an executed page wrote, None for other pages.
+    file with all that an executed page wrote, None if that is not kept.
     """
 
     page: Page
@@ -224,9 +224,16 @@ def _failing_line(ran: NotebookNode) -> int:
         return 1
     text = ANSI.sub("", "\n".join(errors[-1].traceback))
     found = re.findall(rf"^ *Cell In\[{ran.execution_count}\], line (\d+)", text, re.MULTILINE)
+    # A syntax error that is found before the cell is compiled has a line, but no frame.
+    found = found or re.findall(r"\(<\w+>, line (\d+)\)$", errors[-1].evalue)
     # IPython counts from the first line that is not empty.
     empty = len(ran.source) - len(ran.source.lstrip("\n"))
     return int(found[-1]) + empty if found else 1
+
+
+def last_lines(text: str) -> tuple[str, ...]:
+    """Return the last lines of a text, colours removed."""
+    return tuple(ANSI.sub("", text).splitlines()[-LOG_LINES:])
 
 
 def failure_report(results: Sequence[PageResult]) -> str:
@@ -243,5 +250,6 @@ def failure_report(results: Sequence[PageResult]) -> str:
             place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
         lines += ["", place, *(f"    {line}" for line in str(failure).splitlines())]
         if failure.log:
-            lines += [f"    last lines of {log}:", *(f"    | {line}" for line in failure.log)]
+            whole = f" of {log}" if log else ""
+            lines += [f"    last lines{whole}:", *(f"    | {line}" for line in failure.log)]
     return "\n".join(lines)

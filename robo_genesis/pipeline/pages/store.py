@@ -80,10 +80,8 @@ def result_of(page: Page, place: Path, fingerprint: str) -> PageResult:
     record = folder.read_record(place)
     notebook = folder.require_this_page(place, record, page, fingerprint)
     if outcome := unexpected_outcome(page, notebook):
-        raise folder.PageRefused(f"outcome: {outcome.error}: {outcome.message}")
+        raise folder.PageRefused("outcome", f"{outcome.error}: {outcome.message}")
     bundle = find_bundle(place / folder.OUTPUTS, record.run_id)
-    if page.declares_bundle and bundle is None:
-        raise folder.PageRefused(f"bundle: it has no evidence bundle of run {record.run_id}.")
     return PageResult(page, "reused", 0.0, record.run_id, bundle, folder=place)
 
 
@@ -167,11 +165,11 @@ def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -
             name = folder.read_record(place).docname
             if name not in known:
                 valid = f"Pages of this book: {', '.join(known)}."
-                raise folder.PageRefused(f"page: its page is {name!r}. {valid}")
+                raise folder.PageRefused("page", f"its page is {name!r}. {valid}")
             result = result_of(known[name], place, into[name].name)
             if name in found:
                 other = found[name].folder
-                raise folder.PageRefused(f"twice: {name} is in {other} as well. Remove one.")
+                raise folder.PageRefused("twice", f"{name} is in {other} as well. Remove one.")
             found[name] = replace(result, status="taken over")
         except folder.PageRefused as error:
             problems.append(f"{place}: {error}")

@@ -87,8 +87,8 @@ def work(run: PageRun, connection: Connection) -> None:
     begin = time.monotonic()
     failure = execute_page(run, starts)
     if failure:
-        written = ANSI.sub("", run.log.read_text("utf8", errors="replace"))
-        failure = replace(failure, log=tuple(written.splitlines()[-results.LOG_LINES :]))
+        written = run.log.read_text("utf8", errors="replace")
+        failure = replace(failure, log=results.last_lines(written))
     connection.send((time.monotonic() - begin, failure))
 
 
@@ -173,6 +173,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     elapsed = time.monotonic() - begin
     if failure := _failure(run, error, list(begins)):
         return failure
+    notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
     try:
         if failure := _unkeyed(run):
             return failure

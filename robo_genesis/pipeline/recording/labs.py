@@ -16,7 +16,7 @@ from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.recorder import git_record
 from robo_genesis.evidence.refusals import BundleRefused, expect
-from robo_genesis.pipeline.bundles.of_build import outputs_compared
+from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
 from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
@@ -208,10 +208,10 @@ def _run(recording: Recording, page: Page, folder: Path, progress: Progress) -> 
     [result] = execute_pages(
         [page],
         places([page], folder, recording.root, environment),
-        recording.cache / project.LOGS,
-        environment,
-        Lines(partial(progress, "execute")),
         timeout=recording.timeout,
+        environment=environment,
+        logs=recording.cache / project.LOGS,
+        report=Lines(partial(progress, "execute")),
     )
     if result.failure:
         raise project.ProjectError(f"{result.failure}\n\n{failure_report([result])}")
@@ -219,6 +219,7 @@ def _run(recording: Recording, page: Page, folder: Path, progress: Progress) -> 
     try:
         manifest = recording.verify(result.bundle, result.run_id)
         facts = manifest.predicate
+        require_contract(facts, contract)
         outputs_compared(result, manifest)
         expect("command", "manifest.json", "command", facts.command, COMMAND)
     except BundleRefused as error:

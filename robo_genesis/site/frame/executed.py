@@ -10,9 +10,9 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 from robo_genesis.core.project import EXECUTED_PAGES
-from robo_genesis.pipeline.pages.book import code_of
 from robo_genesis.pipeline.pages.bound import marked
 from robo_genesis.pipeline.pages.built import executed_notebook
+from robo_genesis.pipeline.pages.folder import code_and_kernel
 
 RECOMPUTED: dict[str, set[int]] = {}
 """Of each page that was read, the cells whose outputs but streams `page.show` displayed."""
@@ -38,7 +38,7 @@ class ExecutedPage(NotebookClientBase):
             executed = executed_notebook(page.as_posix(), self.notebook)
         except KeyError:
             executed = None
-        if executed is None or code_of(executed).digests != code_of(self.notebook).digests:
+        if executed is None or code_and_kernel(executed) != code_and_kernel(self.notebook):
             raise ExtensionError(
                 f"{self.path} is not executed, and Sphinx executes nothing. Build with `make book`."
             )

@@ -111,10 +111,14 @@ def test_a_build_continues_with_what_is_sound_and_stops_at_the_rest(book, course
     assert folder.startswith("evidence/l04/cpu: the recorded bundle is refused: files: ")
 
 
-def test_the_folder_of_another_lesson_is_refused(book, courses_pages):
+def test_the_folder_of_another_lesson_and_a_link_are_refused(book, courses_pages):
     lessons = book / "evidence"
     (lessons / "l04").rename(lessons / "l05")
     assert "lesson is l04, expected l05" in recorded_status(book, "l05", "cpu").reason
+    (lessons / "l04").symlink_to(lessons / "l05")
+    status = recorded_status(book, "l04", "cpu")
+    assert (status.state, status.code, status.manifest) == ("refused", "path", None)
+    assert "evidence/l04 is a link" in status.reason
 
 
 def test_a_bundle_without_the_claims_is_inconclusive(book, courses_pages, undecided, experiment):

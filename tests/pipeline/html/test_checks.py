@@ -62,7 +62,7 @@ LOADED = (
     '<script src="https://cdn.example.org/x.js"></script>',
     '<link rel="stylesheet" href="https://fonts.example.org/a.css">',
     "<style>@import 'https://fonts.example.org/a.css';</style>",
-    '<div class="replay" data-viewer="https://unpkg.com/x.js"></div>',
+    '<script>const url = "https://unpkg.com/thebe@0.8.2/lib/index.js"</script>',
     '<img src="https://img.example.org/a.png" alt="A picture of it">',
 )
 MARKUP = (

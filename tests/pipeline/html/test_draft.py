@@ -79,3 +79,6 @@ def test_what_cannot_be_read_in_the_end_fails(tmp_path, rendered):
     (rendered / "lessons/two.html").symlink_to("nothing")
     with pytest.raises(FileNotFoundError, match="two"):
         draft.complete()
+    shutil.rmtree(rendered)
+    with pytest.raises(FileNotFoundError, match="rendered"):
+        draft.complete()

@@ -3,6 +3,8 @@
 import os
 import shutil
 import signal
+import subprocess
+import sys
 import time
 import urllib.request
 from contextlib import suppress
@@ -18,7 +20,7 @@ from tiny_book import cell, fails, make_book, notebook, start
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import STORE
 from robo_genesis.pipeline.html import live as live_module
-from robo_genesis.pipeline.html.live import Live
+from robo_genesis.pipeline.html.live import Live, LiveEndedError
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.store import places
 
@@ -218,6 +220,14 @@ def test_a_page_that_fails_is_reported_once_and_its_last_run_is_shown(said, tmp_
     assert "page, code cell 1, line 11: raise OSError('no robot')" in report
     assert "nothing was exported" not in report
     assert end.startswith("page: the outputs of its last run are shown.")
+
+
+def test_what_starts_after_the_end_is_ended(tmp_path):
+    live = Live(make_book(tmp_path), tmp_path)
+    live.stop()
+    with pytest.raises(LiveEndedError):
+        live.note(subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE))
+    assert live.started[0].returncode == -signal.SIGTERM
 
 
 def test_a_file_that_cannot_be_read_after_a_render_ends_nothing(tmp_path):

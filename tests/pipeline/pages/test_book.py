@@ -76,6 +76,7 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     (notebook(cell("1")) + "\n```{code-cell}\n1\n", 13, "the block ```{code-cell} has no end"),
     (notebook() + fold("Answer", f"{MARKED}{cell('1')}"), 10, "the block :::{dropdown} Answer has"),
     (notebook() + f"````{{note}}\n{cell('1')}````\n", 10, "nothing runs this code cell"),
+    ("# T\n\n$$\nx = 1\n\nText.\n", 3, "begins with $$ is not closed"),
     # what no editor shows
     ("# T\n<<<<<<< HEAD\n", 2, "the mark <<<<<<< of a merge conflict. Keep one version"),
     ("# T\n\nTitle\n=======\nText.\n", 4, "the mark ======= of a merge conflict"),

@@ -1,7 +1,6 @@
 """What is said of the pages that run."""
 
 import re
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -13,8 +12,8 @@ LAST = SimpleNamespace(seconds=20.0)
 
 def underway(cell: int = 0, **changed) -> Underway:
     """Return a page of three cells that started at second 100."""
-    settings = {"cells": 3, "log": Path("a.log"), "last": LAST, "begin": 100.0} | changed
-    return Underway("lab", cell=cell, **settings)
+    settings = {"name": "lab", "cells": 3, "last": LAST, "begin": 100.0} | changed
+    return Underway(cell=cell, **settings)
 
 
 @pytest.mark.parametrize(

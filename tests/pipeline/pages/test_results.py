@@ -85,6 +85,7 @@ FAILING = [  # the code of a cell, and how its failing line begins
     ("import json\njson.loads('{')\none = 1", "json.loads"),
     ("try:\n    1 / 0\nexcept ArithmeticError as e:\n    raise KeyError from e", "raise KeyError"),
     ("one = 1\ntwo = = 2", "two = = 2"),
+    ("if True:\n    one = 1\n  two = 2", "two = 2"),
     ("\n\none = 1\n1 / 0", "1 / 0"),  # IPython counts from the first line with text
     ("one = 1\n%run no_such_file.py", "%run no"),
     ("one = 1\nraise SystemExit(3)", "one = 1"),  # IPython gives no traceback
@@ -96,7 +97,8 @@ def failing(tmp_path_factory):
     """The page whose cells fail, and the same as it was executed."""
     folder = tmp_path_factory.mktemp("failing")
     names = ["ZeroDivision", "ZeroDivision", "Value", "Value", "JSONDecode", "Key", "Syntax"]
-    expected = [f"{name}Error" for name in names] + ["ZeroDivisionError", "Exception", "SystemExit"]
+    expected = [f"{name}Error" for name in names] + ["IndentationError"]
+    expected += ["ZeroDivisionError", "Exception", "SystemExit"]
     cells = [raising(code, name) for (code, _), name in zip(FAILING, expected, strict=True)]
     [page] = find_pages(make_book(folder, page=notebook(cell(HELPER), *cells)))
     [result] = executed([page], folder)

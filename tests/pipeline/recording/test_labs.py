@@ -77,6 +77,7 @@ def test_another_backend_than_expected_is_refused(expected, actual, said):
         recording.require_expected(Recording("l04", expected), actual)
 
 
+NO_CAMERA = lab("cuda").replace('"camera" if camera', '"skip" if camera')
 BY_HAND = lab("cuda").replace('["ROBO_GENESIS_COMMAND"]', '["HOME"]')
 STOPPED = {"verify": Mock(side_effect=KeyboardInterrupt)}
 RELABELLED = lab("amdgpu", more='\nfolder.rename(folder.with_name("cuda"));')
@@ -89,10 +90,11 @@ RELABELLED = lab("amdgpu", more='\nfolder.rename(folder.with_name("cuda"));')
         (lab("amdgpu"), {}, "Expected backend: cuda; .* finds 'amdgpu'"),
         (RELABELLED, {}, "Expected backend: cuda; .* finds 'amdgpu'"),
         (lab("cuda"), {"verify": refuse}, "bundle of this run is refused: metrics: metrics.json"),
+        (NO_CAMERA, {}, "render.mode is skip, expected camera"),
         (BY_HAND, {}, "command: manifest.json: command is .*, expected make evidence"),
         (lab("cuda"), STOPPED, "interrupted .*the older bundle is unchanged"),
     ],
-    ids=["raises", "backend", "relabelled", "refused", "command", "stopped"],
+    ids=["raises", "backend", "relabelled", "refused", "no camera", "command", "stopped"],
 )
 def test_a_run_that_is_not_accepted_leaves_the_old_bundle(tmp_path, page, settings, reason):
     old = old_bundle(tmp_path, "cuda")

@@ -10,22 +10,15 @@ import pytest
 
 from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline.recording import rocm_container
-from robo_genesis.pipeline.recording.rocm_container import commands, record
+from robo_genesis.pipeline.recording.rocm_container import Host, commands, record
 
 DOCKERFILE = (ROOT / rocm_container.DOCKERFILE).read_text()
 NULL = Path(os.devnull)
 
 
-@pytest.fixture
-def host(monkeypatch):
-    """Make this machine one with a program, some devices and an environment."""
-
-    def make(found: str = "docker", devices=(NULL,), **environment: str) -> None:
-        monkeypatch.setattr(rocm_container, "DEVICES", devices)
-        monkeypatch.setattr(rocm_container.shutil, "which", {found: f"/usr/bin/{found}"}.get)
-        monkeypatch.setattr(os, "environ", {"LESSON": "l04"} | environment)
-
-    return make
+def host(found: str = "docker", devices=(NULL,), **environment: str) -> Host:
+    given = {"LESSON": "l04"} | environment
+    return Host(Path("/a checkout"), {found: f"/usr/bin/{found}"}.get, given, devices)
 
 
 def options(command: list[str], name: str) -> list[str]:
@@ -33,14 +26,13 @@ def options(command: list[str], name: str) -> list[str]:
 
 
 @pytest.mark.parametrize("engine", ["docker", "podman"])
-def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(engine, host):
-    host(engine, HIP_VISIBLE_DEVICES="0", SECRET="s", ROCM_PATH="/here")
-    build, run = commands()
+def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(engine):
+    build, run = commands(host(engine, HIP_VISIBLE_DEVICES="0", SECRET="s", ROCM_PATH="/here"))
     assert build == [engine, "build", "--tag", run[-5], "--file", ".rocm/Dockerfile", "."]
     assert run[-4:] == ["make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]
     assert f"--device={NULL}" in run
     assert options(run, "--security-opt") == ["seccomp=unconfined"]
-    assert options(run, "--volume") == [f"{ROOT}:/course"]
+    assert options(run, "--volume") == ["/a checkout:/course"]
     given = ["HOME=/tmp", "USER=course", "HIP_VISIBLE_DEVICES", "LESSON"]
     assert options(run, "--env") == given
     of_user = {name: options(run, name) for name in ("--group-add", "--user", "--userns")}
@@ -50,10 +42,9 @@ def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(e
     assert of_user == {"docker": docker, "podman": podman}[engine]
 
 
-def test_a_missing_device_is_named_with_the_remedy(host):
-    host(devices=(NULL, Path("/dev/no-gpu")))
+def test_a_missing_device_is_named_with_the_remedy():
     with pytest.raises(ProjectError, match=r"/dev/no-gpu is missing here\. A recording "):
-        commands()
+        commands(host(devices=(NULL, Path("/dev/no-gpu"))))
 
 
 def test_a_host_without_packages_gets_the_message(tmp_path):
@@ -75,8 +66,8 @@ def test_a_failed_command_is_named_and_ends_the_recording(tmp_path, monkeypatch,
     stub.write_text('#!/bin/sh\necho "$1"\nexit 7\n')
     stub.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
-    monkeypatch.setattr(rocm_container, "DEVICES", (NULL,))
-    assert record() == 7
+    given = Host(tmp_path, {"docker": str(stub)}.get, {"LESSON": "l04"}, (NULL,))
+    assert record(given) == 7
     out, err = capfd.readouterr()
     assert out == "build\n"
     assert err.startswith("FAILED with status 7: docker build")
