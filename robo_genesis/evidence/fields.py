@@ -1,8 +1,9 @@
 """The types of the fields of a bundle's JSON files: bounded texts, digests, strict records."""
 
+from functools import lru_cache
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from robo_genesis.core.text import BLANK, LINE_LIMIT
 
@@ -11,15 +12,29 @@ RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
 Index = Annotated[int, Field(ge=0, lt=2**31)]
 Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z$")]
 
-PRINTABLE = r" \p{L}\p{M}\p{N}\p{P}\p{S}"
-"""Characters that a page or a terminal may show, as a class of a regular expression."""
 
-OF_LINE, OF_MESSAGE = f"^[{PRINTABLE}]*$", f"^[{PRINTABLE}{BLANK}]*$"
+def _plain(limit: int, other: str = "") -> AfterValidator:
+    """Return a check of length and characters; a page or a terminal may show the text."""
 
-Line = Annotated[str, Field(max_length=200, pattern=OF_LINE)]  # A name, version or unit
-LongLine = Annotated[str, Field(max_length=2000, pattern=OF_LINE)]  # A command or a path
-Message = Annotated[str, Field(max_length=LINE_LIMIT, pattern=OF_MESSAGE)]
+    @lru_cache(maxsize=1024)  # most texts of a bundle are labels that occur many times
+    def check(text: str) -> str:
+        if len(text) > limit:
+            raise ValueError(f"expected at most {limit} characters, found {len(text)}")
+        if text.isprintable():
+            return text
+        odd = next((c for c in text if not c.isprintable() and c not in other), None)
+        if odd is not None:
+            raise ValueError(f"expected one line without control characters, found {odd!r}")
+        return text
+
+    return AfterValidator(check)
+
+
+Line = Annotated[str, _plain(200)]  # A name, version or unit
+LongLine = Annotated[str, _plain(2000)]  # A command or a path
+Message = Annotated[str, _plain(LINE_LIMIT, BLANK)]
 """A warning of the engine, which may have several lines."""
+
 
 Found = bool | int | float | LongLine | None  # A value that a check found
 
