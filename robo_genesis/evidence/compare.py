@@ -1,15 +1,15 @@
 """Compare two bundles that differ in one thing: the engine's version, or the backend."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.core.comparison import Relation, differences
+from robo_genesis.core.comparison import differences
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, bundle_files, rows
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.rows import Section, Side, worst
+from robo_genesis.evidence.rows import PageSpecification, Section, Side, worst
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_lesson, find_page
 
@@ -46,8 +46,8 @@ class BundleComparison:
         return worst([f.state for s in self.sections for f in s.rows if f.state != rows.SHOWN])
 
 
-def claimed_orderings(lesson: str, page: str) -> tuple[Relation, ...]:
-    """Return the orderings of a lesson that compare runs of a page, as this checkout has them.
+def specification(lesson: str, page: str) -> PageSpecification:
+    """Return what this checkout declares about the cases of a page.
 
     Raises:
         BundleRefused: `lesson`, the lesson or the page does not exist.
@@ -56,7 +56,10 @@ def claimed_orderings(lesson: str, page: str) -> tuple[Relation, ...]:
         found, run = find_lesson(lesson), find_page(lesson, page)
     except LookupError as error:
         raise BundleRefused("lesson", str(error)) from error
-    return tuple(claim for claim in found.spec.RELATIONS if {*claim[0]} <= run.runs.keys())
+    cases = [case for case in found.spec.CASES if case in run.runs]
+    metrics = {case: tuple(found.metrics[case].about("unit")) for case in cases}
+    relations = tuple(claim for claim in found.spec.RELATIONS if {*claim[0]} <= {*cases})
+    return PageSpecification(metrics, found.spec.TOLERANCES, relations)
 
 
 def compare(old: Path, new: Path) -> BundleComparison:
@@ -71,7 +74,7 @@ def compare(old: Path, new: Path) -> BundleComparison:
     """
     a, b = read_side(old), read_side(new)
     was, now = a.manifest.predicate, b.manifest.predicate
-    claims = claimed_orderings(now.lesson, now.page)
+    spec = specification(now.lesson, now.page)
     if (was.lesson, was.page) != (now.lesson, now.page):
         raise BundleRefused(
             "lesson",
@@ -81,22 +84,21 @@ def compare(old: Path, new: Path) -> BundleComparison:
     obstacles = tuple(_obstacles(was, now))
     repeat = "repeat" if was.source == now.source else "same engine and backend, other code"
     axis = " and ".join(axes(was, now)) or repeat
-    parts = () if obstacles else _sections(a, b, claims)
+    parts = () if obstacles else _sections(a, b, spec)
     return BundleComparison(
         was, now, (a.folder, b.folder), axis, obstacles, tuple(_notes(was, now)), parts
     )
 
 
-def _sections(old: Side, new: Side, claims: Sequence[Relation]) -> tuple[Section, ...]:
-    room = find_lesson(new.manifest.predicate.lesson).spec.TOLERANCES
+def _sections(old: Side, new: Side, spec: PageSpecification) -> tuple[Section, ...]:
     every = (
-        rows.section("Coverage", rows.coverage(old, new), SAME),
+        rows.section("Coverage", rows.coverage(old, new, spec), SAME),
         rows.section("Invariants", rows.invariants(old, new)),
-        rows.section("Relations", rows.relations(old, new, claims), "No ordering is claimed."),
-        rows.section("Exact counts", rows.values(old, new, room, "exact"), "There are no counts."),
-        rows.section("Values", rows.values(old, new, room, "value"), "There are no values."),
-        rows.section("Arrays", rows.arrays(old, new, room), "There are no arrays."),
-        rows.section("Performance", rows.values(old, new, room, "performance"), NO_PERFORMANCE),
+        rows.section("Relations", rows.relations(old, new, spec), "The lesson claims no ordering."),
+        rows.section("Exact counts", rows.values(old, new, spec, "exact"), "There are no counts."),
+        rows.section("Values", rows.values(old, new, spec, "value"), "There are no values."),
+        rows.section("Arrays", rows.arrays(old, new, spec), "There are no arrays."),
+        rows.section("Performance", rows.values(old, new, spec, "performance"), NO_PERFORMANCE),
     )
     return tuple(sorted(every, key=lambda s: -rows.SEVERITY.index(s.state)))
 

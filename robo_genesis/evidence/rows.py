@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core import comparison
 from robo_genesis.core.comparison import BROKEN, HELD, WITHIN_MARGIN, Relation, allowed, outcome
 from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
@@ -15,6 +14,8 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
 )  # fmt: skip
 """States from best to worst. A row that is only shown does not affect the verdict."""
+
+MISSING = "missing"
 
 # State and verdict of a claimed ordering by its outcomes in the two runs.
 #
@@ -29,8 +30,17 @@ VERDICTS = {
 }
 
 
-Tolerances = Mapping[str, tuple[float, float]]
-"""Unit, metric, group of metrics, case or array → (atol, rtol)."""
+@dataclass(frozen=True, slots=True)
+class PageSpecification:
+    """What a lesson declares about the runs of one of its pages.
+
+    `metrics` gives the required metrics of each case; `tolerances` is unit, metric, group of
+    metrics, case or array → (atol, rtol).
+    """
+
+    metrics: Mapping[str, tuple[str, ...]]
+    tolerances: Mapping[str, tuple[float, float]]
+    relations: tuple[Relation, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,10 +102,15 @@ def section(title: str, rows: Iterator[Row], empty: str = "") -> Section:
     return Section(title, tuple(found), empty)
 
 
-def coverage(old: Side, new: Side) -> Iterator[Row]:
+def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Both sides have the same cases, metrics, checks, labels and joints."""
-    for name, here, there in comparison.differences(_content(old), _content(new)):
-        yield Row(DIFFERS, name, here, there)
+    here, there = _content(old), _content(new)
+    declared = {f"case {case}" for case in spec.metrics}
+    declared |= {f"metric {case}.{name}" for case, names in spec.metrics.items() for name in names}
+    for name in sorted({*here, *there, *declared}):
+        both = here.get(name, MISSING), there.get(name, MISSING)
+        if both[0] != both[1] or MISSING in both:
+            yield Row(DIFFERS, name, *both)
 
 
 def _content(side: Side) -> dict[str, str]:
@@ -127,9 +142,9 @@ def invariants(old: Side, new: Side) -> Iterator[Row]:
         yield Row(EQUAL if all(both) else DIFFERS, name, here, there)
 
 
-def relations(old: Side, new: Side, claims: Sequence[Relation]) -> Iterator[Row]:
+def relations(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Both sides show each ordering that the lesson claims."""
-    for relation in claims:
+    for relation in spec.relations:
         (first, second), metric, claim, margin = relation
         outcomes = [outcome(side.numbers, relation) for side in (old, new)]
         state, verdict = VERDICTS[frozenset(held for held, _ in outcomes)]
@@ -140,12 +155,12 @@ def relations(old: Side, new: Side, claims: Sequence[Relation]) -> Iterator[Row]
         yield Row(state, what, here, there, allowed=limit)
 
 
-def values(old: Side, new: Side, tolerances: Tolerances, kind: str) -> Iterator[Row]:
+def values(old: Side, new: Side, spec: PageSpecification, kind: str) -> Iterator[Row]:
     """The metrics of one class agree within atol + rtol · the larger magnitude.
 
     Counts have no tolerance. Performance is shown and does not affect the verdict.
     """
-    limits = tolerances if kind == "value" else {}
+    limits = spec.tolerances if kind == "value" else {}
     for name, a in old.numbers.items():
         b = new.numbers.get(name)
         if b is None or not a.kind == b.kind == kind or a.unit != b.unit:
@@ -161,7 +176,7 @@ def values(old: Side, new: Side, tolerances: Tolerances, kind: str) -> Iterator[
             yield _largest(name, (metric, group), here, there, a.unit, limits)
 
 
-def arrays(old: Side, new: Side, tolerances: Tolerances) -> Iterator[Row]:
+def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Arrays have the same shape, and their values agree within atol + rtol · the larger magnitude.
 
     A tolerance is declared by the name of a case or an array or, except for counts, by a unit;
@@ -177,7 +192,7 @@ def arrays(old: Side, new: Side, tolerances: Tolerances) -> Iterator[Row]:
             elif np.array_equal(a, b):
                 yield Row(EQUAL, what, str(a.shape), str(b.shape))
             else:
-                yield _largest(what, (case, name), a, b, unit, tolerances)
+                yield _largest(what, (case, name), a, b, unit, spec.tolerances)
 
 
 def _largest(
@@ -186,7 +201,7 @@ def _largest(
     a: np.ndarray,
     b: np.ndarray,
     unit: str | list[str],
-    tolerances: Tolerances,
+    tolerances: Mapping[str, tuple[float, float]],
 ) -> Row:
     """Return the row of two numbers or arrays: of the value that exceeds its tolerance most.
 

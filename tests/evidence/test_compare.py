@@ -173,14 +173,15 @@ def test_claimed_orderings(compared, metric, old, new, state, verdict):
 
 
 without_g3 = both(drop_case, pop(METRICS, "G3"))
-LACKING = ("present", "absent")
+LACKING = ("present", "missing")
 
 
 @pytest.mark.parametrize(
     ("first", "second", "title", "found"),
     [
         (same, without_g3, "Coverage",
-         {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "absent")}),
+         {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "missing")}),
+        (without_g3, without_g3, "Coverage", {"case G3": ("missing", "missing")}),
         (same, pop("manifest.json", "predicate", "checks", -1), "Coverage",
          {"check functions": LACKING}),
         (same, put(METRICS, "G1", "overshoot", unit="degree"), "Coverage",

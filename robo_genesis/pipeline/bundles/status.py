@@ -11,7 +11,7 @@ from robo_genesis.core.checks import FAILED
 from robo_genesis.core.comparison import HELD, outcome
 from robo_genesis.evidence import copies
 from robo_genesis.evidence.bundle import Manifest, by_full_name, read_manifest, read_metrics
-from robo_genesis.evidence.compare import claimed_orderings
+from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
 from robo_genesis.pipeline.pages.guards import contradicted
@@ -175,7 +175,7 @@ def bundle_status(
 def not_shown(folder: Path, manifest: Manifest) -> list[str]:
     """Return a line for each claimed ordering that an accepted bundle does not show."""
     numbers, lines = by_full_name(read_metrics(folder)), []
-    for claimed in claimed_orderings(manifest.predicate.lesson, manifest.predicate.page):
+    for claimed in specification(manifest.predicate.lesson, manifest.predicate.page).relations:
         (first, second), metric, claim, _ = claimed
         held, values = outcome(numbers, claimed)
         if held != HELD:
