@@ -281,30 +281,6 @@ def require_agreement(found: Backend) -> None:
         )
 
 
-def new_scene(
-    gs: Any, case: Any, rigid: Mapping[str, Any] | None = None, *, first_only: bool = False,
-    **simulated: Any,
-) -> Any:  # fmt: skip
-    """Return a scene with the `dt` and `substeps` of a case, without viewer and speed in the log.
-
-    Args:
-        gs: the engine after `gs.init`.
-        case: the settings.
-        rigid: arguments of `gs.options.RigidOptions`, None for the defaults.
-        first_only: whether cameras see the first environment alone: a frame of 64 of them, one in
-            the other, takes seconds.
-        simulated: further arguments of `gs.options.SimOptions`.
-    """
-    options = gs.options
-    return gs.Scene(
-        sim_options=options.SimOptions(dt=case.dt, substeps=case.substeps, **simulated),
-        rigid_options=options.RigidOptions(**rigid) if rigid else None,
-        vis_options=options.VisOptions(rendered_envs_idx=[0]) if first_only else None,
-        profiling_options=options.ProfilingOptions(show_FPS=False),
-        show_viewer=False,
-    )
-
-
 def require_built(scene: Any, case: Any) -> None:
     """Raise CaseError unless a scene is built with the `dt` and `substeps` of a case."""
     if not scene.is_built:

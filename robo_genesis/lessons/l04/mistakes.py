@@ -15,8 +15,9 @@ from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import is_saturated, step_metrics
 from robo_genesis.lessons.l04.spec import ENTRY, STEPPED_JOINT
-from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, reset, run_case, validate
+from robo_genesis.sim.arm.joint_control import ControlCase, reset, run_case, validate
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.session import CaseError
 
 MEASURES = False
 

@@ -14,8 +14,7 @@ from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.bowl import CHOICES, HEIGHT, WALL
 from robo_genesis.sim.bodies.free_fall import GRAVITY
-from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
-from robo_genesis.sim.session import new_scene
+from robo_genesis.sim.bodies.rigid_bodies import new_scene, record_states, stacked, times
 
 T = 0.01  # Time constant of the engine's contacts at solver steps of up to 5 ms [s]
 

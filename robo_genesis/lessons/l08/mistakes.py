@@ -13,9 +13,9 @@ from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.lessons.l08 import edge, metrics, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.batch import set_link_mass
-from robo_genesis.sim.arm.joint_control import CaseError
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.bodies.table import World
+from robo_genesis.sim.session import CaseError
 
 MEASURES = False
 

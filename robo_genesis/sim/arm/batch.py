@@ -13,8 +13,9 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import joint_control
-from robo_genesis.sim.arm.joint_control import CaseError, ControlCase
+from robo_genesis.sim.arm.joint_control import ControlCase
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.session import CaseError
 
 
 class Batch:

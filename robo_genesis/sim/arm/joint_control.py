@@ -13,8 +13,7 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.model import RobotModel
-from robo_genesis.sim.session import CaseError as CaseError
-from robo_genesis.sim.session import require_built
+from robo_genesis.sim.session import CaseError, require_built
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

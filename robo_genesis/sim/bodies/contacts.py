@@ -10,8 +10,8 @@ from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
-from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
-from robo_genesis.sim.session import CaseError, new_scene
+from robo_genesis.sim.bodies.rigid_bodies import new_scene, read_body, record_states, stacked, times
+from robo_genesis.sim.session import CaseError
 
 SURFACE_SIZE = (2.0, 0.8, 0.05)
 """Length, width and thickness of the fixed box under the bodies [m]."""

@@ -12,8 +12,7 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies import contacts
-from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
-from robo_genesis.sim.session import new_scene
+from robo_genesis.sim.bodies.rigid_bodies import new_scene, read_body, record_states, stacked, times
 
 LINKS = ("box", "left", "right")
 """The links of a run: the box and both pads."""

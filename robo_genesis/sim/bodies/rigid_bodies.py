@@ -1,6 +1,6 @@
 """Free rigid bodies: read their states, record a run, drop a cube from rest."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -43,6 +43,30 @@ class Drop:
     def mass(self) -> float:
         """Mass of the solid cube [kg]."""
         return self.density * self.size**3
+
+
+def new_scene(
+    gs: Any, case: Any, rigid: Mapping[str, Any] | None = None, *, first_only: bool = False,
+    **simulated: Any,
+) -> Any:  # fmt: skip
+    """Return a scene with the `dt` and `substeps` of a case, without viewer and speed in the log.
+
+    Args:
+        gs: the engine after `gs.init`.
+        case: the settings.
+        rigid: arguments of `gs.options.RigidOptions`, None for the defaults.
+        first_only: whether cameras see the first environment alone: a frame of 64 of them, one in
+            the other, takes seconds.
+        simulated: further arguments of `gs.options.SimOptions`.
+    """
+    options = gs.options
+    return gs.Scene(
+        sim_options=options.SimOptions(dt=case.dt, substeps=case.substeps, **simulated),
+        rigid_options=options.RigidOptions(**rigid) if rigid else None,
+        vis_options=options.VisOptions(rendered_envs_idx=[0]) if first_only else None,
+        profiling_options=options.ProfilingOptions(show_FPS=False),
+        show_viewer=False,
+    )
 
 
 def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:

@@ -10,7 +10,7 @@ from robo_genesis.core.comparison import same_arrays
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.sim.arm.batch import run_batch
 from robo_genesis.sim.arm.franka import LINK_PARENTS
-from robo_genesis.sim.arm.joint_control import CaseError
+from robo_genesis.sim.session import CaseError
 
 pytestmark = pytest.mark.engine
 

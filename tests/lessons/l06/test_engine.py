@@ -11,8 +11,8 @@ from robo_genesis.lessons.l06 import spec, study
 from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.run import ask, reach
 from robo_genesis.sim.arm.batch import Batch, set_link_mass
-from robo_genesis.sim.arm.joint_control import CaseError
 from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.session import CaseError
 
 pytestmark = pytest.mark.engine
 

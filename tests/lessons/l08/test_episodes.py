@@ -8,7 +8,7 @@ from lessons.changed_runs import copied, failed, metric, put, reading, shift, tr
 
 from robo_genesis.lessons.l08 import explorer, metrics, plots, rates, spec, text
 from robo_genesis.sim.arm import picking
-from robo_genesis.sim.arm.joint_control import CaseError
+from robo_genesis.sim.session import CaseError
 
 PLACED = spec.SHOWN["placed"]
 

@@ -7,8 +7,9 @@ import pytest
 
 from robo_genesis.lessons.l04.spec import BASELINE, G1, G2
 from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.joint_control import CaseError, differences, reset, run_case, validate
+from robo_genesis.sim.arm.joint_control import differences, reset, run_case, validate
 from robo_genesis.sim.arm.model import RobotModel
+from robo_genesis.sim.session import CaseError
 
 NOT_POSITIVE = ({"steps": 0}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
 ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")

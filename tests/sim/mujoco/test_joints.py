@@ -7,8 +7,8 @@ import pytest
 
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.joint_control import CaseError
 from robo_genesis.sim.mujoco import joints as mujoco_joints
+from robo_genesis.sim.session import CaseError
 
 K = JOINT_NAMES.index(l04.STEPPED_JOINT)
 LINKS = ["link0", "link4", "hand"]
