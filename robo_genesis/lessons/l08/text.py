@@ -111,4 +111,4 @@ def time_of(run: Experiment, name: str) -> str:
     if scene not in creep.TIMED:
         return "–"
     step, least, most = (f"{1000 * run.readings['step'][f'{of}_{scene}']:.1f}" for of in KEPT)
-    return f"{step} ({least} to {most})"
+    return f"{step} ({least}–{most})"

@@ -14,9 +14,11 @@ import numpy as np
 import trimesh
 from trimesh.transformations import quaternion_matrix, rotation_matrix
 
+from robo_genesis.core import palette
 from robo_genesis.core.channels import Run, Runs
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part, check_links, floor
+from robo_genesis.site.figures.case_labels import MARKS
 
 TILE = 0.1  # Width of the tiles of the floor [m]; they show its distance and the motion above it
 
@@ -272,12 +274,15 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
     moved = [np.tile([x, y, 0.0], (len(runs.links), 1)) for x, y in places]
     arrays["link_pos"] = arrays["link_pos"] + np.concatenate(moved)
     links = [f"{case}: {link}" for case, _ in traces for link in runs.links]
-    parts = [
-        replace(part, link=f"{case}: {part.link}")
-        for case, _ in traces
-        for part in shape
-        if part.link != WORLD
-    ]
+    marks = palette.marks_of([case for case, _ in traces], MARKS)
+
+    def of_case(part: Part, case: str) -> Part:
+        """Return a part of one run; the link that its curve follows has the curve's colour."""
+        red, green, blue = bytes.fromhex(palette.MARKS[marks[case]].light[1:])
+        rgb = (red, green, blue) if part.link == runs.replay.follows else part.rgb
+        return replace(part, link=f"{case}: {part.link}", rgb=rgb)
+
+    parts = [of_case(part, case) for case, _ in traces for part in shape if part.link != WORLD]
     still = [part for part in shape if part.link == WORLD]
     if runs.replay.repeats:
         still = [

@@ -152,6 +152,7 @@ def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_pla
     found, parts = scenery.side_by_side(runs, SHAPE)
     assert found.links == [f"{run}: {link}" for run in ("one", "other") for link in BOXES]
     assert [part.link for part in parts] == ["one: box", "other: box", WORLD]
+    assert len({part.rgb for part in (*parts[:2], SHAPE[0])}) == 3  # each box as its curve
     for trace in found.traces.values():
         for k, (source, (x, y)) in enumerate(zip(runs.traces.values(), PLACES, strict=True)):
             moved = trace.link_pos[:, 2 * k + 1] - source.link_pos[:, 1]
