@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from robo_genesis.core.comparison import Relation
+from robo_genesis.core.comparison import BROKEN, HELD, WITHIN_MARGIN, Relation
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import as_table, markdown
 from robo_genesis.core.tables import metric_table as by_case
@@ -18,6 +18,8 @@ ENGINE_LABELS = {
 }
 
 Row = dict[str, Any]
+
+CLOSE = "too close to call"  # Two values differ by no more than the margin
 
 NOUNS, UNITS = StepMetrics.about("noun"), StepMetrics.about("unit")
 
@@ -88,8 +90,19 @@ def outcomes_of_predictions(run: Experiment) -> Iterator[Row]:
             "prediction": f"{NOUNS[metric]}: {second} {claim} than {first}",
             "measured": _change(run.metrics, relation),
             "margin": margin_text(metric),
-            "outcome": study.relation_outcome(run, "Genesis", relation)[0],
+            "outcome": _said(run, relation),
         }
+
+
+def _said(run: Experiment, relation: Relation) -> str:
+    """Return the outcome of a prediction; a close one is too close to call."""
+    (first, second), metric, _, margin = relation
+    one, other = (getattr(run.metrics[case], metric) for case in (first, second))
+    if one is None or other is None:
+        return "cannot be judged"
+    state, _ = study.relation_outcome(run, "Genesis", relation)
+    held = f"{HELD} ({CLOSE})" if 0 < abs(one - other) <= margin else HELD
+    return {WITHIN_MARGIN: CLOSE, BROKEN: "**did not hold**"}.get(state, held)
 
 
 def _change(found: Mapping[str, StepMetrics], relation: Relation) -> str:

@@ -71,6 +71,8 @@ def compared(
         lines.append(f"Your functions do not judge {listed(missing)} yet.")
     else:
         lines.append(f"The first rung that fails by your ladder: {ladder(results) or 'none'}.")
+    if other := [rung for rung in course if mine[rung] not in (None, course[rung])]:
+        lines.append(f"Yours and the course's verdict differ: {listed(other)}. Compare the values.")
     failed = [rung for rung, good in course.items() if not good]
     lines.append(f"The scene {outcome(failed)}")
     if len(failed) > 1:

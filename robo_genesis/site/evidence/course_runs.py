@@ -43,13 +43,16 @@ def measured_line(runs: Iterable[PageRun]) -> str:
     Args:
         runs: of this build, and recorded ones, which are left out.
     """
-    accepted = [run.predicate for run in runs if run.predicate and not run.recorded]
+    own = [run for run in runs if not run.recorded]
+    accepted = [run.predicate for run in own if run.predicate]
     if not accepted:
         return NONE_ACCEPTED
     engines = sorted({predicate.engine.version for predicate in accepted})
     dates = sorted({predicate.started[:10] for predicate in accepted})
     when = f"on {dates[0]}" if len(dates) == 1 else f"from {dates[0]} to {dates[-1]}"
-    return f"Measured on {READABLE[BACKEND]} with Genesis {listed(engines)} {when}."
+    line = f"Measured on {READABLE[BACKEND]} with Genesis {listed(engines)} {when}."
+    lacking = len(own) - len(accepted)
+    return f"{line} {lacking} of {len(own)} runs were not accepted." if lacking else line
 
 
 class CourseProcessors(SphinxDirective):

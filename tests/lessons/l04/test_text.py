@@ -61,13 +61,14 @@ def test_every_outcome_gives_four_blocks_without_an_absolute_claim(experiment, f
 @pytest.mark.parametrize(
     ("rise", "outcome"),
     [
-        (0.11, "held"),
-        (0.13, "within the margin"),
-        (0.2, "broken"),
+        (0.11, "held (too close to call)"),
+        (0.13, "too close to call"),
+        (0.2, "**did not hold**"),
+        (0.05, "held"),
         (0.12, "held"),
     ],
 )
-def test_a_later_time_within_the_margin_confirms_no_prediction(experiment, rise, outcome):
+def test_a_prediction_within_the_margin_is_too_close_to_call(experiment, rise, outcome):
     run = with_metrics(experiment, G1=MEASURED, G2=replace(MEASURED, rise_time=rise))
     row = tables.outcomes_of_predictions(run).splitlines()[2]
     assert row.split("|")[4].strip() == outcome

@@ -22,7 +22,7 @@ def by_margin(results):
     [
         ([], {}, by_margin, ["ladder: none", "passes all five"]),
         (["seen"], {"seen": {"margin": 0}}, by_margin, ["ladder: seen", "fails seen."]),
-        (["seen", "built"], {}, by_margin, ["fails built and seen."]),
+        (["seen", "built"], {}, by_margin, ["differ: built and seen", "fails built and seen."]),
         ([], {"stable": None}, by_margin, ["do not judge stable yet", "passes all five"]),
         (["stable"], {}, not_written, ["graspable yet", "fails stable."]),
     ],
@@ -32,6 +32,7 @@ def test_each_outcome_has_words(failed, mine, ladder, said):
     results = dict.fromkeys(spec.RUNGS, GOOD) | mine
     found = own.compared(ladder, results, SimpleNamespace(values=values))
     assert all(words in found for words in said), found
+    assert ("differ" in found) == ("differ" in said[0])
 
 
 def test_a_missing_function_is_named_and_another_error_is_raised(capsys):

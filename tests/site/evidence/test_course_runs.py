@@ -33,7 +33,7 @@ def test_the_line_names_versions_and_dates_of_the_accepted_runs_of_this_build(ac
     missing = replace(one, status=Status("missing", "cpu", "", None))
     line = "Measured on CPU with Genesis 1.4.5 on 2026-11-22."
     assert measured_line([one, one, elsewhere]) == line
-    assert measured_line([one, missing]) == line
+    assert measured_line([one, missing]) == f"{line} 1 of 2 runs were not accepted."
     assert measured_line([missing]) == "No run of this build was accepted."
     assert executed_once([one, missing, one]) == "Each page was executed once, on a CPU."
     assert executed_once([elsewhere, missing]) == "No run of this build was accepted."
