@@ -117,7 +117,7 @@ def scene(lab, monkeypatch):
     return scene
 
 
-BLIND = SimpleNamespace(render=lambda: [np.zeros(course.FRAME_SHAPE, np.uint8)])
+BLIND = SimpleNamespace(render=lambda **_: [np.zeros(course.FRAME_SHAPE, np.uint8)])
 UNREACHABLE = np.where(np.equal(franka.JOINT_NAMES, "joint4"), 1.0, franka.Q_START)
 NOT_FINITE = (np.full(9, np.nan),) * 6
 

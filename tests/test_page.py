@@ -50,7 +50,7 @@ def page(quiet, tmp_path, monkeypatch, engine, displayed):
 def measure(page):
     """Fill a page with a synthetic drop that passes every check."""
     frames = iter((FRAME, FRAME[::-1]))
-    camera = SimpleNamespace(render=lambda: [next(frames)])
+    camera = SimpleNamespace(render=lambda **_: [next(frames)])
     page.readings |= {"model": spec.EXPECTED_MODEL, "body": {"mass": spec.BASELINE.mass}}
     page.capture(camera, "initial")
     page.traces["baseline"] = make_drop(spec.BASELINE)

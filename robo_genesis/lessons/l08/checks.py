@@ -8,9 +8,10 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, noted, within
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.trace import Episodes
+from robo_genesis.core.trace import Demonstrations, Episodes
 from robo_genesis.lessons.l08 import dataset, metrics, spec
 from robo_genesis.sim.arm import lifting, picking
+from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.arm.laws import commanded, dynamics, model_joints
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.camera import film
@@ -141,9 +142,10 @@ def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """Each batch begins where its case puts robot and object. In the episodes that are recorded at
-    all steps, links and control forces are those of the driven robot at each sample, until the hand
-    is above the object all forces and velocities as well, and the states are those of the batch.
+    """Each batch begins where its case puts robot and object, and recorded commands are those of
+    the phase machine. In the episodes that are recorded at all steps, links and control forces are
+    those of the driven robot at each sample, until the hand is above the object all forces and
+    velocities as well, and the states are those of the batch.
     """
     yield from kept("the joint map", model_joints(run.joints))
     for name in (batch for batch in spec.BATCHES if batch in run.cases):
@@ -154,12 +156,36 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
 
 
 def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
-    """Yield a start that is not that of the case, or no orientation."""
+    """Yield a start or a command that is not that of the case, or no orientation."""
     yield from unit_quaternions(trace.object_quat)
     yield from apart("start", "q [rad or m]", trace.q[0], case.q_start, 1e-6)
     place = np.column_stack([case.starts, np.full(len(case.starts), case.size[2] / 2)])
     yield from apart("start", "object_pos [m]", trace.object_pos[0], place, 1e-6)
     yield from apart("start", "object_quat", trace.object_quat[0], case.turns, 1e-6)
+    if isinstance(trace, Demonstrations):
+        yield from sent(trace, case)
+
+
+def sent(trace: Demonstrations, case: picking.PickCase) -> Iterator[Finding]:
+    """Yield a command that the phase machine does not send.
+
+    The goal of a phase is its last command. In a sample, the arm's command moves straight to it, by
+    the stride of each outer step, or by less in a sample in which the phase begins.
+    """
+    rows, phase = np.arange(trace.target.shape[1]), trace.phase[1:]
+    target = trace.target.astype(np.float64)
+    shut = (phase >= picking.CLOSE) & (phase < picking.OPEN)
+    fingers = np.where(shut, 0.0, case.q_start[-1])[..., None]
+    yield from apart("motion", "target of fingers [m]", target[..., ARM:], fingers, 1e-6)
+    before = np.concatenate([np.broadcast_to(case.q_start, target[:1].shape), target[:-1]])
+    before, arm = before[..., :ARM], target[..., :ARM]
+    of_phase = phase[::-1] == np.arange(picking.DONE + 1)[:, None, None]
+    way = arm[len(phase) - 1 - of_phase.argmax(axis=1), rows][phase, rows] - before
+    longest, far = (np.abs(of).max(axis=-1) for of in (way, arm - before))
+    whole = np.minimum(case.commands * picking.STRIDE, longest)
+    begins = phase != trace.phase[:-1]
+    share = np.where(begins, np.minimum(far, whole), whole) / np.maximum(longest, 1e-9)
+    yield from apart("motion", "target of arm [rad]", arm, before + share[..., None] * way, 2e-6)
 
 
 def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Finding]:

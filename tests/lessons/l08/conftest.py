@@ -40,6 +40,7 @@ def arm(x: float, y: float) -> tuple[Trace, np.ndarray]:
     command = [case.q_start]
     for k in PHASES[1:]:
         way = goals[k] - command[-1]
+        way[7:] = 0  # the fingers have their own command
         command.append(command[-1] + way * min(1, 0.012 / max(np.abs(way).max(), 1e-12)))
         command[-1][7:] = 0.0235 if 2 <= k < 6 else 0.04  # where the object would stop the fingers
     rest = case.control.steps + 1 - len(PHASES)
@@ -129,11 +130,11 @@ def episodes(joints) -> Experiment:
 
 
 def demonstrated(batch: Episodes) -> Demonstrations:
-    """Return a batch with the commands that its arms would have followed."""
+    """Return a batch with the commands that its arms followed, which close the fingers wholly."""
     parts = {of.name: getattr(batch, of.name) for of in fields(batch)}
-    target, phase = batch.q[1:].copy(), batch.phase[1:]
-    target[..., 7:] = 0.04
-    target[(phase >= picking.CLOSE) & (phase < picking.OPEN), 7:] = 0
+    run, _ = arm(*spec.FEW[0].tolist())
+    target = np.float32(run.target[4::5][:, None]).repeat(batch.phase.shape[1], axis=1)
+    target[..., 7:] = np.where(target[..., 7:] < 0.03, 0, target[..., 7:])
     return Demonstrations(**parts, target=target)
 
 

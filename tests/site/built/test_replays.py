@@ -174,6 +174,7 @@ def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser_
     page.goto(f"{address}/{name}.html")
     for width, height in ((390, 844), (1280, 900)) if name in FIRST_SCREEN else ():
         page.set_viewport_size({"width": width, "height": height})
+        page.evaluate("document.fonts.ready.then(() => new Promise(requestAnimationFrame))")
         play = page.locator(".replay .play").first.bounding_box()
         assert play["y"] + play["height"] < height
     show_all(page)
