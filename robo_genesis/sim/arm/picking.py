@@ -185,9 +185,11 @@ def pose(
     world: World, joints: JointMap, q: FloatArray, place: FloatArray, quat: FloatArray
 ) -> None:
     """Put robot and object of the first environment where they were: q (9,), (3,) and (4,)."""
-    world.robot.set_dofs_position(q[None], joints.dofs_idx_local.tolist(), envs_idx=[0])
-    world.body.set_pos(place[None], envs_idx=[0])
-    world.body.set_quat(quat[None], envs_idx=[0])
+    # Copies, because the engine's tensors cannot share arrays that are read-only.
+    q, place, quat = (np.array(of)[None] for of in (q, place, quat))
+    world.robot.set_dofs_position(q, joints.dofs_idx_local.tolist(), envs_idx=[0])
+    world.body.set_pos(place, envs_idx=[0])
+    world.body.set_quat(quat, envs_idx=[0])
 
 
 def run(
