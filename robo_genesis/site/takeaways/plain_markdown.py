@@ -29,6 +29,7 @@ BLOCKS = (
 )  # fmt: skip
 """Tokens of the blocks that are not running text."""
 
+GUARD = re.compile(r" ?\{guard\}`[^`]*`")
 ROLE = re.compile(r"\{([a-z][\w:-]*)\}(`+)(.+?)\2", re.DOTALL)
 TITLED = re.compile(r"(.+?)\s*<[^<>]+>", re.DOTALL)
 LINK = re.compile(r"!?\[([^\]]*)\]\((?!https?:|mailto:)([^)\s]*)\)")
@@ -108,7 +109,8 @@ def _inline(lines: list[str], writer: Writer) -> str:
         target = urljoin(writer.address, re.sub(r"\.md(?=#|$)", ".html", found[2]))
         return f"[{found[1]}]({target})" if writer.address and found[1] else found[1]
 
-    text = ROLE.sub(lambda role: _role(role[1], role[3], writer), "\n".join(lines))
+    text = GUARD.sub("", "\n".join(lines))
+    text = ROLE.sub(lambda role: _role(role[1], role[3], writer), text)
     return LINK.sub(link, text)
 
 
@@ -117,8 +119,6 @@ def _role(name: str, text: str, writer: Writer) -> str:
     titled = TITLED.fullmatch(text)
     if name == "measured":
         return writer.measured(text)
-    if name == "guard":
-        return ""
     if name == "engine-source":
         return f"`genesis/{text}`"
     return titled[1] if titled else UNTITLED.get(name, text)

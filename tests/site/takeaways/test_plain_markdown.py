@@ -30,6 +30,7 @@ def writer(tmp_path):
             "**Question.** How\nmuch?",
         ),
         (":::{admonition} First\n:class: tip\nDo *it*.\n:::", "> **First**\n> \n> Do *it*."),
+        ("It holds. {guard}`l04/lab law`\nNext {guard}`law` one.", "It holds.\nNext one."),
         (":::{note}\nMind.\n:::", "> **Note**\n> \n> Mind."),
         (":::{dropdown} A hint\ninside\n:::", "> **A hint**\n> \n> inside"),
         ("- item\n\n  ```{term-list}\n  gone\n  ```\n- next", "- item\n\n- next"),
