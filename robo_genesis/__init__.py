@@ -7,7 +7,9 @@ functions. The names are loaded when they are first used.
 
 from typing import Any
 
-__all__ = ["PLAIN_LOG", "PRECISION", "SEED", "backend", "model_file", "open_page", "table"]
+__all__ = [
+    "PLAIN_LOG", "PRECISION", "SEED", "backend", "curves", "model_file", "open_page", "table",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from IPython.display import Markdown, display
+from matplotlib.figure import Figure
 
 from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check
@@ -156,12 +157,13 @@ class LessonPage:
         metadata = shown.metadata(name, arguments)
         display(shown.mime_data(name, self.experiment, arguments), metadata=metadata, raw=True)
 
-    def require(self, what: str, found: Sequence[Check]) -> None:
-        """Print that checks beside those of the page passed.
+    def require(self, what: str, **seen: object) -> None:
+        """Print that all values are true: what the cells of a page saw, beside its checks.
 
         Raises:
-            CheckFailed: naming every check that failed, with what it found.
+            CheckFailed: naming every value that is not true.
         """
+        found = [Check(name, bool(value), str(value)) for name, value in seen.items()]
         print(checks.require(f"{self._lesson} {what}", found))
 
     def test(self, test: Callable[..., Check], function: Written, *given: Any) -> None:
@@ -223,6 +225,19 @@ class LessonPage:
         if missing:
             verdict = f"{self._lesson.upper()} CHECK: INCOMPLETE, not passed: {', '.join(missing)}"
         print(verdict)
+
+
+def curves(drawn: Mapping[str, tuple[Any, Any]], quantity: str, axis: str = "time [s]") -> Figure:
+    """Return a figure of one curve or two for the end of a cell; the build does not compare it.
+
+    Args:
+        drawn: by label, two arrays (n,): what is drawn to the right, and the quantity.
+        quantity: what is drawn upwards, with its unit.
+        axis: what is drawn to the right, with its unit.
+    """
+    figure = plotting.figure(2.9)
+    plotting.failure(figure.subplots(), drawn, quantity).set_xlabel(axis)
+    return figure
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> Markdown:

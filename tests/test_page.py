@@ -221,5 +221,5 @@ def test_without_a_camera_no_frame_is_taken(page, monkeypatch):
 
 def test_the_facts_name_the_backend(page, engine, capsys):
     assert f"{engine.backend.actual} ({engine.backend.device_name})" in page.facts().data
-    page.require("boxes", [pages.Check("same", True, "")])
+    page.require("boxes", same=True)
     assert capsys.readouterr().out == "L02 BOXES CHECK: PASSED\n"

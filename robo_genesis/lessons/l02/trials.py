@@ -1,13 +1,10 @@
 """What the lecture measures beside its runs: geometry, balls in trays, falls after `build`."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
-
-from robo_genesis.core.checks import Check, Finding, above, below, conclude, equal, within
+from robo_genesis.core.checks import Finding, above, below, equal, within
 from robo_genesis.core.experiment import Experiment, Readings
-from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.common_checks import usable_frame
@@ -93,16 +90,6 @@ def further_falls(run: Experiment) -> Iterator[Finding]:
     """
     for name, expected in expected_falls().items():
         yield within(f"{name}_m", run.readings[FURTHER][name], expected, spec.FURTHER_TOLERANCE)
-
-
-def same_heights(heights: Sequence[float], trace: BodyTrace) -> Check:
-    """Check that heights of a loop on the page are those of the recorded run."""
-    recorded = trace.link_pos[:, 0, 2]
-    same = [equal("states", len(heights), len(recorded))]
-    if len(heights) == len(recorded):
-        apart = float(np.abs(np.asarray(heights) - recorded).max())
-        same.append(equal("largest_difference_m", apart, 0.0))
-    return conclude("same_heights", "The loop's heights are those of the record.", same)
 
 
 CHECKS = (two_geometries, invisible_lid, further_falls)

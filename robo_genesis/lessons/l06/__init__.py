@@ -6,7 +6,6 @@ __getattr__ = on_demand(
     __name__,
     LESSON="pages",
     target_parts="pages",
-    Check="robo_genesis.core.checks",
     refused="robo_genesis.core.exercises",
     set_link_mass="robo_genesis.sim.arm.batch",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
