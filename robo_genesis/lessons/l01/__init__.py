@@ -7,6 +7,7 @@ __getattr__ = on_demand(
     LESSON="pages",
     read_model="robo_genesis.sim.bodies.rigid_bodies",
     run_drop="robo_genesis.sim.bodies.rigid_bodies",
+    run_python="robo_genesis.sim.fresh_process",
     floor="robo_genesis.sim.visual_shape",
     read_shape="robo_genesis.sim.visual_shape",
 )

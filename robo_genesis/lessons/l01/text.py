@@ -12,8 +12,9 @@ COLUMNS = 42  # Longest line of printed text that a phone shows without scrollin
 
 
 def doctor_lines(steps: list[dict[str, str]]) -> str:
-    """Return the steps of a report of the doctor, in lines of at most `COLUMNS` characters."""
-    lines = [f"{n:2}  {s['step']}: {s['state']}; {s['found']}" for n, s in enumerate(steps, 1)]
+    """Return what the steps of a report found, in lines of at most `COLUMNS` characters."""
+    ran = [step for step in steps if step["state"] != "not run"]
+    lines = [f"{n:2}  {s['step']}: {s['state']}; {s['found']}" for n, s in enumerate(ran, 1)]
     return "\n".join(textwrap.fill(line, COLUMNS, subsequent_indent="    ") for line in lines)
 
 
