@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check
-from robo_genesis.core.exercises import FUNCTIONS, FunctionFailed, Mistake, Written
+from robo_genesis.core.exercises import FUNCTIONS, FunctionFailed, Written
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.project import RUN_ID, cache_folders, nothing_compiled
 from robo_genesis.evidence.recorder import Recorder
@@ -186,18 +186,6 @@ class LessonPage:
         if not outcome.passed:
             raise FunctionFailed(f"{name} does not pass its test yet.\n  {outcome.detail}")
         print(f"{name} passes its test")
-
-    def glue(self, failures: Sequence[Mistake]) -> None:
-        """Keep evidence and curves of deliberate mistakes for the panels of a page of the site."""
-        from myst_nb import glue  # the site alone needs it
-
-        for failure in failures:
-            glue(f"evidence_{failure.name}", Markdown(failure.evidence), display=False)
-            if failure.curves:
-                figure = plotting.figure(2.9)
-                ax = plotting.failure(figure.subplots(), failure.curves, failure.quantity)
-                ax.set_xlabel(failure.axis)
-                glue(f"curves_{failure.name}", figure, display=False)
 
     def finish(self, scene: Any) -> None:
         """Measure, show the table of checks, write the bundle, and print the verdict.

@@ -62,6 +62,7 @@ NOT_RUN = (
     "nothing runs this code cell. Move it out of other blocks; the page begins with a front matter "
     "that has `file_format: mystnb` and `kernelspec: {name: python3}`."
 )
+GLUE = "{glue} shows a value away from its cell. Show it below the cell, or write {measured}."
 SHEET = "a work sheet is plain Markdown, and students get it as it is. Remove the directive."
 HTML = f"nothing leaves out {{!r}} with solutions. Write {DROPDOWN}."
 UNMARKED = f"{{{{{{}}}}}} “{{}}” does not say whether it is a solution. Add `:{{}}{MARK}."
@@ -133,6 +134,7 @@ def sheet_problems(text: str) -> list[Problem]:
 
 
 def _of_page(text: str, notebook: NotebookNode | None) -> Iterator[Problem]:
+    yield from ((n, GLUE) for n, line in enumerate(text.split("\n"), 1) if "{glue" in line)
     if notebook is None:
         yield from _of_text(text, 1)
         return

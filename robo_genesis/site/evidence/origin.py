@@ -4,8 +4,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from docutils import nodes
-from myst_nb.ext.glue.directives import PasteAnyDirective, PasteMarkdownDirective
-from sphinx.application import Sphinx
 
 from robo_genesis.site.evidence.measured import BACKEND
 
@@ -13,8 +11,8 @@ INPUTS = "inputs"  # The tag of a cell whose tables contain only chosen values, 
 
 
 NO_BUNDLE = ("",)
-MADE_BY_CELL = {"cell_code", "mime_bundle", "glued"}
-"""What MyST-NB and `Glued` call the parts of a page that are the output of a cell."""
+MADE_BY_CELL = {"cell_code", "mime_bundle"}
+"""What MyST-NB calls the parts of a page that are the output of a cell."""
 
 
 def above(node: nodes.Node, kind: type | tuple[type, ...] = nodes.Element) -> Iterator[Any]:
@@ -51,7 +49,7 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
 
 
 def cell_of(node: nodes.Node) -> nodes.Element | None:
-    """Return the cell, or the glued part of one, whose output a node is.
+    """Return the cell whose output a node is.
 
     Returns:
         None for a node that no cell made, or that was read from a bundle.
@@ -63,26 +61,3 @@ def cell_of(node: nodes.Node) -> nodes.Element | None:
         if element.get("nb_element") in MADE_BY_CELL:
             found = element
     return found
-
-
-class Glued:
-    """Marks the nodes of a directive as the output of a cell."""
-
-    def run(self) -> list[nodes.Node]:
-        """Return the directive's nodes in a container."""
-        return [nodes.container("", *super().run(), classes=["glued"], nb_element="glued")]  # type: ignore[misc]
-
-
-class GluedAny(Glued, PasteAnyDirective):
-    """Paste an output in any form."""
-
-
-class GluedMarkdown(Glued, PasteMarkdownDirective):
-    """Paste an output as Markdown; without the mark its tables look typed."""
-
-
-def register(app: Sphinx) -> None:
-    """Register the marked directives."""
-    app.add_directive("glue", GluedAny, override=True)
-    for name, directive in (("", GluedAny), ("any", GluedAny), ("md", GluedMarkdown)):
-        app.add_directive_to_domain("glue", name, directive, override=True)

@@ -1,9 +1,9 @@
 """Finds what cells and runs show on a page, and writes its origin below it.
 
-A picture or table is measured if `page.show` displayed it, on the page or glued elsewhere, or if it
-was read from a bundle. Other outputs of cells are printed, also texts: the build compares them with
-the bundle, but does not compute them again. The outputs of a cell that is tagged `inputs` were
-chosen. A picture that no run made is an illustration. A table typed in prose is not listed.
+A picture or table is measured if `page.show` displayed it, or if it was read from a bundle. Other
+outputs of cells are printed, also texts: the build compares them with the bundle, but does not
+compute them again. The outputs of a cell that is tagged `inputs` were chosen. A picture that no run
+made is an illustration. A table typed in prose is not listed.
 """
 
 import re
@@ -22,7 +22,7 @@ from sphinx.util import logging
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence.ledger_data import LEDGER, MEASURED, PRINTED, Item, PageRun
-from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin, register
+from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
 from robo_genesis.site.frame.executed import RECOMPUTED
 
 LOG = "the engine's log"
@@ -90,7 +90,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
 
 def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Element]:
     """Return the texts that a cell printed, an empty list for any other node."""
-    if box.get("nb_element") not in ("cell_code_output", "glued"):
+    if box.get("nb_element") != "cell_code_output":
         return []
     left_out = "mime_bundle" if box.parent.get("cell_index") in recomputed else None
     parts = (part for part in box if part.get("nb_element", "") != left_out)
@@ -163,6 +163,5 @@ def add_line(holder: nodes.Element, text: str, address: str | None) -> None:
 
 def setup(app: Sphinx) -> None:
     """Register the passes over each page that was read."""
-    register(app)
     app.connect("doctree-read", refusals.refuse, priority=890)  # before the lines are added
     app.connect("doctree-read", read_page, priority=900)  # pictures are collected before

@@ -5,11 +5,9 @@ from pathlib import Path
 
 from bs4 import BeautifulSoup
 from docutils import nodes
-from myst_nb.ext.glue.utils import PendingGlueReference
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
-from robo_genesis.core.text import quoted
 from robo_genesis.site.evidence.measured import evidence_badge, measured_value
 from robo_genesis.site.evidence.origin import above, cell_of
 
@@ -66,18 +64,6 @@ def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
         yield (
             f"the picture {node['uri']} lies below evidence/, where it may be stale. "
             "Use the {evidence} directive: it shows only accepted bundles."
-        )
-    if isinstance(node, PendingGlueReference):
-        yield (
-            f"{node.key} is glued from the page {node.refdoc}, and its origin would not be shown. "
-            "Paste it on that page, or insert a metric of its bundle with {measured}."
-        )
-    in_text = node.get("nb_element") == "mime_bundle" and isinstance(node.parent, nodes.TextElement)
-    pasted = any(name.startswith("pasted-") for name in node.get("classes", ()))
-    if pasted or (in_text and node.next_node(nodes.image) is None):
-        yield (
-            f"a cell's text {quoted(node.astext())} is glued into a sentence, where it has no line "
-            "of provenance. Use {measured}, or the directive {glue:md}."
         )
 
 

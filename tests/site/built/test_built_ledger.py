@@ -15,7 +15,7 @@ from robo_genesis.site.evidence.ledger_data import UNMEASURED
 pytestmark = pytest.mark.engine
 LEDGER = "evidence/ledger.html"
 SHOWN = (
-    "article :is(img, svg.drawing), .cell_output table, .glued table, figure table, "
+    "article :is(img, svg.drawing), .cell_output table, figure table, "
     ".evidence-panel table, .replay-block table, .printed"
 )
 

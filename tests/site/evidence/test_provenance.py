@@ -15,29 +15,13 @@ from robo_genesis.site.evidence.refusals import problems
 
 IMPORTS = """\
 from IPython.display import HTML, SVG, Markdown
-from myst_nb import glue
 def drawn(name):
     size = "xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'"
     return SVG(f"<svg {size}><title>{name}</title></svg>")
 def table(name):
     return Markdown(f"| {name} |\\n| --- |\\n| 7 |")
 """
-GLUE = """\
-glue("captioned", drawn("captioned"), display=False)
-glue("bare", drawn("bare"), display=False)
-glue("inline", drawn("inline"), display=False)
-glue("any table", table("any"), display=False)
-glue("md table", table("md"), display=False)"""
-MD_TABLE = "\n```{glue:md} md table\n:format: gfm\n```\n"
-GLUED = paragraphs(
-    "\n```{glue:figure} captioned\n:alt: A glued picture.\n\nIts caption.\n```",
-    "```{glue} bare\n```",
-    "Here it is in a sentence, {glue}`inline`.",
-    "```{glue} any table\n```",
-    MD_TABLE,
-    "| typed |\n| --- |\n| 7 |",
-)
-REMOVED, INPUTS = ":tags: [remove-cell]\n", ":tags: [inputs]\n"
+INPUTS = ":tags: [inputs]\n"
 FIGURE = ":tags: [figure]\n:mystnb: {image: {alt: A drawing}}\n"
 OF_RUN = "No accepted evidence: cpu-refused. ledger"
 CHOSEN = "Chosen, not measured. ledger"
@@ -53,15 +37,14 @@ def show_drawn(name):
     data = {"image/svg+xml": drawn(name).data}
     display(data, metadata={"robo_genesis": of}, raw=True)"""
 AS_MEASURED = (
-    cell(SHOW), cell("glue('md table', table('md'), display=False)", REMOVED),
-    cell("table('chosen')", INPUTS), cell("show('measured')"), cell("table('printed')"),
+    cell(SHOW), cell("table('chosen')", INPUTS), cell("show('measured')"), cell("table('printed')"),
     cell("show('one')\ntable('of both')"), cell("drawn('printed, too')", FIGURE),
     raising("print('2.5 mm')\n1 / 0", "ZeroDivisionError: division"),
-    cell("show_drawn('measured, too')", FIGURE), MD_TABLE,
+    cell("show_drawn('measured, too')", FIGURE),
 )  # fmt: skip
 AS_PRINTED = (
-    cell(GLUE, REMOVED), cell("table('chosen')", INPUTS), cell("table('read')"),
-    cell("drawn('alone')", FIGURE), GLUED,
+    cell("table('chosen')", INPUTS), cell("table('read')"), cell("drawn('alone')", FIGURE),
+    paragraphs("| typed |\n| --- |\n| 7 |"),
 )  # fmt: skip
 
 
@@ -95,8 +78,8 @@ def kinds(rows):
 
 def test_an_output_without_the_name_of_its_function_is_not_called_measured(html):
     page, lines, rows = lines_and_rows(html, "lab")
-    assert lines == [OF_RUN, CHOSEN, *[OF_RUN] * 8]
-    assert kinds(rows) == ["printed", "settings", "table", *["printed"] * 5, "figure", "printed"]
+    assert lines == [CHOSEN, *[OF_RUN] * 7]
+    assert kinds(rows) == ["settings", "table", *["printed"] * 5, "figure"]
     text = page.select_one("[id^=printed]:has(.traceback)")
     assert [line.get_text() for line in text.select(".stream ~ .provenance")] == [OF_RUN]
     (row,) = (row for row in rows if row.a["href"].endswith(f"#{text['id']}"))
@@ -105,14 +88,11 @@ def test_an_output_without_the_name_of_its_function_is_not_called_measured(html)
 
 def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
     page, lines, rows = lines_and_rows(html, "lecture")
-    assert lines == [OF_RUN, CHOSEN] + [OF_RUN] * 7
-    assert "Its caption." in page.select_one("figcaption:has(.provenance)").get_text()
-    assert kinds(rows) == ["printed", "settings", *["printed"] * 7]
-    assert [row.select("td")[3].get_text() for row in rows][:2] == ["–", "no run"]
+    assert lines == [CHOSEN, OF_RUN, OF_RUN]
+    assert kinds(rows) == ["settings", "printed", "printed"]
+    assert rows[0].select("td")[3].get_text() == "no run"
     anchors = [row.a["href"].split("#")[1] for row in rows]
-    assert [page.find(id=anchor).name for anchor in anchors] == [
-        "div", "table", "table", "svg", "figure", "svg", "svg", "table", "table",
-    ]  # fmt: skip
+    assert [page.find(id=anchor).name for anchor in anchors] == ["table", "table", "svg"]
 
 
 def read(text):

@@ -25,30 +25,25 @@ TEXT = {
 
 IMPORTS = """\
 from IPython.display import Markdown
-from myst_nb import glue
 table = Markdown("| read |\\n| --- |\\n| 7 |")"""
 INPUTS = ":tags: [inputs]\n"
 LAB = paragraphs(
-    "\nA sentence with {glue:text}`number`.",
-    "[amdgpu-verified]{.evidence-badge .state-verified}",
+    "\n[amdgpu-verified]{.evidence-badge .state-verified}",
     "```{figure} ../book/evidence/l04/amdgpu/frames/final.svg\n:alt: x\n\nFree words.\n```",
     "```{figure} innocent.svg\n:alt: x\n\nFree words.\n```",
 )
 CELLS = (
     cell("Markdown('<table><tr><td>7</td></tr></table>')"),
     cell("Markdown('a <b style=\"position: fixed\">7</b>')"),
-    cell("glue('number', 7, display=False)"),
 )
 OTHERS = {
     "lab": [
         "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
         "a cell outputs <b> as raw HTML",
-        "a cell's text 7 is glued into a sentence",
         "a page may not set the class evidence-badge",
         "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
         "the picture innocent.svg lies below evidence/",
     ],
-    "glue": ["bare is glued from the page lab, and its origin would not be shown."],
     "free": ["a cell shows a table, but the page declares no bundle"],
     "glossary": [f"glossary_forms.yml names '{n}', which is not in th" for n in ("gain", "force")],
 }
@@ -66,7 +61,6 @@ def report(tmp_path_factory):
         "text": "# Text\n\n" + paragraphs(*TEXT),
         "lessons/l02-two/lecture": "# Two\n\nText.\n",
         "lab": notebook(cell(WRITE_BUNDLE), imports, *CELLS, front=LAB_FRONT) + LAB,
-        "glue": "# Glue\n\n{glue}`lab.md::bare`\n",
         "free": notebook(imports, cell("table", INPUTS), cell("table")),
         "glossary": "# Glossary\n\n```{glossary}\nDOF\n  One axis of motion.\n```\n",
         "timed": notebook(cell("")),
