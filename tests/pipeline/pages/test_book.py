@@ -66,6 +66,7 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     ("# T\n\nThe [answer]{.solution}.\n", 3, "nothing leaves out '{.solution'"),
     ("# T\n\n<p class='a toggle'>It.</p>\n", 3, "nothing leaves out \"class='a toggle\" with"),
     ("# T\n\n```{include} other.md\n```\n", 3, "no rule reads what {include} does"),
+    ("# T\n\nIt is {glue:text}`x`.\n", 3, "{glue} shows a value away from its cell"),
     # blocks without an end
     *((f"# T\n\n{block}\nx\n", 3, f"the block {block} has no end")
       for block in ("```python", "~~~", ":::{note}", ":::")),
