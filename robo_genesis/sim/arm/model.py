@@ -1,4 +1,33 @@
-"""A robot: its model file, in a lesson or of the engine, and what the course has to know of it."""
+"""A robot: its model file, in a lesson or of the engine, and what the course has to know of it.
+
+A lesson with another robot than the Franka:
+
+1. Put its MJCF or URDF into the lesson's folder of the package, with what it includes below it:
+   `lessons/l09/arm.xml`. The folder is part of evidence key, page fingerprint and wheel.
+2. `spec.py` has the `RobotModel`, and cases with an entry in each array for each joint; one without
+   a motor has zero `kp`, `kv` and `effort_limit`:
+
+       ARM = RobotModel("lessons/l09/arm.xml", ("shoulder", "slide"), hand="tool")
+       BASELINE = ControlCase(model=ARM, q_start=np.array([0.2, 0.1]), kp=…, effort_limit=…, …)
+
+3. The page loads it. Without `default_armature=None` the engine adds 0.1 kg·m² to each joint whose
+   file says nothing; a URDF also needs `fixed=True`. `describe` names what differs from the file:
+
+       arm = scene.add_entity(gs.morphs.MJCF(
+           file=rg.model_file("lessons/l09/arm.xml"), default_armature=None))
+       joints = l09.describe(page, arm, l09.spec.ARM)
+
+4. `pages.py` has `joints=spec.ARM.joints`, the counts of this robot, and the authors of its shape as
+   `credit`. `driven_run` takes the robot from the case; `model_joints`, `solve_ik` and
+   `sim/mujoco/` take it as `of`. `sim/arm/kinematics.py` knows the Franka alone. The laws know
+   gravity, damping, armature and control force, and name other forces of a file.
+5. A free base, as that of a quadruped, is `free_base=True`: `run_case` drives the legs and
+   `laws.commanded` is the law. What needs a fixed base says so.
+6. The laws know position control. For feedback, a force F on a joint is the target q + F/KP with a
+   small KP (1 N/m) and `kv=0`. Derive the case from `Controlled`; the loop is `reset`, then for each
+   step a target, `control_dofs_position`, `scene.step()` and `read`, at the end `assemble`. The law
+   is `driven_run(trace, case.commanding(trace.target), links)`.
+"""
 
 from dataclasses import dataclass
 from importlib.util import find_spec
