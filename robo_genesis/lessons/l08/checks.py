@@ -182,7 +182,7 @@ def sent(trace: Demonstrations, case: picking.PickCase) -> Iterator[Finding]:
     of_phase = phase[::-1] == np.arange(picking.DONE + 1)[:, None, None]
     way = arm[len(phase) - 1 - of_phase.argmax(axis=1), rows][phase, rows] - before
     longest, far = (np.abs(of).max(axis=-1) for of in (way, arm - before))
-    whole = np.minimum(case.commands * picking.STRIDE, longest)
+    whole = np.minimum(case.commands * case.stride, longest)
     begins = phase != trace.phase[:-1]
     share = np.where(begins, np.minimum(far, whole), whole) / np.maximum(longest, 1e-9)
     yield from apart("motion", "target of arm [rad]", arm, before + share[..., None] * way, 2e-6)

@@ -24,7 +24,9 @@ SAG = read_only((0.0048, -0.0009))
 
 CLOCKS = (10, 20, 30, 0)  # Outer steps after which the descent ends, 0 where it is measured
 
-TIMED = 16  # Episodes with each clock
+STRIDES = (0.024, 0.012, 0.006)  # Largest changes of a joint's command in one outer step [rad]
+
+TIMED = 16  # Episodes with each clock, and with each stride
 
 OBLONG, TURNED = (0.05, 0.07, 0.06), np.pi / 4
 """Size of the box [m], and its largest yaw [rad]."""
@@ -50,6 +52,9 @@ def cases() -> dict[str, PickCase]:
         "plain": batch(starts, noise),
         "corrected": batch(starts, noise + SAG),
         "timed": batch(np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)),
+        "paced": replace(
+            batch(np.tile(timed, (len(STRIDES), 1)), stride=np.repeat(STRIDES, TIMED)), steps=90
+        ),
         "boxes": batch(starts, shape="box", size=OBLONG, yaws=yaws),
     }
 
@@ -61,7 +66,7 @@ def order(name: str) -> np.ndarray:
 
 def permuted(name: str) -> PickCase:
     """Return a batch in another order."""
-    of, arrays = COUNTED[name], ("starts", "beliefs", "yaws", "timed")
+    of, arrays = COUNTED[name], ("starts", "beliefs", "yaws", "timed", "stride")
     found = {n: getattr(of, n)[order(name)] for n in arrays if np.ndim(getattr(of, n))}
     return replace(of, **found)
 

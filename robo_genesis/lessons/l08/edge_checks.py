@@ -87,6 +87,19 @@ def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{words}.success", int(good[row].sum()), edge.TIMED)
 
 
+def slower_slides_farther(run: Experiment) -> Iterator[Finding]:
+    """At each of three speeds all 16 episodes end well. From each start, a slower arm lets the
+    cylinder slide farther. The medians of the slide per second differ by less than a tenth.
+    """
+    seconds, slid = (
+        of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
+    )
+    yield equal("paced.success", run.metrics["paced"].resting, slid.size)
+    yield above("slower.least_further_slide_m", float(np.diff(slid, axis=0).min()), 0)
+    rates_of = np.median(slid / seconds, axis=1)
+    yield below("slide_per_second.spread", float(np.ptp(rates_of) / rates_of.min()), 0.1)
+
+
 def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
     """At least 13 boxes more are over the bowl at the end than succeed, and at least 10 of them
     hang above the rim in the hand. At least 95 % of the episodes finish all phases.
@@ -99,5 +112,6 @@ def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
 
 RATES = (
     checks.structure, stamps, laws_of_motion, order_does_not_matter, window_of_errors,
-    correction_helps, window_is_centred, clock_hides_failure, hovering_is_a_trap,
+    correction_helps, window_is_centred, clock_hides_failure, slower_slides_farther,
+    hovering_is_a_trap,
 )  # fmt: skip

@@ -120,6 +120,16 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
     return EpisodesMetrics(*map(float, values))
 
 
+def slides(trace: Episodes) -> tuple[FloatArray, FloatArray]:
+    """Return the time (e,) from the begin of the lift to the end of lowering [s], and the way that
+    each object slides down in the fingers meanwhile (e,) [m].
+    """
+    held, rows = (trace.phase >= LIFT) & (trace.phase <= LOWER), np.arange(trace.phase.shape[1])
+    above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
+    first, last = held.argmax(axis=0), len(held) - 1 - held[::-1].argmax(axis=0)
+    return trace.t[last] - trace.t[first], above[last, rows] - above[first, rows]
+
+
 def at_closing(trace: Episodes) -> FloatArray:
     """Return where the middle of the pads is (e, 3) when the fingers begin to close [m]."""
     hand = hand_pose(trace.q[first_closing(trace), np.arange(trace.phase.shape[1])])

@@ -8,7 +8,8 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import scaled_value
+from robo_genesis.core.scene import DT
+from robo_genesis.core.text import decimal, scaled_value
 from robo_genesis.lessons.l08 import creep, edge, metrics, rates, spec
 from robo_genesis.lessons.l08.creep_checks import share_of
 from robo_genesis.lessons.l08.edge_checks import pairs
@@ -88,6 +89,19 @@ def side_table(run: Experiment) -> Iterator[dict[str, str]]:
         yield {"noise [mm]": words.replace(" to inf", " on").replace("-", "−")} | {
             spec.LABELS[n]: f"{metrics.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
             for n in ("plain", "corrected")
+        }
+
+
+@tables.as_table
+def pace_table(run: Experiment) -> Iterator[dict[str, str]]:
+    """Return how long cylinders are held at each speed of the arm, and how far they slide."""
+    found = (of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"]))
+    for stride, seconds, slid in zip(edge.STRIDES, *found, strict=True):
+        yield {
+            "joint speed, at most [rad/s]": decimal(stride / DT, 1),
+            "held [s]": decimal(np.median(seconds), 1),
+            "slid [mm]": decimal(1000 * np.median(slid), 2),
+            "slid per second [mm/s]": decimal(1000 * np.median(slid / seconds), 2),
         }
 
 

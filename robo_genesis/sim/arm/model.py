@@ -17,16 +17,16 @@ A lesson with another robot than the Franka:
            file=rg.model_file("lessons/l09/arm.xml"), default_armature=None))
        joints = l09.describe(page, arm, l09.spec.ARM)
 
-4. `pages.py` has `joints=spec.ARM.joints`, the counts of this robot, and the authors of its shape as
-   `credit`. `driven_run` takes the robot from the case; `model_joints`, `solve_ik` and
+4. `pages.py` has `joints=spec.ARM.joints`, the counts of this robot, and the authors of its shape
+   as `credit`. `driven_run` takes the robot from the case; `model_joints`, `solve_ik` and
    `sim/mujoco/` take it as `of`. `sim/arm/kinematics.py` knows the Franka alone. The laws know
    gravity, damping, armature and control force, and name other forces of a file.
 5. A free base, as that of a quadruped, is `free_base=True`: `run_case` drives the legs and
    `laws.commanded` is the law. What needs a fixed base says so.
 6. The laws know position control. For feedback, a force F on a joint is the target q + F/KP with a
-   small KP (1 N/m) and `kv=0`. Derive the case from `Controlled`; the loop is `reset`, then for each
-   step a target, `control_dofs_position`, `scene.step()` and `read`, at the end `assemble`. The law
-   is `driven_run(trace, case.commanding(trace.target), links)`.
+   small KP (1 N/m) and `kv=0`. Derive the case from `Controlled`; the loop is `reset`, then for
+   each step a target, `control_dofs_position`, `scene.step()` and `read`, at the end `assemble`.
+   The law is `driven_run(trace, case.commanding(trace.target), links)`.
 """
 
 from dataclasses import dataclass

@@ -32,9 +32,6 @@ DESCEND, CLOSE, LIFT, MOVE, LOWER, OPEN, DONE = (
 OF_GOAL = (0, 1, 1, 2, 3, 4, 4, 3, 3)
 """By phase, the number of its goal among `waypoints`."""
 
-STRIDE = 0.012
-"""Largest change of a joint's command in one outer step [rad]."""
-
 ARRIVED, SLOW, STILL = 0.015, 0.05, 0.002
 """A phase of the arm ends when each joint is this near to its goal [rad] and slower than this
 [rad/s]; one of the fingers when both are slower than this [m/s]."""
@@ -53,6 +50,7 @@ class PickCase(SceneCase):
     and of the lift above the grasp, and of the object's lower face above the table when it is
     released [m]. Objects are turned by `yaws` (e,) about z, which the expert ignores [rad]. Where
     `timed` (e,) is above 0, the descent ends after as many outer steps, whatever is measured.
+    `stride` (e,) is the largest change of a joint's command in one outer step [rad].
     """
 
     starts: FloatArray
@@ -65,6 +63,7 @@ class PickCase(SceneCase):
     drop: float = 0.02
     yaws: FloatArray | float = 0.0
     timed: FloatArray | float = 0.0
+    stride: FloatArray | float = 0.012
 
     @property
     def turns(self) -> FloatArray:
@@ -137,6 +136,7 @@ class Expert:
         self.command = np.tile(case.q_start, (len(accepted), 1))
         self.opened = float(case.q_start[-1])
         self.timed = np.broadcast_to(case.timed, len(accepted))
+        self.stride = np.broadcast_to(case.stride, len(accepted))[:, None]
 
     def act(self, q: FloatArray, qd: FloatArray) -> FloatArray:
         """Return the next command (e, 9) from positions and velocities (e, 9) [rad or m]."""
@@ -146,8 +146,8 @@ class Expert:
         self.phase[ends] += 1
         self.since[ends] = 0
         way = self.goals[self.phase, self.rows] - self.command[:, :ARM]
-        longest = np.maximum(np.abs(way).max(axis=1, keepdims=True), STRIDE)
-        self.command[:, :ARM] += way * STRIDE / longest
+        longest = np.maximum(np.abs(way).max(axis=1, keepdims=True), self.stride)
+        self.command[:, :ARM] += way * self.stride / longest
         shut = (self.phase >= CLOSE) & (self.phase < OPEN)
         self.command[:, ARM:] = np.where(shut, 0.0, self.opened)[:, None]
         return self.command

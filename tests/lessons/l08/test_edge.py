@@ -23,6 +23,7 @@ def outcomes(name, case):
         "plain": noise > -3,
         "corrected": abs(noise) < 8.5,
         "timed": k >= 24,
+        "paced": k >= 0,
         "boxes": k < 100,
     }
     return good.get(name, inside), (name == "boxes") & (k >= 108), abs(across) > 15
@@ -30,7 +31,11 @@ def outcomes(name, case):
 
 @pytest.fixture(scope="module")
 def run(joints):
-    made = {name: episodes(case, *outcomes(name, case)) for name, case in edge.COUNTED.items()}
+    paced = {"length": np.repeat([4, 6, 8], edge.TIMED), "creep": 1.5e-3}
+    made = {
+        name: episodes(case, *outcomes(name, case), **(paced if name == "paced" else {}))
+        for name, case in edge.COUNTED.items()
+    }
     for name, of in list(made.items()):
         arrays = {f.name: getattr(of, f.name) for f in fields(of) if f.name != "t"}
         copy = {array: values[:, edge.order(name)] for array, values in arrays.items()}
@@ -50,6 +55,7 @@ SPOILED = {
     "correction_helps": trace("corrected", force=put((ALL, slice(95, 128)), 0)),
     "window_is_centred": trace("corrected", force=put((ALL, slice(0, 9)), 0)),
     "clock_hides_failure": trace("timed", force=put((ALL, 60), 0)),
+    "slower_slides_farther": trace("paced", object_pos=put((ALL, 40, 2), 0.135)),
     "hovering_is_a_trap": trace("boxes", object_pos=put((-1, slice(100, 128), 0), 0.3)),
     "stamps": trace("plain", t=lambda t: 2 * t),
 }
@@ -79,5 +85,6 @@ def test_a_clock_ends_the_descent_whatever_is_measured():
 def test_tables_and_figure_show_the_batches(run):
     assert "| 128 |" in text.pair_table(run)
     assert "below −8" in text.side_table(run)
+    assert "| 0.6 | 3.2 |" in text.pace_table(run)
     assert "100 of 128" in text.rate_table(run, "counted")
     assert plots.errors(run, "grid").axes

@@ -103,7 +103,7 @@ def test_a_command_moves_by_the_stride_at_most():
     expert = picking.Expert(case, np.ones((9, 1, 7)), np.ones(1, bool))
     q = np.array([case.q_start])
     moved = expert.act(q, 0 * q).copy() - q
-    assert np.abs(moved).max() == pytest.approx(picking.STRIDE)
+    assert np.abs(moved).max() == pytest.approx(case.stride)
 
 
 def test_each_cell_shows_its_own_episode(episodes):
