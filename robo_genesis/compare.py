@@ -23,8 +23,8 @@ from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import DIFFERS, EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
 
+# Most bytes that an archive may hold; a bundle has a few hundred thousand.
 LARGEST = 500_000_000
-"""Most bytes that an archive may hold; a bundle has a few hundred thousand."""
 
 REASONS = (
     "The engines differ: {} and {}. Install the version that the site pins.",

@@ -28,12 +28,12 @@ from robo_genesis.pipeline.pages import sources
 from robo_genesis.sim import session, visual_shape
 from robo_genesis.sim.camera import frames as cameras
 
+# What a reader's own notebook prints; a page that a command executes does not.
 FIRST_START = """\
 First start on this machine: the engine compiles its kernels, most of them without output.
 Step 1 of 3: the scene, and the first run. This is the compilation: minutes; later, seconds.
 Step 2 of 3: the other runs, of {count} in all.
 Step 3 of 3: checks, figures and the bundle."""
-"""What a reader's own notebook prints; a page that a command executes does not."""
 
 _opened: list[str] = []
 

@@ -18,8 +18,8 @@ SAME_FLOAT = 1e-9  # Relative tolerance of a recorded value against the one that
 
 ROUNDING = 1e-12  # Tolerance of such a value near zero, in its own unit
 
+# A claimed ordering: (first case, second case), metric, order, margin.
 Relation = tuple[tuple[str, str], str, str, float]
-"""A claimed ordering: (first case, second case), metric, order, margin."""
 
 
 class Value(NamedTuple):
@@ -29,13 +29,13 @@ class Value(NamedTuple):
     unit: str
 
 
+# The orders that confirm each claim.
 HELD_BY = {
     "no later": ("lower", "equal"),
     "later": ("higher",),
     "higher": ("higher",),
     "lower": ("lower",),
 }
-"""The orders that confirm each claim."""
 
 
 def order(a: float | None, b: float | None, resolution: float) -> str | None:

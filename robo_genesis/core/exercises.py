@@ -25,8 +25,8 @@ def refused(call: Callable[[], Any]) -> Exception | None:
     return None
 
 
+# The group of readings with 1 for each function of a page that passed its test, else 0.
 FUNCTIONS = "functions"
-"""The group of readings with 1 for each function of a page that passed its test, else 0."""
 
 
 def functions(run: Experiment) -> Iterator[Finding]:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from typing import Any, Literal, NamedTuple
 
+# What another run must do with a value: agree within a tolerance, repeat it, or nothing.
 Kind = Literal["value", "exact", "performance"]
-"""What another run must do with a value: agree within a tolerance, repeat it, or nothing."""
 
 Record = dict[str, Any]
 

@@ -24,6 +24,8 @@ class Mark:
     dashes: tuple[float, ...] = ()
 
 
+# `other` is compared with a case: a mistake, another getter, another engine. `further` is any
+# additional run, such as a point of a grid.
 MARKS = {
     "baseline": Mark("#4d4d4d", "#b8c0cc"),
     "first": Mark("#0072b2", "#6cb8ff"),
@@ -34,8 +36,6 @@ MARKS = {
     "other": Mark("#7a3e9d", "#c9a2f2"),
     "further": Mark("#6f6200", "#d6c65a"),
 }
-"""`other` is compared with a case: a mistake, another getter, another engine. `further` is any
-additional run, such as a point of a grid."""
 
 # What a figure has besides its marks. `line`: axes, and thin lines at zero or at a target. `band`:
 # the area around a target. No two colours of the light theme are equal, here and in `MARKS`: a page
@@ -48,10 +48,10 @@ PARTS = {
     "ground": Mark("#ffffff", "#14181e"),
 }
 
+# The marks that cases take, with their classes in style sheets.
 CASE_CLASSES = {
     "baseline": "case-baseline", "first": "case-g1", "second": "case-g2", "third": "case-g3",
 }  # fmt: skip
-"""The marks that cases take, with their classes in style sheets."""
 
 
 def marks_of(cases: Sequence[str], declared: Mapping[str, str]) -> dict[str, str]:

@@ -25,16 +25,16 @@ MEASURES = False
 
 WIDTH = 4.25  # Of each figure [inch]: about the width of a phone's page
 
+# A thin solid line for a target or for zero.
 LINE: dict[str, Any] = {"color": PARTS["line"].light, "linewidth": 0.9, "zorder": 1}
-"""A thin solid line for a target or for zero."""
 
+# The marks of lines that name none, in their order.
 CYCLE = ("first", "second", "third", "other", "further", "baseline")
-"""The marks of lines that name none, in their order."""
 
 BAND = PARTS["band"].light
 
+# Smallest distance of the labels beside the ends of lines, as a share of the axes' height.
 LABELS_APART = 0.09
-"""Smallest distance of the labels beside the ends of lines, as a share of the axes' height."""
 
 
 def figure(height: float) -> Figure:

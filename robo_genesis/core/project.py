@@ -42,8 +42,8 @@ PAGE_SHA256, PAGE_IMPORTS = "ROBO_GENESIS_PAGE_SHA256", "ROBO_GENESIS_PAGE_IMPOR
 """What a command gives a page: the id of the run, the command, the digest of the page's code, and
 the modules of the course that the page imports."""
 
+# What a build tells Sphinx: the file that lists the executed pages, see `build.built_pages`.
 EXECUTED_PAGES = "ROBO_GENESIS_EXECUTED_PAGES"
-"""What a build tells Sphinx: the file that lists the executed pages, see `build.built_pages`."""
 
 SOLUTIONS = "SOLUTIONS"  # 0: the site has no solutions and answers, see `site.solutions`
 

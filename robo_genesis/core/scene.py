@@ -9,11 +9,12 @@ DT = 0.01  # Outer time step that one `scene.step()` advances [s]
 
 SUBSTEPS = 2  # Solver steps inside one outer step; one lasts DT / SUBSTEPS
 
+# Seed of every run. It is part of the key of compiled kernels, so all pages use one value.
 SEED = 0
-"""Seed of every run. It is part of the key of compiled kernels, so all pages use one value."""
 
 CAMERA_RES = (720, 540)  # Width and height of a camera frame [pixel]
 
+# The course's camera, placed before build.
 CAMERA = {
     "res": CAMERA_RES,
     "pos": (1.8, -1.8, 1.4),  # [m]
@@ -21,10 +22,9 @@ CAMERA = {
     "fov": 42,  # vertical [degree]
     "GUI": False,
 }
-"""The course's camera, placed before build."""
 
+# Rows, columns and colour channels of one camera frame.
 FRAME_SHAPE = (CAMERA_RES[1], CAMERA_RES[0], 3)
-"""Rows, columns and colour channels of one camera frame."""
 
 
 def read_only(values: ArrayLike) -> FloatArray:

@@ -17,11 +17,11 @@ from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
 if TYPE_CHECKING:  # a build without new runs draws nothing
     from matplotlib.figure import Figure
 
+# The modules that may hold such functions.
 PLACES = ("robo_genesis.lessons.", "robo_genesis.core.")
-"""The modules that may hold such functions."""
 
+# The key of an output's metadata; its value is {"function": name, "arguments": [...]}.
 METADATA = "robo_genesis"
-"""The key of an output's metadata; its value is {"function": name, "arguments": [...]}."""
 
 TEXT, DRAWING = "text/markdown", "image/svg+xml"
 

@@ -10,27 +10,27 @@ MEASURES = False
 NOT_OBSERVED = "not observed"
 LONGEST_SHOWN = 160
 
+# Characters of one line of the engine's log, and of one warning. Most have less than 400.
 LINE_LIMIT = 2**14
-"""Characters of one line of the engine's log, and of one warning. Most have less than 400."""
 
+# Characters of a message that are not printable by themselves.
 BLANK = "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}"
-"""Characters of a message that are not printable by themselves."""
 
+# Digits after the point by unit, in texts for readers.
 DIGITS = {
     "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
     "pixel": 2, "iterations": 0, "pixels": 0, "points": 0, "poses": 0, "postures": 0, "steps": 0,
 }  # fmt: skip
-"""Digits after the point by unit, in texts for readers."""
 
+# The thousandth of a unit, in which small values are easier to read.
 SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s", "J": "mJ"}
-"""The thousandth of a unit, in which small values are easier to read."""
 
 
+# A smaller unit still, and the hundredth of a share.
 MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "J": "µJ", "1": "%"}
-"""A smaller unit still, and the hundredth of a share."""
 
+# By unit of a text, the factor from the unit in which a value is kept.
 SCALES = dict.fromkeys(SCALED.values(), 1e3) | dict.fromkeys(MICRO.values(), 1e6) | {"%": 100.0}
-"""By unit of a text, the factor from the unit in which a value is kept."""
 
 
 def ended(status: int, compiled: str = ".cache/engine") -> str:

@@ -10,6 +10,7 @@ EDITED = (
     "the course {}: use one copy for both."
 )
 
+# Advice by the code of a refusal; other codes mean damage, for which the message is enough.
 BY_CODE = {
     "older-schema": (
         "The bundle was recorded with an older state of this course. "
@@ -26,7 +27,6 @@ BY_CODE = {
         f"no fault. {OWN}"
     ),
 }
-"""Advice by the code of a refusal; other codes mean damage, for which the message is enough."""
 
 RUN_BY_HAND = (
     "A notebook that is run by hand does not name its code cells, so nobody can tell whether they "

@@ -9,8 +9,8 @@ from robo_genesis.evidence.compare import read_side
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.evidence.rows import Side
 
+# How warnings of the model importer begin. It runs on the CPU, whatever the backend is.
 IMPORTER = "(MJCF)"
-"""How warnings of the model importer begin. It runs on the CPU, whatever the backend is."""
 
 MEASURE = "Run the lab on the accelerator itself, with make evidence."
 

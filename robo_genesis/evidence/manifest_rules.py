@@ -23,11 +23,11 @@ REINSTALL = (
     "pip install --force-reinstall -r requirements.lock."
 )
 
+# Switches that can make the engine and Torch use different devices.
 FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
-"""Switches that can make the engine and Torch use different devices."""
 
+# The facts that the log of the pinned version states: where it runs, and how it was started.
 STATED = ("backend", "device", "engine version", "seed", "precision")
-"""The facts that the log of the pinned version states: where it runs, and how it was started."""
 
 CLOCKS = timedelta(days=1)  # Allowed difference between the clocks of two machines
 
@@ -35,11 +35,11 @@ LEVELS = "WARNING|ERROR|CRITICAL"
 WARNING = re.compile(rf"^(?:{LEVELS}) (.*?)\n?(?=^(?:DEBUG|INFO|{LEVELS}) |\Z)", re.M | re.S)
 """A message at WARNING or above, which may have several lines."""
 
+# The fact that the engine draws in software, and the line that states it for `llvmpipe`.
 SOFTWARE, SOFTWARE_LINE = "software rendering", "Software rendering context detected"
-"""The fact that the engine draws in software, and the line that states it for `llvmpipe`."""
 
+# A line that may state a fact; in most of a log's lines, which may be millions, nothing does.
 STATING = re.compile(r"^.*(?:Running on \[|initialized\.).*$", re.MULTILINE)
-"""A line that may state a fact; in most of a log's lines, which may be millions, nothing does."""
 
 
 def check_identity(

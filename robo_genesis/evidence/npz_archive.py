@@ -15,8 +15,8 @@ from numpy.lib import format as npy
 
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused
 
+# Bytes of all arrays of one case. Those of a lesson have less than 0.2 MiB.
 UNPACKED_LIMIT = 32 * 2**20
-"""Bytes of all arrays of one case. Those of a lesson have less than 0.2 MiB."""
 
 UNIX = 3
 

@@ -10,10 +10,10 @@ from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import Arrays, JointRecord, Manifest, Metric, by_full_name
 
+# States from best to worst. A row that is only shown does not affect the verdict.
 EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
 )  # fmt: skip
-"""States from best to worst. A row that is only shown does not affect the verdict."""
 
 MISSING = "missing"
 

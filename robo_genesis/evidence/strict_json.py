@@ -11,8 +11,8 @@ from typing import Any
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused
 
+# The largest magnitude of a number: up to here, a float holds every integer.
 LARGEST = 2**53 - 1
-"""The largest magnitude of a number: up to here, a float holds every integer."""
 
 DEEPEST = 32  # Levels of lists and objects. Those of a bundle have fewer than 10.
 

@@ -24,11 +24,11 @@ from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.fresh_checkout import environment, fresh_checkout
 from robo_genesis.pipeline.pages.kernels import wait_or_kill
 
+# What a change of the pin changes: measured results are never kept in the tree.
 FILES = ("pyproject.toml", "requirements.lock")
-"""What a change of the pin changes: measured results are never kept in the tree."""
 
+# The line of `make book` for a page that failed or whose bundle is refused, and why.
 FAILED = re.compile(r"^\[ *[\d.]+ s\] \w+ +(.+?)  (failed|refused)\b.*?: (.+)\n", re.MULTILINE)
-"""The line of `make book` for a page that failed or whose bundle is refused, and why."""
 
 LINES = 50  # How many last lines of a log an error and the report show
 

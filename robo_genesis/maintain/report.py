@@ -25,13 +25,13 @@ from robo_genesis.pipeline.pages.store import folders
 
 Pair = tuple[str, str]
 
+# Text that differs between any two runs of one version: run ids, digests and dates with times.
 VOLATILE = re.compile(
     r"\brun[ |]+[0-9a-f]{8}\b(?!\.\d)|\b[0-9a-f]{32,64}\b"
     r"|\b\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d[\d:.]*Z?)?"
 )
-"""Text that differs between any two runs of one version: run ids, digests and dates with times."""
+# The beginning of a log line of the engine or its compiler; bundles supply the warnings.
 LOG = re.compile(r"\[(Genesis\b|[TDIWEC] \d\d/\d\d/)")
-"""The beginning of a log line of the engine or its compiler; bundles supply the warnings."""
 END = re.compile(r"(?<=[.!?])\s+(?=[^\s\d])")
 BLOCKS = "p, li, tr, figcaption, caption, dt, dd, pre, h1, h2, h3, h4"
 HIDDEN = "math, svg, .cell_input"

@@ -21,23 +21,25 @@ from robo_genesis.core.project import COMPILED, ROOT, STORE, ProjectError
 from robo_genesis.pipeline.command import end_with_parent
 from robo_genesis.pipeline.pages.kernels import interrupts_blocked, users_variables, wait_or_kill
 
+# Folders of a release in the caches, and of the checkout in it. They stay if a release fails.
 FOLDER, CHECKOUT = "release", "checkout"
-"""Folders of a release in the caches, and of the checkout in it. They stay if a release fails."""
 
+# Caches whose folders are named by their inputs; a release shares what is compiled alone.
 SHARED = ("derived", COMPILED, "npm", STORE)
-"""Caches whose folders are named by their inputs; a release shares what is compiled alone."""
 
+# Variables of the outer make that a make in another checkout must not get: a new pin makes recorded
+# bundles stale, which a release would refuse.
 OUTER = (
     "GENESIS", "PYTHON", "BUNDLE", "RELEASE", "EXECUTED", "SECOND", "MAKEFLAGS", "MFLAGS",
     "MAKELEVEL", "PYTEST_ADDOPTS",
 )  # fmt: skip
-"""Variables of the outer make that a make in another checkout must not get: a new pin makes
-recorded bundles stale, which a release would refuse."""
 
 SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "ROBO_GENESIS_BACKEND")
 NETWORK = ("HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY", "NODE_EXTRA_CA_CERTS")
 """What npm needs to fetch the locked packages; it compares them with the lock."""
 
+# The whole configuration of the git that makes the checkout. A container's user may differ from the
+# owner of the checkout, which git would refuse.
 GIT_CONFIG = """\
 [safe]
 directory = *
@@ -46,8 +48,6 @@ attributesFile = /dev/null
 excludesFile = /dev/null
 autocrlf = false
 """
-"""The whole configuration of the git that makes the checkout. A container's user may differ from
-the owner of the checkout, which git would refuse."""
 
 
 def release(arguments: Sequence[str], cache: Path, root: Path = ROOT, **handed: Path | None) -> int:

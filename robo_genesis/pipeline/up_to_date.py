@@ -16,8 +16,8 @@ from robo_genesis.core.files import files_below, files_digest, json_digest
 from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import PUBLISHED, ProjectError
 
+# Lies beside the site's HTML and describes the site that was published with it.
 RECORD = "build.json"
-"""Lies beside the site's HTML and describes the site that was published with it."""
 
 FOLDERS = ("robo_genesis", "build_scripts")
 FILES = (
@@ -26,8 +26,8 @@ FILES = (
 )  # fmt: skip
 """What a build reads of the checkout apart from the book."""
 
+# What a build reads of the environment apart from what decides the pages' measurements.
 VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC_TIME", "TZ")
-"""What a build reads of the environment apart from what decides the pages' measurements."""
 
 SITE = ("html", "evidence", "pages")
 

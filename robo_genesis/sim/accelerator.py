@@ -199,6 +199,7 @@ def built_for(facts: Mapping[str, Any]) -> str:
     return "amdgpu" if facts.get("hip") else "cuda" if facts.get("cuda") else ""
 
 
+# The steps for each accelerator; a broken one ends its own chain.
 CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
     "amdgpu": (
         (devices,), (driver,), (card,), (linker,), (visibility,),
@@ -206,7 +207,6 @@ CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
     ),
     "cuda": ((driver,), (torch, device, kernel)),
 }  # fmt: skip
-"""The steps for each accelerator; a broken one ends its own chain."""
 
 
 def probe(machine: ProbedMachine, expected: str | None) -> tuple[str, list[StepResult]]:

@@ -6,22 +6,22 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+# Actual backend → architectures of Quadrants, device of Torch. ROCm calls its device `cuda`.
 BACKENDS = {
     "cpu": (("x64", "arm64"), "cpu"),
     "cuda": (("cuda",), "cuda"),
     "amdgpu": (("amdgpu",), "cuda"),
     "metal": (("metal",), "mps"),
 }
-"""Actual backend → architectures of Quadrants, device of Torch. ROCm calls its device `cuda`."""
 
 DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}  # Kernel module of each accelerator's driver
 
+# Tag of a build of Torch, without its version → whether that build has HIP, and CUDA.
 BUILDS = {"cpu": (False, False), "rocm": (True, False), "cu": (False, True)}
-"""Tag of a build of Torch, without its version → whether that build has HIP, and CUDA."""
 
+# The tag in Torch's version: `+cpu`, `+rocm7.2.1`, `+cu130`. PyPI's packages name none, and nor do
+# builds from source.
 TAG = re.compile(r"\+(cpu|rocm|cu(?=\d))(\d*)\.?(\d*)")
-"""The tag in Torch's version: `+cpu`, `+rocm7.2.1`, `+cu130`. PyPI's packages name none, and nor do
-builds from source."""
 
 PROCESSOR = r"intel|xeon|epyc|threadripper|opteron|processor|\bcpu\b|apple|pipe\b|swrast"
 FOREIGN = {"amdgpu": "nvidia|geforce|tesla|quadro", "cuda": r"\bamd\b|radeon|instinct"}

@@ -177,11 +177,11 @@ def saturation(bench: Bench) -> str:
     return f"{clipped}; error of {STEPPED_JOINT} from {errors} in {bench.trace.t[-1]:g} s"
 
 
+# In the order of the lesson: each step comes after the steps that it needs.
 STEPS: tuple[Callable[[Bench], str], ...] = (
     version, libraries, backend, model_file, build, render,
     names, target, reset, stamps, saturation,
 )  # fmt: skip
-"""In the order of the lesson: each step comes after the steps that it needs."""
 
 
 Subject = TypeVar("Subject")

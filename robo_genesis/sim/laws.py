@@ -22,8 +22,8 @@ TIME = 1e-9  # Tolerance of a time against k · dt [s]; both are computed in flo
 
 UNIT = 1e-5  # Tolerance of the norm of a quaternion; runs of the engine have at most 2e-7
 
+# Expected values of what is zero, and of the quaternion of a body that has not turned.
 ZERO, UNTURNED = np.zeros(()), np.array([1.0, 0, 0, 0])
-"""Expected values of what is zero, and of the quaternion of a body that has not turned."""
 
 
 def broken(code: str, what: str, found: Any, expected: object) -> Finding:

@@ -21,8 +21,8 @@ from robo_genesis.sim.backends import BACKENDS, contradictions
 from robo_genesis.sim.compiler import spare_repeated_work
 from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 
+# Valid values of the variables of the contract; the first is the default.
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
-"""Valid values of the variables of the contract; the first is the default."""
 
 LIBRARIES = ("libGL.so.1", "libEGL.so.1")  # What the engine needs even without a camera
 

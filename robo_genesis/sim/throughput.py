@@ -15,13 +15,13 @@ from robo_genesis.sim.arm.joints import to_numpy
 MIB = 2**20  # Bytes of one MiB
 
 # On an accelerator, the first call returns before the step is done.
+# The first call starts a step. The second returns when all started steps are done.
 Calls = tuple[Callable[[], Any], Callable[[], Any]]
-"""The first call starts a step. The second returns when all started steps are done."""
 
 Clock = Callable[[], float]
 
+# What is kept of the repeats.
 KEPT: dict[str, Callable[..., Any]] = {"step": np.median, "fastest": np.min, "slowest": np.max}
-"""What is kept of the repeats."""
 
 
 def calls_of(scene: Any, robot: Any) -> Calls:

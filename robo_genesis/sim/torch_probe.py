@@ -10,8 +10,8 @@ import signal
 import sys
 from pathlib import Path
 
+# The name by which the engine's compiler opens the HIP runtime; its wheel names no folder.
 RUNTIME = "libamdhip64.so"
-"""The name by which the engine's compiler opens the HIP runtime; its wheel names no folder."""
 
 NUMBERS, SUM = 8, 140  # The card adds the squares of so many numbers from 0; the sum
 

@@ -124,7 +124,8 @@ VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 LABELS = {"exact": "place known", "one": "one episode", "askew": "camera turned by 4°"} | {
     "placed": "in the bowl", "slipped": "grip lost on the way", "tipped": "lost in the lift",
     "pushed": "never held", "grid": "grid of errors", "plain": "plain",
-    "corrected": "sag corrected", "timed": "descent by a clock", "paced": "three speeds", "boxes": "yaw ignored",
+    "corrected": "sag corrected", "timed": "descent by a clock", "boxes": "yaw ignored",
+    "paced": "three speeds",
 } | creep.LABELS  # fmt: skip
 """Words of a reader for runs."""
 

@@ -17,14 +17,14 @@ from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
 from robo_genesis.pipeline.pages.guards import contradicted
 from robo_genesis.sim.backends import BACKENDS
 
+# The page whose bundles are recorded on accelerators and kept in the repository.
 RECORDED_PAGE = "lab"
-"""The page whose bundles are recorded on accelerators and kept in the repository."""
 
+# State by the code of a refusal; every other code is `refused`.
 STATE_OF_CODE = {"stale": "stale", "older-schema": "stale", "failed": "failed"}
-"""State by the code of a refusal; every other code is `refused`."""
 
+# States with which a build continues; a lesson shows the figures of a verified run only.
 PASSING = ("verified", "inconclusive", "missing", "stale")
-"""States with which a build continues; a lesson shows the figures of a verified run only."""
 
 UNREADABLE = (
     "The bundle was refused. The command make verify shows the found and the expected value."

@@ -27,8 +27,8 @@ from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources, syntax
 from robo_genesis.sim import session
 
+# The files of a commit that decide `question`.
 DECIDING = ("book", "robo_genesis", "pyproject.toml", "requirements.lock")
-"""The files of a commit that decide `question`."""
 
 SQUASHED = "Merge the branch that recorded it without squashing, or record the bundle again."
 

@@ -11,19 +11,19 @@ from bs4 import BeautifulSoup
 from robo_genesis.core.files import derived, write_whole
 from robo_genesis.core.project import ProjectError
 
+# The archive's place in the site, for the link of the home page: unpack it, open `index.html`.
 ARCHIVE = "offline/robo-genesis-site.zip"
-"""The archive's place in the site, for the link of the home page: unpack it, open `index.html`."""
 FOLDER = "robo-genesis-site"  # The folder that unpacking makes
 OFFER = ".offline-offer"
 """A page's offer of the archive; the archive's own copy of the page must not have it."""
+# Suffixes of files that compression makes no smaller.
 COMPRESSED = {".jpg", ".png", ".webp", ".whl", ".woff2", ".zip"}
-"""Suffixes of files that compression makes no smaller."""
+# The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 % smaller.
 LEVEL = 3
-"""The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 % smaller."""
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
+# The file with the digests, as `sha256sum -c` reads them. It does not list itself.
 SUMS = "SHA256SUMS"
-"""The file with the digests, as `sha256sum -c` reads them. It does not list itself."""
 
 
 def pack(html: Path) -> Path:

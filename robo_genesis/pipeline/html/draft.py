@@ -10,8 +10,8 @@ from pathlib import Path
 
 from robo_genesis.core.files import write_whole
 
+# A note of Sphinx for its next build, which depends on the checkout's path.
 BUILD_INFO = ".buildinfo"
-"""A note of Sphinx for its next build, which depends on the checkout's path."""
 
 
 class Draft:

@@ -29,8 +29,8 @@ from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
 from robo_genesis.pipeline.pages.folder import PageRefused, read_record
 from robo_genesis.pipeline.pages.store import folders, places
 
+# Below the cache folder: what is rendered and shown, apart from what `make book` makes.
 FOLDER = "live"
-"""Below the cache folder: what is rendered and shown, apart from what `make book` makes."""
 SHOWN_LINES = 2  # Lines of warnings and errors of Sphinx that the terminal shows
 
 INTERVAL = 0.1  # Seconds between two looks at the files; a look takes milliseconds

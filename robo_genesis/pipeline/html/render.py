@@ -12,8 +12,8 @@ from robo_genesis.pipeline.html.kept import UNFIT, keep, prepare, read_state
 from robo_genesis.pipeline.html.sphinx_process import HTML, SphinxProcess
 from robo_genesis.pipeline.pages.built import BuiltPages
 
+# The folder of the states of runs. Every change on which they depend empties the kept folder.
 STATES = "states"
-"""The folder of the states of runs. Every change on which they depend empties the kept folder."""
 
 
 def render(

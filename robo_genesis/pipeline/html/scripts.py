@@ -21,6 +21,8 @@ from bs4 import BeautifulSoup, Comment, Tag
 
 from robo_genesis.core.files import derived_value
 
+# The inline scripts of the theme and the course by the first 16 digits of their SHA-256. After an
+# upgrade of the theme, the check names the new ones: read them, and replace the old digests.
 KNOWN = {
     "b08c20317fb3eb19": "light or dark before the page shows; the second half is postprocess.py's",
     "d32b2040e449378e": "a word of sphinx-togglebutton",
@@ -31,32 +33,30 @@ KNOWN = {
     "193314e97c9cb956": "math_font's: the font of formulas loads before they show",
     "98dc83e96438bca1": "the page of the search: the cursor goes into its field",
 }
-"""The inline scripts of the theme and the course by the first 16 digits of their SHA-256. After an
-upgrade of the theme, the check names the new ones: read them, and replace the old digests."""
 
+# The one inline script that differs by page: the theme's name of the page itself.
 PAGE_NAME = "DOCUMENTATION_OPTIONS.pagename = '{}';"
-"""The one inline script that differs by page: the theme's name of the page itself."""
 
 HANDLERS = {("button", "onclick", "window.print()")}  # The theme's own event handlers
 
+# Elements that load another document, a plug-in, or change what addresses mean.
 REFUSED = {"applet", "base", "embed", "foreignobject", "frame", "frameset", "iframe", "object"}
-"""Elements that load another document, a plug-in, or change what addresses mean."""
 
 VIEWER = "model-viewer.js"
 VIEWER_SHA256 = "4ba524218533577b1acd9a14afa2a1584ad70290ffd15fe72a65f85aaa72a875"
 """The digest of `replay/model-viewer.js`, which `site/replay/viewer.py` makes of npm's file."""
 
+# The whole of a script that holds the model of a replay.
 MODEL = re.compile(rb'\(globalThis\.replayModels \?\?= \{\}\)\["[\w-]+"\] = "[A-Za-z0-9+/=]+";\n')
-"""The whole of a script that holds the model of a replay."""
 
+# Attributes whose address the script of the replays adds to the page as a script.
 LOADED_BY_SCRIPTS = {"data-model", "data-viewer"}
-"""Attributes whose address the script of the replays adds to the page as a script."""
 
+# Suffixes of files that a browser shows or runs, and that no build writes.
 OTHER_PAGES = {".htm", ".mjs", ".shtml", ".xht", ".xhtml", ".xml", ".xsl", ".xslt"}
-"""Suffixes of files that a browser shows or runs, and that no build writes."""
 
+# The same for suffixes that the other checks overlook.
 DISGUISED = {".HTML", ".SVG", ".Html", ".Svg"}
-"""The same for suffixes that the other checks overlook."""
 
 SCRIPT_TYPES = (None, "module", "application/json")
 RUNNING_ADDRESS = re.compile(

@@ -20,8 +20,8 @@ from robo_genesis.pipeline.pages import page_rules as rules
 from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
 from robo_genesis.pipeline.up_to_date import FILES
 
+# The name of a lesson's lab, and the file with its work sheet.
 LAB, WORK_SHEET = "lab", "worksheet.md"
-"""The name of a lesson's lab, and the file with its work sheet."""
 
 TOC = "_toc.yml"
 CREATE = "Pages are .md files: create it, or remove its name here."

@@ -29,27 +29,27 @@ from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.pages import printed
 from robo_genesis.pipeline.pages.book import Page
 
+# The calls that show a measured output; pages give this name to the result of `rg.open_page`.
 SHOW, FINISH = "page.show", "page.finish"
-"""The calls that show a measured output; pages give this name to the result of `rg.open_page`."""
 
 AGAIN = "The page was edited, or the environment moved: `make clean book` executes the page again."
 ONCE = "Call page.show once for each output, outside of loops and conditions."
 BOUNDARY = 60  # Characters that a message shows on both sides of a difference
 
+# Difference up to which coordinates count as equal [px]: other processors round differently.
 NEAR = 0.1
-"""Difference up to which coordinates count as equal [px]: other processors round differently."""
+# The coordinates of a drawing.
 PLACE = re.compile(
     r'(?<=\s)(?:d|points|[xy][12]?|c[xy]|width|height|viewBox)="[^"]*"|translate\([^()]*\)'
 )
-"""The coordinates of a drawing."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 NAME = re.compile(r'(\sid="|url\(#|href="#)([^")]*)')
 """A name in a drawing. Matplotlib makes some of them from coordinates."""
 
 
+# One call that shows an output: its `function`, the name, and its `arguments`, a list; so is the
+# metadata of the output.
 Shown = dict[str, Any]
-"""One call that shows an output: its `function`, the name, and its `arguments`, a list; so is the
-metadata of the output."""
 
 
 def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Manifest) -> int:

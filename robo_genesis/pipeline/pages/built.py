@@ -16,8 +16,8 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, OUTPUTS, Record, read_record
 from robo_genesis.pipeline.pages.results import PageResult
 
+# A variable: if it is set, a page whose code changed is shown with the outputs of its last run.
 LAST_OUTPUTS = "ROBO_GENESIS_LAST_OUTPUTS"
-"""A variable: if it is set, a page whose code changed is shown with the outputs of its last run."""
 
 
 class BuiltPages(Strict):

@@ -90,8 +90,8 @@ class Lines:
             self.say(f"{len(pages)} running: {states}", "")
 
 
+# The workers that run: process, run and how far it is, by the connection of its messages.
 Running = dict[Any, tuple[Any, PageRun, Underway]]
-"""The workers that run: process, run and how far it is, by the connection of its messages."""
 
 
 def execute_pages(

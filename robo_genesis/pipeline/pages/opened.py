@@ -12,16 +12,16 @@ from robo_genesis.core.project import CACHE, CACHE_FOLDERS, OUTPUTS_DIR, PACKAGE
 from robo_genesis.sim.compiler import spare_repeated_work
 from robo_genesis.sim.mujoco.files import note_models
 
+# Folders of the operating system.
 SYSTEM = (
     "/bin", "/dev", "/etc", "/lib", "/lib64", "/opt", "/proc", "/run", "/sys", "/usr", "/var",
 )  # fmt: skip
-"""Folders of the operating system."""
 
+# Matplotlib lists all fonts of the machine; the figures use its own.
 FONTS = (".ttf", ".otf", ".ttc", ".afm")
-"""Matplotlib lists all fonts of the machine; the figures use its own."""
 
+# The end of the name of a robot's model or mesh.
 MODEL = re.compile(r"\.(xml|mjcf|urdf|xacro|mjb|obj|mtl|stl|dae|glb|gltf|ply|msh|usd\w?)$", re.I)
-"""The end of the name of a robot's model or mesh."""
 
 RUNTIME = "JUPYTER_RUNTIME_DIR"
 BYTECODE = re.compile(r"__pycache__/([^/.]+)\.[^/]+\.pyc$")

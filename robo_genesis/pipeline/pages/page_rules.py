@@ -34,8 +34,8 @@ TAGS = (
 OPTIONS = {"code": ("tags", "mystnb", "prints", "expects"), "markdown": ("tags",)}
 """The options of a cell by its type; nothing else would notice a wrong option or tag."""
 
+# Directives, and classes of others, whose content a click shows.
 FOLDS = {"dropdown", "toggle"}
-"""Directives, and classes of others, whose content a click shows."""
 ADMONITIONS = ("note", "tip", "hint", "important", "attention", "caution", "warning", "danger")
 TITLED = {*ADMONITIONS, "admonition", "card", "rubric", "seealso", "sidebar", "tab-item", "topic"}
 VERBATIM = {"code", "code-block", "csv-table", "literalinclude", "math", "sourcecode"}
@@ -82,8 +82,8 @@ CONFLICT = re.compile(r"^(?:<{7}|={7}|>{7}|\|{7})(?=\s|$)", re.MULTILINE)  # as 
 ODD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ufeff]|\r(?!\n)")
 """Characters that an editor does not show, or that end a line for some programs only."""
 
+# A line, counted from 1, and what is wrong there, with its cure.
 Problem = tuple[int, str]
-"""A line, counted from 1, and what is wrong there, with its cure."""
 
 
 def file_problems(path: Path) -> list[Problem]:

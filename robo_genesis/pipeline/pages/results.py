@@ -42,10 +42,10 @@ ANEW = (
 )
 GLUED = "application/papermill.record/"
 """Begins the kind of an output that is kept for another place of its page."""
+# Addresses and temporary folders, which differ in each run, and characters for terminals.
 CHANGING = re.compile(
     r"\bat 0x[0-9a-f]+|\b0x[0-9a-f]{9,}|/(?:tmp|robo-)[a-z0-9_]{8}\b|[\0-\x08\x0b\x0c\x0e-\x1f\x7f]"
 )
-"""Addresses and temporary folders, which differ in each run, and characters for terminals."""
 
 
 @dataclass(frozen=True, slots=True)

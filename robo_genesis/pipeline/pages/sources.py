@@ -29,8 +29,8 @@ USED_BY_NO_PAGE = ("maintain", "site")
 
 COMPUTING = ("core", "sim", "lessons")  # The sub-packages with modules that measure
 
+# How a module says that no measured value depends on it, and so no evidence key.
 MEASURES_NOTHING = re.compile(r"^MEASURES = False$", re.MULTILINE)
-"""How a module says that no measured value depends on it, and so no evidence key."""
 
 
 class Tree:

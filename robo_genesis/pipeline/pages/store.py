@@ -17,8 +17,8 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle, unexpected_outcome
 from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint, require_keyed_imports
 
+# Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused.
 Verify = Callable[[Path, str], Any]
-"""Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""
 
 KEPT = 3  # Folders that are kept of each page; RENDER=0 and RENDER=1 have one each
 AGAIN = "Execute these pages again, from this commit and this lock: make execute PAGE=… TO=folder"

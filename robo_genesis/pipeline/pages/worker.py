@@ -92,8 +92,8 @@ def work(run: PageRun, connection: Connection) -> None:
     connection.send((time.monotonic() - begin, failure))
 
 
+# What a warning names in the place of a file: a temporary one with the number of the process.
 CELL_FILE = re.compile(rf"{re.escape(tempfile.gettempdir())}/ipykernel_\d+/\d+\.py")
-"""What a warning names in the place of a file: a temporary one with the number of the process."""
 
 
 class LoggingClient(nbclient.NotebookClient):

@@ -18,8 +18,8 @@ IMAGE = "robo-genesis-rocm"
 DOCKERFILE = ".rocm/Dockerfile"
 PLACE = "/course"  # Where the container sees the checkout
 
+# Compute interface of all AMD GPUs, and the folder with a node for each of them.
 DEVICES = (Path("/dev/kfd"), Path("/dev/dri"))
-"""Compute interface of all AMD GPUs, and the folder with a node for each of them."""
 
 # How the variables begin that the container gets; the image has a ROCm of its own.
 PASSED = tuple(name for name in ENGINE_PREFIXES if name not in ("ROCM_", "NVIDIA_TF32_"))

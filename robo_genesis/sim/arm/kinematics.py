@@ -34,8 +34,8 @@ ARM = len(CHAIN) - 1  # Number of joints of the arm
 
 TIP = FRANKA.tip  # From the hand's origin to the ends of the fingers, along its z axis [m]
 
+# Index of the hand among the links of the arrays: the parent of both fingers.
 HAND = LINK_PARENTS[-1]
-"""Index of the hand among the links of the arrays: the parent of both fingers."""
 
 
 class Pose(NamedTuple):

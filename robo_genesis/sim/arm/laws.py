@@ -34,9 +34,9 @@ MEASURES = False
 
 LAW, POSE, STEPPED, MEAN, NEXT = 4e-3, 2.5e-6, 2e-3, 0.7, (2e-6, 6e-4)
 
+# Tolerance of the internal force of a joint and of a finger [N·m or N]. Fingers also have a force
+# between them, which the rule does not know.
 NET_FORCE = (1e-2, 6e-2)
-"""Tolerance of the internal force of a joint and of a finger [N·m or N]. Fingers also have a force
-between them, which the rule does not know."""
 
 STIFF = 1e4  # KP up to which rounding of a position stays within the tolerances [N·m/rad or N/m]
 

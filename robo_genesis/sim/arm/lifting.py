@@ -16,20 +16,20 @@ from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_i
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
 
+# Outer steps of the phases of a lift.
 PHASES = {"approach": 100, "descend": 100, "settle": 20, "close": 60, "lift": 100, "hold": 100}
-"""Outer steps of the phases of a lift."""
 
+# The state at the end of each phase.
 ENDS = dict(zip(PHASES, np.cumsum([*PHASES.values()]).tolist(), strict=True))
-"""The state at the end of each phase."""
 
+# Distance of the pads from the object's top, and of the hand's origin from the pads [m].
 PAD, HAND_TO_PAD = 0.025, 0.1034
-"""Distance of the pads from the object's top, and of the hand's origin from the pads [m]."""
 
+# Heights of the pregrasp above the grasp, and of the lift [m].
 ABOVE, RISE = 0.10, 0.05
-"""Heights of the pregrasp above the grasp, and of the lift [m]."""
 
+# Orientation (w, x, y, z) of the hand, as in `reaching`: the fingers point down.
 DOWN = read_only((0.0, 1.0, 0.0, 0.0))
-"""Orientation (w, x, y, z) of the hand, as in `reaching`: the fingers point down."""
 
 FINGERS = {"left": "left_finger", "right": "right_finger"}
 

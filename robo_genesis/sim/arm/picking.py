@@ -22,22 +22,22 @@ from robo_genesis.sim.bodies import bowl, table
 from robo_genesis.sim.bodies.table import SceneCase, World
 from robo_genesis.sim.session import CaseError
 
+# The phases of an episode in their order.
 PHASES = ("pregrasp", "descend", "close", "lift", "move", "lower", "open", "retreat", "done")
-"""The phases of an episode in their order."""
 
 DESCEND, CLOSE, LIFT, MOVE, LOWER, OPEN, DONE = (
     PHASES.index(name) for name in ("descend", "close", "lift", "move", "lower", "open", "done")
 )
 
+# By phase, the number of its goal among `waypoints`.
 OF_GOAL = (0, 1, 1, 2, 3, 4, 4, 3, 3)
-"""By phase, the number of its goal among `waypoints`."""
 
+# A phase of the arm ends when each joint is this near to its goal [rad] and slower than this
+# [rad/s]; one of the fingers when both are slower than this [m/s].
 ARRIVED, SLOW, STILL = 0.015, 0.05, 0.002
-"""A phase of the arm ends when each joint is this near to its goal [rad] and slower than this
-[rad/s]; one of the fingers when both are slower than this [m/s]."""
 
+# Least outer steps of a phase of the fingers, and most of any phase.
 CLOSING, LIMIT = 5, 120
-"""Least outer steps of a phase of the fingers, and most of any phase."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

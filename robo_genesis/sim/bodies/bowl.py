@@ -6,19 +6,19 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 
+# Outer radii at the rim and at the foot, height, and thickness of the wall [m].
 RIM, FOOT, HEIGHT, WALL = 0.075, 0.035, 0.05, 0.004
-"""Outer radii at the rim and at the foot, height, and thickness of the wall [m]."""
 
 SECTIONS, LEVELS = 24, 5  # Of the mesh: facets around the axis, points of a profile
 
 DENSITY = 400.0  # [kg/m³]
 
+# Ways to make collision geometry, with words for them.
 CHOICES = {
     "one_hull": "one convex hull",
     "default": "default decomposition",
     "pieces": "convex pieces",
 }
-"""Ways to make collision geometry, with words for them."""
 
 
 def profiles() -> tuple[FloatArray, FloatArray]:

@@ -13,20 +13,20 @@ from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.bodies.rigid_bodies import new_scene, read_body, record_states, stacked, times
 from robo_genesis.sim.session import CaseError
 
+# Length, width and thickness of the fixed box under the bodies [m].
 SURFACE_SIZE = (2.0, 0.8, 0.05)
-"""Length, width and thickness of the fixed box under the bodies [m]."""
 
 TOP = 0.725  # Height of its upper face [m]
 
+# Settings that no array of a run shows; they are read back from the scene.
 SETTINGS = ("friction", "surface_friction", "substeps")
-"""Settings that no array of a run shows; they are read back from the scene."""
 
+# The words that a case takes, by setting.
 CHOICES: dict[str, tuple[str | None, ...]] = {
     "shape": ("cube", "ball"),
     "cone": ("pyramidal", "elliptic"),
     "resolution": (None, "convex", "signorini"),
 }
-"""The words that a case takes, by setting."""
 
 Case = TypeVar("Case", bound="ContactRun")
 

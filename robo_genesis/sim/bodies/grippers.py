@@ -14,15 +14,15 @@ from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies import contacts
 from robo_genesis.sim.bodies.rigid_bodies import new_scene, read_body, record_states, stacked, times
 
+# The links of a run: the box and both pads.
 LINKS = ("box", "left", "right")
-"""The links of a run: the box and both pads."""
 
 SIZE, PAD = 0.04, (0.005, 0.03, 0.03)  # Edge of the box, and half the edges of a pad [m]
 
 PAD_MASS, ARMATURE = 1.0, 0.1  # [kg]; Genesis adds this armature to each joint of an MJCF file
 
+# Contact points of a box, four at each pad.
 CONTACTS = 8
-"""Contact points of a box, four at each pad."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

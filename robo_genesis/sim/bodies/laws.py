@@ -54,13 +54,13 @@ MEASURES = False
 
 PLACE, SETTLED, DEPTH = 1e-6, 1e-3, 5e-7
 
+# Difference of depth between the lowest corners [m] from which Genesis may report fewer of those
+# that touch.
 TILTED = 1e-4
-"""Difference of depth between the lowest corners [m] from which Genesis may report fewer of those
-that touch."""
 
+# Angle by which Genesis turns a body to find further contact points [rad]: twice its
+# `mc_perturbation`, which is 3e-3 or 5e-3, depending on the version.
 TWIST = 1e-2
-"""Angle by which Genesis turns a body to find further contact points [rad]: twice its
-`mc_perturbation`, which is 3e-3 or 5e-3, depending on the version."""
 
 GRAZE, NO_TURN, TURN, RESOLVED = 4e-5, 2.5e-7, 1e-4, 4e-7
 
@@ -69,8 +69,8 @@ GRAZE, NO_TURN, TURN, RESOLVED = 4e-5, 2.5e-7, 1e-4, 4e-7
 # such a step, the impulse is judged.
 ON_EDGE = 0.5
 
+# Number of states with contacts in which the rounding of a cube's angular velocity must show.
 TOUCHED = 5
-"""Number of states with contacts in which the rounding of a cube's angular velocity must show."""
 
 ROLL, FALL, SLIDING, PATH, UPRIGHT, IMPULSE = 5e-4, 8e-4, 1.2e-2, 2e-3, 3e-3, 5e-5
 

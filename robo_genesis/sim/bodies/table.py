@@ -15,18 +15,18 @@ from robo_genesis.sim.arm.joint_control import Controlled
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.rigid_bodies import new_scene
 
+# Size of the table's top [m], and its centre (x, y).
 TABLE = ((1.2, 0.8, 0.05), (0.45, 0.0))
-"""Size of the table's top [m], and its centre (x, y)."""
 
 FLOOR = -0.75  # Height of the floor [m]
 
+# The camera in the frame of the hand, z backwards: it looks along the fingers [m].
 ON_HAND = ((0.0, -1, 0, 0.05), (-1, 0, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
-"""The camera in the frame of the hand, z backwards: it looks along the fingers [m]."""
 
 BALL_HEIGHT = 0.07  # Centre of the ball at its start [m]
 
+# Centre x and y, length and width of an upright rectangle [m].
 Footprint = tuple[float, float, float, float]
-"""Centre x and y, length and width of an upright rectangle [m]."""
 
 
 def gap(one: Footprint, other: Footprint) -> float:

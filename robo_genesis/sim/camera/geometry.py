@@ -14,8 +14,8 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 
+# Turns y and z of a camera around: from OpenGL to OpenCV, and back.
 FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
-"""Turns y and z of a camera around: from OpenGL to OpenCV, and back."""
 
 
 def intrinsics(fov: float, size: tuple[int, int]) -> FloatArray:

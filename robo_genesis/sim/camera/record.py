@@ -19,13 +19,13 @@ SEGMENTS = "segments"  # Group of counts: the numbers of things in the segmentat
 
 PICTURES = ("rgb", "depth", "segmentation")
 
+# Units of the readings of one view.
 NUMBERS = {
     **{f"intrinsics_{i}{j}": "pixel" if i < 2 else "1" for i in range(3) for j in range(3)},
     **{f"transform_{i}{j}": "m" if i < 3 and j == 3 else "1" for i in range(4) for j in range(4)},
     "near": "m",
     "far": "m",
 }
-"""Units of the readings of one view."""
 
 
 def frame_names(*views: str) -> tuple[str, ...]:

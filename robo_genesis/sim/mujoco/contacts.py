@@ -14,16 +14,16 @@ from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
 
 VERSION = version("mujoco")
 
+# Default of Genesis for contacts, unless two solver steps are longer [s].
 DEFAULT_TIME_CONSTANT = 0.01
-"""Default of Genesis for contacts, unless two solver steps are longer [s]."""
 
 OWN_TIME_CONSTANT = 0.02  # MuJoCo's default [s]
 
+# The arrays of a state, in MuJoCo's order.
 MOTION = ("link_pos", "link_quat", "link_vel", "link_ang")
-"""The arrays of a state, in MuJoCo's order."""
 
+# Impedance of a contact as a function of depth, the default of both engines.
 IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
-"""Impedance of a contact as a function of depth, the default of both engines."""
 
 
 def time_constant(h: float, requested: float | None = None) -> float:

@@ -15,8 +15,8 @@ from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.kinematics import Pose
 from robo_genesis.sim.arm.model import ModelError, RobotModel, model_file
 
+# Genesis' names of MuJoCo's types of joints, slide and hinge.
 TYPES = {2: "PRISMATIC", 3: "REVOLUTE"}
-"""Genesis' names of MuJoCo's types of joints, slide and hinge."""
 
 GRAVITY = (0.0, 0.0, -9.81)  # That of a scene of Genesis, whatever the model file says [m/s²]
 

@@ -29,20 +29,20 @@ HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
 
 COLUMN = 80  # Most characters in a line of an excerpt that the column shows without scrolling
 
+# What is counted on a page, in words.
 MEASURES = {
     "words": "words of prose", "cells": "visible code cells",
     "longest": "lines in its longest visible cell", "plots": "plots",
     "minutes": "minutes to read and to work", "widest": "characters in its widest line of code",
 }  # fmt: skip
-"""What is counted on a page, in words."""
 
+# The largest numbers by kind of page: the first word of its name.
 LIMITS = {
     "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 50},
     "lab": {"minutes": 80},
     "mistakes": {"words": 2000},
     "deeper": {"words": 2000},
 }
-"""The largest numbers by kind of page: the first word of its name."""
 
 SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
 INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)

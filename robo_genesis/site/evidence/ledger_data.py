@@ -15,15 +15,15 @@ from robo_genesis.pipeline.html.archive import write_zip
 
 LEDGER = "evidence/ledger"  # The page
 
+# How the line below an item begins whose runs are all accepted.
 MEASURED, PRINTED = "Measured", "Printed by this run"
-"""How the line below an item begins whose runs are all accepted."""
 
+# Kinds of items without evidence of a run, each with the line below it.
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
     "unbound": "Printed by its cell. The page has no bundle.",
 }
-"""Kinds of items without evidence of a run, each with the line below it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,8 +24,8 @@ def _write(part: str, self: Any, node: between) -> None:
     self.body.append(node[part])
 
 
+# What Sphinx calls before and after such nodes.
 WRITERS = (partial(_write, "opening"), partial(_write, "closing"))
-"""What Sphinx calls before and after such nodes."""
 
 
 def marked(text: str) -> list[nodes.Node]:

@@ -29,13 +29,13 @@ LOG = "the engine's log"
 TITLE = 80  # Longest title in the ledger, in characters
 ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
 
+# The origin of an item; see `origin`.
 Keys: TypeAlias = tuple[str, ...] | None
-"""The origin of an item; see `origin`."""
 
+# The kind of an item that belongs to no run, by its origin.
 WITHOUT_RUN: dict[Keys, str] = {
     None: "illustration", (): "settings", NO_BUNDLE: "unbound",
 }  # fmt: skip
-"""The kind of an item that belongs to no run, by its origin."""
 
 UNBOUND = (
     "a cell shows a {}, but the page declares no bundle. Give its front matter "

@@ -11,6 +11,7 @@ from sphinx.util import logging
 from robo_genesis.site.evidence.measured import evidence_badge, measured_value
 from robo_genesis.site.evidence.origin import above, cell_of
 
+# Class → the nodes that may have it while a page is read, and the alternative for a page.
 OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "evidence-badge": (evidence_badge, "Use {lesson-status}."),
     "status-line": ((), "Use {lesson-status}."),
@@ -18,10 +19,9 @@ OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "measured": (measured_value, "Use {measured}."),
     "provenance": ((), "The build writes that line below each figure and measured table."),
 }
-"""Class → the nodes that may have it while a page is read, and the alternative for a page."""
 
+# Elements that, as raw HTML, would have no line of provenance and no row in the ledger.
 PICTURES = ("img", "picture")
-"""Elements that, as raw HTML, would have no line of provenance and no row in the ledger."""
 
 logger = logging.getLogger(__name__)
 

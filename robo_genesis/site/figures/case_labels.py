@@ -18,13 +18,13 @@ def label(lesson: str, case: str) -> str:
     return labels_of(lesson).get(case, case)
 
 
+# The palette's mark of each case that has one of its own, also by its words.
 MARKS = course_marks() | {
     words: course_marks()[case]
     for lesson in LESSONS
     for case, words in labels_of(lesson).items()
     if case in course_marks()
 }
-"""The palette's mark of each case that has one of its own, also by its words."""
 
 
 def labelled(runs: Runs, lesson: str) -> Runs:

@@ -17,14 +17,14 @@ from PIL import Image
 
 from robo_genesis.core.palette import COLOUR, MARKS, PARTS, css_name
 
+# What takes the place of each colour.
 VARIABLES = {
     **{mark.light: f"var(--{css_name(name)}, {mark.light})" for name, mark in MARKS.items()},
     **{part.light: f"var(--figure-{name}, {part.light})" for name, part in PARTS.items()},
 }
-"""What takes the place of each colour."""
 
+# Width above which a drawing is not made for a phone: it scrolls sideways there [CSS px].
 WIDE = 480
-"""Width above which a drawing is not made for a phone: it scrolls sideways there [CSS px]."""
 
 DRAWING = re.compile(r"\.svg$")
 DROPPED = re.compile(
@@ -40,8 +40,8 @@ LINES = "stroke-linejoin: round; stroke-linecap: butt"
 """Matplotlib's own style sheet, which would apply to the whole page."""
 
 
+# CSS pixels in one unit of length.
 PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
-"""CSS pixels in one unit of length."""
 LENGTH = re.compile(rf"([\d.]+)({'|'.join(PIXELS)})")
 
 

@@ -62,13 +62,13 @@ from robo_genesis.site.replay import directive as replays
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
 
+# Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
+# are longer than the hand, which hides the target when it is there.
 CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
-"""Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
-are longer than the hand, which hides the target when it is there."""
 
 
+# See the module's table.
 Data: TypeAlias = Mapping[str, Any]
-"""See the module's table."""
 
 
 class ExplorerDirective(PageDirective):

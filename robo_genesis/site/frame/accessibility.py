@@ -16,8 +16,8 @@ PHONE = 358  # Width of a page's column on a phone that is 390 pixels wide [CSS 
 LETTER, PADDING = 9, 22.4  # Width of a wide letter, and of a cell's padding on both sides [CSS px]
 MOST_ROWS = 40  # Longer tables are lists of samples, and scroll
 
+# What the parts of a table are to a screen reader, however a style sheet shows them.
 ROLES = {"thead": "rowgroup", "tbody": "rowgroup", "tr": "row", "th": "columnheader", "td": "cell"}
-"""What the parts of a table are to a screen reader, however a style sheet shows them."""
 
 
 def make_accessible(page: BeautifulSoup) -> None:

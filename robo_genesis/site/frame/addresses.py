@@ -13,12 +13,12 @@ from sphinx.config import Config
 from robo_genesis.core.markup import filled
 from robo_genesis.pipeline.html.address import site_address, site_root
 
+# Pages that the 404 page links to, where a book has them.
 WAYS_ON = {
     "index": "the course map: every lesson, published and planned",
     "glossary": "the words of the field",
     "evidence/index": "from a measured number to its run",
 }
-"""Pages that the 404 page links to, where a book has them."""
 
 
 def configure(app: Sphinx, config: Config) -> None:

@@ -14,8 +14,8 @@ from robo_genesis.pipeline.pages.bound import marked
 from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.pipeline.pages.folder import code_and_kernel
 
+# Of each page that was read, the cells whose outputs but streams `page.show` displayed.
 RECOMPUTED: dict[str, set[int]] = {}
-"""Of each page that was read, the cells whose outputs but streams `page.show` displayed."""
 
 
 class ExecutedPage(NotebookClientBase):

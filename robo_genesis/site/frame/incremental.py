@@ -33,17 +33,17 @@ from robo_genesis.site.text.glossary import glossary_terms
 
 REPLAYS, TAKEAWAYS = "replay", "takeaways"  # Folders of such files in the site
 
+# Metadata of a page: see `keep_numbers` and `note_files`.
 NUMBERS, FILES = "robo_genesis_numbers", "robo_genesis_files"
-"""Metadata of a page: see `keep_numbers` and `note_files`."""
 
+# Metadata of a page that no other page shows.
 OWN = {"og:description", "source_map", "wordcount", NUMBERS, FILES}
-"""Metadata of a page that no other page shows."""
 
+# Attributes of the environment that pages show of one another, beside metadata and terms.
 SHOWN = (
     "titles", "longtitles", "tocs", "toc_secnumbers", "toc_fignumbers", "toctree_includes",
     "domaindata",
 )  # fmt: skip
-"""Attributes of the environment that pages show of one another, beside metadata and terms."""
 
 
 def keep_numbers(app: Sphinx, doctree: nodes.document) -> None:

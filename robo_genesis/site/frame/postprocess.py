@@ -18,8 +18,8 @@ from robo_genesis.core.files import derived
 from robo_genesis.site.figures import drawings
 from robo_genesis.site.frame import accessibility, style_sheets
 
+# The modules that change a page, and the colours that they use.
 CHANGES = (accessibility, drawings, style_sheets, palette)
-"""The modules that change a page, and the colours that they use."""
 # Jupyter Book and the theme load every script on all pages; these are needed only where a selector
 # matches. No page needs `fontawesome.js`: the icons come from a font.
 NEEDED_BY = {
@@ -38,26 +38,26 @@ NEEDED_BY = {
 }  # fmt: skip
 NEEDED_NOWHERE = {"fontawesome.js"}
 
+# Classes and identifiers in a selector.
 NAMED = re.compile(r"[.#]([\w-]+)")
-"""Classes and identifiers in a selector."""
 
+# Files of the theme in `_static` that no page loads.
 UNUSED = ("**/*.map", "*webpack-macros.html", "locales", "scripts/fontawesome.js*")
-"""Files of the theme in `_static` that no page loads."""
 
+# The object that Sphinx's scripts set; the file `documentation_options.js` defines it.
 OPTIONS = "DOCUMENTATION_OPTIONS"
-"""The object that Sphinx's scripts set; the file `documentation_options.js` defines it."""
 
+# The theme's own script does the same, but only after it has loaded.
 CHOOSE_THEME = """
     if (document.documentElement.dataset.mode === "auto")
       document.documentElement.dataset.theme =
         matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
   """
-"""The theme's own script does the same, but only after it has loaded."""
 
 TITLE = "page-title"  # The anchor of a title that has no other
 
+# A picture of a page; a finished page contains its size.
 IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
-"""A picture of a page; a finished page contains its size."""
 
 
 def note_page(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:

@@ -23,19 +23,19 @@ EXTENSIONS = ("palette", "togglebutton", "copybutton", "mystnb.*", "sphinx-desig
 SHEETS = tuple(f"_static/{name}.css" for name in (*THEME, *EXTENSIONS, *OWN))
 """The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only
 pages with formulas load it."""
+# A sheet of the theme that imports the first one and has no rule.
 IMPORTING = "_static/styles/theme.css"
-"""A sheet of the theme that imports the first one and has no rule."""
+# The sheets of the theme and its extensions that have rules for other sites.
 TRIMMED = (*SHEETS[:4], *SHEETS[7:9])
-"""The sheets of the theme and its extensions that have rules for other sites."""
 JOINED = "_static/styles/site.css"
 
+# Classes and identifiers of a page, which its tags name.
 NAMES = re.compile(r' (?:class|id)="([^"]*)"')
-"""Classes and identifiers of a page, which its tags name."""
 WORD = re.compile(r"[\w-]+", re.ASCII)
 OTHER_WORD = re.compile(r"(?<![.#\w-])[\w-]+", re.ASCII)
 """A word of a sheet that is neither a class nor an identifier: elements, attributes, states."""
+# The beginning of an address that is relative to its sheet.
 ADDRESS = re.compile(r"url\(\s*([\"']?)(?![\"']?(?:data:|https?:|[/#]))")
-"""The beginning of an address that is relative to its sheet."""
 PURGE = "purgecss/bin/purgecss.js"
 
 

@@ -20,32 +20,32 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part
 from robo_genesis.site.replay.scenery import Scenery
 
+# Share of the triangles of a large part that is kept: with the small parts, about 12,000 of the
+# Franka's 135,000 triangles.
 KEPT = 0.05
-"""Share of the triangles of a large part that is kept: with the small parts, about 12,000 of the
-Franka's 135,000 triangles."""
 
+# Number of triangles up to which a part stays unchanged, such as the engine's sphere, and the
+# fewest of another part: rings would break and lamps vanish.
 UNCHANGED, FEWEST = 1280, 400
-"""Number of triangles up to which a part stays unchanged, such as the engine's sphere, and the
-fewest of another part: rings would break and lamps vanish."""
 
 CREASE = np.radians(40)  # Angle between triangles above which an edge is drawn sharp [rad]
 
+# The nodes of the parts that belong to no link, of the copies at the target, and of shadows.
 STILL, TARGET, SHADOWS = "still", "target", "shadows"
-"""The nodes of the parts that belong to no link, of the copies at the target, and of shadows."""
 
+# Colour of the copies: red, green, blue 0 to 255, and opacity. The script fades them near the
+# target, where surfaces in one place would flicker.
 GHOST = (60, 110, 220, 0.4)
-"""Colour of the copies: red, green, blue 0 to 255, and opacity. The script fades them near the
-target, where surfaces in one place would flicker."""
 
+# Colour of shadows, their height by that of their links, and the gap to the ground below [m].
 SHADOW, FLAT, ABOVE = (105, 105, 105), 1e-4, 1e-3
-"""Colour of shadows, their height by that of their links, and the gap to the ground below [m]."""
 
+# Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it.
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
-"""Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
 
 
+# Parts, each with its simplified mesh.
 Simple: TypeAlias = Sequence[tuple[Part, trimesh.Trimesh]]
-"""Parts, each with its simplified mesh."""
 
 COMPONENTS = {
     "float32": gltf.FLOAT, "uint16": gltf.UNSIGNED_SHORT, "uint32": gltf.UNSIGNED_INT,

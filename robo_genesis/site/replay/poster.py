@@ -20,8 +20,8 @@ LIGHT = np.array([0.35, 0.8, 0.5])  # Direction to the light, in the frame of th
 
 NEAREST = 0.05  # Distance to the camera from which on parts are drawn [m]
 
+# Share of a surface's colour that is seen where it faces away from the light, and towards it.
 DARKEST, BRIGHTEST = 0.35, 1.0
-"""Share of a surface's colour that is seen where it faces away from the light, and towards it."""
 
 
 def picture(model: bytes, camera: Camera) -> bytes:

@@ -25,17 +25,17 @@ TILE = 0.1  # Width of the tiles of the floor [m]; they show its distance and th
 TILE_RGB = (190, 190, 190)
 RAISED = 5e-4  # Height of the tiles above the floor that they are drawn on [m]
 
+# Colour, radius and length of the rod along a joint's axis [m].
 AXIS_RGB, AXIS_RADIUS, AXIS_LENGTH = (240, 190, 0), 0.006, 0.4
-"""Colour, radius and length of the rod along a joint's axis [m]."""
 
+# Tolerance of the angle between two links against the recorded position of their joint [rad].
 SAME_ANGLE = 1e-3
-"""Tolerance of the angle between two links against the recorded position of their joint [rad]."""
 
+# Direction from the view's centre to the camera: about the vertical and from it [rad].
 THETA, PHI = np.radians(30), np.radians(78)
-"""Direction from the view's centre to the camera: about the vertical and from it [rad]."""
 
+# Vertical angle of view [rad]: the viewer's own for pictures that are wider than high.
 FIELD = np.radians(30)
-"""Vertical angle of view [rad]: the viewer's own for pictures that are wider than high."""
 
 ASPECT = 4 / 3  # Width of the picture by its height, as in `replay.css`
 

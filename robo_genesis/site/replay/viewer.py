@@ -12,8 +12,8 @@ from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.html.scripts import VIEWER
 from robo_genesis.site.frame.incremental import REPLAYS
 
+# Folder of the site; Jupyter Book would load every script of `_static` on every page.
 FOLDER = REPLAYS
-"""Folder of the site; Jupyter Book would load every script of `_static` on every page."""
 
 VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
 NOTICE = "NOTICE.txt"
@@ -23,11 +23,11 @@ ELSEWHERE = re.compile(
 """Addresses in the viewer: of decoders for compressed models, which the site does not have, and of
 the viewer's own source."""
 
+# The packages in the viewer's single file, each in the lock.
 PARTS = (
     "@google/model-viewer", "three", "lit", "lit-html", "lit-element", "@lit/reactive-element",
     "@monogrid/gainmap-js",
 )  # fmt: skip
-"""The packages in the viewer's single file, each in the lock."""
 
 CREDITS = f"""\
 The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0. Changed here: the addresses

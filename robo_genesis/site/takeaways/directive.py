@@ -24,8 +24,8 @@ from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, w
 
 ADDRESS = re.compile(r"https://(?P<host>[\w.-]+)/(?P<name>[\w.-]+/[\w.-]+)")
 
+# Returns the link to a file with an optional text, and its size.
 Link = Callable[..., list[nodes.Node]]
-"""Returns the link to a file with an optional text, and its size."""
 
 
 class TakeawaysBox(PageDirective):

@@ -37,8 +37,8 @@ from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.takeaways.notebooks import CHECK, executed_notebook, student_notebook
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
+# Replaces in the student notebook a value that the site measured.
 NOT_SHOWN = "*(your run measures it)*"
-"""Replaces in the student notebook a value that the site measured."""
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z"), "finger": ("left", "right")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}

@@ -57,8 +57,8 @@ QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
 
 PIXELS = "yuv420p"
 
+# Of the encoder: few frames depend on others, and equal pictures give equal bytes.
 OPTIONS = {"crf": "18", "g": "2", "threads": "1"}
-"""Of the encoder: few frames depend on others, and equal pictures give equal bytes."""
 
 
 class DatasetDownload(PageDirective):

@@ -29,14 +29,15 @@ alone: JupyterLab shows those of a cell that it runs, and a student must see a f
 BEFORE = "before the run"  # Words in the heading of each part of the work sheet that comes first
 PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
 """The heading of a part of the work sheet."""
+# Words of a lab that name parts of its work sheet.
 NAMED = re.compile(r"\bparts?\s+(\d+)(?:\s+(?:to|and)\s+(\d+))?\s+of\s+the\s+work\s+sheet")
-"""Words of a lab that name parts of its work sheet."""
 
+# The index of the lab's introduction, after the origin and the check of the versions.
 INTRODUCTION = 2
-"""The index of the lab's introduction, after the origin and the check of the versions."""
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
+# Code that requires versions by package, and otherwise says how to install the named wheel.
 CHECK = """\
 # Is this the engine that the lab was written for?
 def check_versions(needed):
@@ -60,7 +61,6 @@ def check_versions(needed):
 
 check_versions({needed!r})
 del check_versions"""
-"""Code that requires versions by package, and otherwise says how to install the named wheel."""
 
 
 def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> NotebookNode:

@@ -18,16 +18,16 @@ from sphinx.directives.code import LiteralInclude, LiteralIncludeReader
 
 from robo_genesis.pipeline.pages.page_rules import ADMONITIONS, DIRECTIVE, PARSER, SOLUTION
 
+# Words that replace a role whose text only the site can write.
 UNTITLED = {
     "numref": "the figure", "eq": "the equation", "ref": "the section", "doc": "the site",
 }  # fmt: skip
-"""Words that replace a role whose text only the site can write."""
 
+# Tokens of the blocks that are not running text.
 BLOCKS = (
     "fence", "code_block", "colon_fence", "math_block", "math_block_label", "amsmath",
     "myst_target", "myst_line_comment", "myst_block_break",
 )  # fmt: skip
-"""Tokens of the blocks that are not running text."""
 
 GUARD = re.compile(r" ?\{guard\}`[^`]*`")
 ROLE = re.compile(r"\{([a-z][\w:-]*)\}(`+)(.+?)\2", re.DOTALL)

@@ -35,8 +35,8 @@ FOR_BROWSERS = {
     r'mathvariant="bold(?:-italic)?"': 'style="font-weight: bold"',
 }
 
+# Signs above a letter; marked as an accent it keeps its size and is not set as a limit.
 ACCENTS = {*"˙¨^~¯→˘ˇ´`"}
-"""Signs above a letter; marked as an accent it keeps its size and is not set as a limit."""
 
 # HTML knows `<math>` without it. A prefix is registered for a whole process, and pycollada, which
 # the engine loads, takes the empty one.
@@ -48,6 +48,7 @@ LOAD = """document.fonts.load('1em "Course Math"')"""
 STYLE, LICENCE = "math.css", "math-font-LICENSE.txt"
 SHEET = Path(__file__).with_name(STYLE)  # Its template
 
+# The characters that a formula may contain.
 SHOWN = {
     *map(chr, range(0x20, 0x7F)),  # ASCII
     *"\N{NO-BREAK SPACE}¬¯±´·×÷ˆˇ˘˙˜–—‖…′″‴",
@@ -58,10 +59,9 @@ SHOWN = {
     *"∀∂∃∅∆∇∈∉∏∑−∓∗∘√∝∞∠∣∥∧∨∩∪∫≈≔≠≡≤≥≪≫⊤⊥⋅⋮⋯⋱⌈⌉⌊⌋⟨⟩¨¸°",
     *map(chr, range(0x1D400, 0x1D434)),  # bold letters
 }
-"""The characters that a formula may contain."""
 
+# The letters that a browser shows for a variable of one letter; Unicode's italic h is Planck's.
 ITALIC = {*map(chr, (*range(0x1D434, 0x1D468), *range(0x1D6E2, 0x1D71C)))} - {"\U0001d455"} | {"ℎ"}
-"""The letters that a browser shows for a variable of one letter; Unicode's italic h is Planck's."""
 
 
 def to_mathml(latex: str, display: str) -> str:

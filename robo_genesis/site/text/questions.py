@@ -61,8 +61,8 @@ WRONG = "x57.3"  # Represents the keys of typical wrong numbers, which `FACTOR` 
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 FACTOR = re.compile(r"x\d+(\.\d+)?")
 """The key of a typical wrong number: the value times this factor."""
+# Below a question; `course.css` hides what follows it.
 HIDES = '<p class="after-answer">The rest of this section shows when you have answered.</p>'
-"""Below a question; `course.css` hides what follows it."""
 
 
 class question(between):  # noqa: N801 - docutils names nodes in lower case

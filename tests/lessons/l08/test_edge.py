@@ -85,6 +85,6 @@ def test_a_clock_ends_the_descent_whatever_is_measured():
 def test_tables_and_figure_show_the_batches(run):
     assert "| 128 |" in text.pair_table(run)
     assert "below −8" in text.side_table(run)
-    assert "| 0.6 | 3.2 |" in text.pace_table(run)
+    assert "| 0.6 | 2.3 | 3.45 | 1.50 |" in text.pace_table(run)
     assert "100 of 128" in text.rate_table(run, "counted")
     assert plots.errors(run, "grid").axes
