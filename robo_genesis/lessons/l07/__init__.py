@@ -11,5 +11,8 @@ __getattr__ = on_demand(
     build_world="robo_genesis.sim.bodies.contacts",
     record_world="robo_genesis.sim.bodies.contacts",
     mujoco_contacts="robo_genesis.sim.mujoco.contacts",
+    look="robo_genesis.sim.camera.views",
+    segment_number="robo_genesis.sim.camera.views",
+    refused="robo_genesis.core.exercises",
     read_shape="robo_genesis.sim.visual_shape",
 )

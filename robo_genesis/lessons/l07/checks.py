@@ -57,6 +57,18 @@ def hovering_is_at_rest(run: Experiment) -> Iterator[Finding]:
     yield above("hovering.share_of_the_rise", lift.rise / lift.hand_rise, 0.99)
 
 
+def symptoms(found: Experiment) -> Iterator[Finding]:
+    """No camera has a pixel of scene D's object. The solver accepts both postures of scene E, and
+    the way to them touches something. In scene F the open hand touches the box.
+    """
+    for camera, pixels in found.readings.get("pixels", {}).items():
+        if camera.startswith("outside"):
+            yield equal(camera, pixels, 0)
+    yield equal("below.accepted", found.readings["reach"]["below_accepted"], 2)
+    yield above("below.touches", found.readings["reach"]["below_touches"], 0)
+    yield above("wide.descending", found.readings["contacts"]["wide_descending"], 0)
+
+
 def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
     """With friction 0.3, a box that is 82 mm wide is lifted by more than 40 mm with two solver
     steps in an outer step, and by less than 5 mm with four. Both times the open hand touches it on

@@ -5,7 +5,7 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, mistakes, rungs, spec, study, table_map
+from robo_genesis.lessons.l07 import checks, rungs, spec, study, table_map
 from robo_genesis.lessons.l07.bowl_checks import MESHES
 from robo_genesis.lessons.l07.bowls import BowlMetrics
 from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
@@ -45,7 +45,7 @@ LECTURE = (
 )
 LAB = with_functions(of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder")
 MISTAKES = of_scenes(*spec.SCENES).with_more(
-    dict, checks=(checks.hovering_is_at_rest, mistakes.symptoms)
+    dict, checks=(checks.hovering_is_at_rest, checks.symptoms)
 )
 
 LESSON = Lesson(

@@ -1,10 +1,12 @@
 """Rungs and checks of L07: known values, and each check with an input that breaks its claim."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
-from robo_genesis.lessons.l07 import plots, rungs, spec, text
+from robo_genesis.lessons.l07 import checks, plots, rungs, spec, text
 from robo_genesis.lessons.l07.metrics import BALL, OBJECT
 from robo_genesis.sim.bodies import table
 
@@ -95,3 +97,14 @@ def test_a_second_run_of_the_engine_is_equal(real_engine):
     for name, of in first.items():
         again = page.traces[name]
         assert all(np.array_equal(getattr(of, f), getattr(again, f)) for f in of.arrays())
+
+
+@pytest.mark.parametrize("wrong", [None, "outside", "accepted", "touches", "descending"])
+def test_the_symptoms_of_the_scenes(wrong):
+    readings = {
+        "pixels": {"outside_wrist": 1.0 * (wrong == "outside"), "wide_wrist": 9.0},
+        "reach": {"below_accepted": 2 - (wrong == "accepted"), "below_touches": wrong != "touches"},
+        "contacts": {"wide_descending": wrong != "descending"},
+    }
+    found = checks.symptoms(SimpleNamespace(readings=readings))
+    assert all(one.passed for one in found) is (wrong is None)

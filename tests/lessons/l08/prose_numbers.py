@@ -35,4 +35,7 @@ CONFIGURED = {
     "error of the reader's own task [m]": 0.008,
     "z of a 95 % interval": rates.Z,
     "half of the length of a pad [mm]": 8.5,
+    "permitted speed of joints 1 to 4 [rad/s]": 2.175,
+    "permitted speed of joints 5 to 7 [rad/s]": 2.61,
+    "height of a wall [m]": 0.3,
 }
