@@ -9,6 +9,7 @@ __getattr__ = on_demand(
     SUBSTEPS="robo_genesis.core.scene",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
     JOINT_NAMES="robo_genesis.sim.arm.franka",
+    refused="robo_genesis.core.exercises",
     describe="robo_genesis.sim.arm.joints",
     reset="robo_genesis.sim.arm.joint_control",
     resolve_joints="robo_genesis.sim.arm.joints",

@@ -128,14 +128,6 @@ NEARLY_STRETCHED = read_only((0.0, 0.0, 0.0, -0.07, 0.0, 1.6, 0.0))
 IN_THE_FLOOR = replace(BASELINE, position=read_only((0.5, 0.0, 0.05)))
 """A target that the solver reaches with the fingertips below the floor."""
 
-ABOVE_IT = replace(BASELINE, position=read_only((0.5, 0.0, 0.1223)))
-LOW = {
-    "In the floor": IN_THE_FLOOR,
-    "One centimetre above it": ABOVE_IT,
-    "The same with a ramp": replace(ABOVE_IT, ramp=100),
-}
-"""Targets with less clearance than the rule asks for."""
-
 PRECISE = {
     f"at_{name}": replace(BASELINE, settings=replace(ONE_START, position_tolerance=most))
     for name, most in (("500_um", 5e-4), ("50_um", 5e-5), ("5_um", 5e-6), ("500_nm", 5e-7))
@@ -173,8 +165,8 @@ BEYOND_NEAREST = 0.01
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    asked = case_inputs(PRECISE | LOW) | {"stretched": NEARLY_STRETCHED.tolist()}
-    counted = list(EXPECTED_MODEL)
+    asked = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
+    asked, counted = asked | {"stretched": NEARLY_STRETCHED.tolist()}, list(EXPECTED_MODEL)
     return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS)
 
 

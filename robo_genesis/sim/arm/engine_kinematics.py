@@ -165,38 +165,6 @@ def accepted_command(
     return q
 
 
-def link_poses_at(
-    robot: Any, joints: JointMap, links: Sequence[str], q: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return where the engine puts links at joint positions, without a step.
-
-    Other joints, such as a base that moves freely, stay where they are.
-
-    The state is assigned, read and assigned back. That also ends contacts and velocities: reset
-    before the next run. The engine's own `forward_kinematics` is missing in newer versions, and in
-    older ones it fails before the first call of the solver.
-
-    Args:
-        robot: rigid entity of a built scene, without parallel environments.
-        joints: those of `q`.
-        links: names of the links.
-        q: (d,) joint positions [rad or m].
-
-    Returns:
-        Positions (l, 3) [m] and orientations (l, 4) in the world.
-
-    Raises:
-        KinematicsError: `q` has the wrong shape, or a value that is not finite.
-    """
-    require_finite("q", q, (len(joints.names),))
-    before = robot.get_qpos()
-    robot.set_qpos(np.array(q, dtype=np.float32), joints.qs_idx_local.tolist(), zero_velocity=True)
-    at = [robot.get_link(name).idx_local for name in links]
-    poses = to_numpy(robot.get_links_pos())[at], to_numpy(robot.get_links_quat())[at]
-    robot.set_qpos(before, zero_velocity=True)
-    return poses
-
-
 def jacobian(robot: Any, joints: JointMap, link: str = END_EFFECTOR) -> FloatArray:
     """Return the Jacobian (6, d) of the origin of a link, by default the hand, in the state now.
 

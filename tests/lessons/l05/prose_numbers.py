@@ -15,7 +15,6 @@ CONFIGURED = {
     "near limit that cuts the hand [m]": spec.CUT[0],
     "far limit that cuts the floor [m]": spec.CUT[1],
     "fingertips from the hand's origin [m]": kinematics.TIP,
-    "height of a target one centimetre above the floor [m]": spec.ABOVE_IT.position[2],
     "depth of the sag, rounded for a calculation by hand [m]": 1.7,
     "planar arm, first link [m]": 0.4,
     "planar arm, second link [m]": 0.3,
