@@ -11,8 +11,8 @@ import psutil
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserType
 
+# WebGL without a graphics card.
 SOFTWARE = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-"""WebGL without a graphics card."""
 
 PATIENCE = 120.0  # Seconds; a visit to a page takes two to four
 

@@ -37,14 +37,14 @@ LESSON_PAGES = {
 }
 """The pages of lessons by lesson and page."""
 
+# Lesson and page of each page that leaves a bundle.
 MEASURING_PAGES = [(name, page) for name in LESSONS for page in find_lesson(name).pages]
-"""Lesson and page of each page that leaves a bundle."""
 
 TEXT = {".html", ".css", ".js", ".json", ".svg", ".txt"}  # The files that a web server compresses
 
+# The environment of the tests. The engine sets switches when a test imports it, and a build with
+# other switches would execute every page again.
 OUTSIDE = dict(os.environ)
-"""The environment of the tests. The engine sets switches when a test imports it, and a build with
-other switches would execute every page again."""
 
 
 def executed_pages() -> BuiltPages:

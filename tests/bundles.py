@@ -45,9 +45,9 @@ def engine(backend):
     return session.Engine(project.engine_pin(), QUADRANTS, "32", 0, backend, log)
 
 
+# What draws the frames on each backend.
 GRAPHICS = {"cpu": RENDERER, "amdgpu": camera.Renderer("AMD", "AMD Instinct (radeonsi)"),
             "cuda": camera.Renderer("NVIDIA Corporation", "NVIDIA H100/PCIe/SSE2")}  # fmt: skip
-"""What draws the frames on each backend."""
 
 
 def engine_on(engine: session.Engine, actual: str) -> session.Engine:

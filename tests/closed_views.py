@@ -10,8 +10,8 @@ PLANE, FAR = 1, 20.0  # Number of the ground in the segmentation, and where the 
 
 SIZE, FOV = (160, 120), 42.0  # Columns and rows, and vertical field of view [degree] of the camera
 
+# Pose of the camera, which looks down, z backwards [m].
 TRANSFORM = cameras.looking((1.1, -0.7, 0.9), (0.46, -0.22, 0.3))
-"""Pose of the camera, which looks down, z backwards [m]."""
 
 K = cameras.intrinsics(FOV, SIZE)
 MARKER = Marker(3, (TRANSFORM @ (0.3, 0.2, -1.2, 1.0))[:3], 0.1)  # A sphere in its view [m]

@@ -2,8 +2,8 @@
 
 from matplotlib.colors import to_rgb
 
+# Backgrounds in each theme: page, panels and tables.
 GROUNDS = {"light": ("#ffffff", "#f3f4f5"), "dark": ("#14181e", "#222832", "#29313d")}
-"""Backgrounds in each theme: page, panels and tables."""
 
 
 def contrast(one: str, other: str) -> float:

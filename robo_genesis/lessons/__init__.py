@@ -8,8 +8,8 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage
 
+# The names of all lessons, in the order of the course.
 LESSONS = tuple(sorted(of.parent.name for of in Path(__file__).parent.glob("*/__init__.py")))
-"""The names of all lessons, in the order of the course."""
 
 
 @cache

@@ -304,6 +304,7 @@ older_compiler = both(part("engine", quadrants_version="1.2.9"), packages(quadra
 drop_case = both(remove("arrays/G3.npz"), pop(ARRAYS, "cases", "G3"))
 older_type = manifest(lambda m: m.update(predicateType="urn:robo-genesis:evidence:v1"))
 
+# Text that no page and no terminal may show.
 ODD = {
     "two lines": "<script>\nalert(1)</script>",
     "a control character": "\x1b[2Jx",
@@ -311,8 +312,8 @@ ODD = {
     "a reversed direction": "a\u202eb",
     "too many characters": "x" * 201,
 }
-"""Text that no page and no terminal may show."""
 
+# (Code as it is, code when sealed again, None if it cannot be) → the spoilers by name.
 GROUPS = {
     # Form of the files, before anything is believed.
     ("missing-file", "missing-file"): {"no manifest": remove(MANIFEST)},
@@ -531,6 +532,5 @@ GROUPS = {
             lambda m: [of.update(passed=True) for of in m["predicate"]["checks"]])),
     },
 }  # fmt: skip
-"""(Code as it is, code when sealed again, None if it cannot be) → the spoilers by name."""
 
 SPOILED = {name: (*codes, spoil) for codes, of in GROUPS.items() for name, spoil in of.items()}

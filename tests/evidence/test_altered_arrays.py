@@ -26,11 +26,11 @@ pytestmark = pytest.mark.engine  # the bundles of the built site
 LAWS = ("laws_of_motion", "free_fall")
 REQUIRED = 0.97  # Share of the tries that must be refused
 
+# Tolerances of the laws of a body on a surface; an array that changes by less is not altered.
 WITHIN = NEXT | {"penetration": DEPTH}
-"""Tolerances of the laws of a body on a surface; an array that changes by less is not altered."""
 
+# Those of held boxes, which hardly move, by lesson and page.
 OF_PAGE = {("l08", "creep"): creep_checks.NEXT}
-"""Those of held boxes, which hardly move, by lesson and page."""
 
 NOISE = "A landed cube turns by less than float32 resolves in a step, so nothing follows from it."
 SCHEME = "MuJoCo does not have the engine's resolution of the elliptic cone."
@@ -39,6 +39,7 @@ ROUNDING = "The alteration is no larger than what float32 resolves of a position
 TOUCHING = "A hand or a hull touches the body, and forces of these contacts are in no array."
 SCALES = ("× 1.02", "× 0.98", "sample", "zero")
 
+# By lesson, array and alteration, why a try may be accepted. No other may.
 ACCEPTED = {
     **{("l07", name, how): TOUCHING for name in ("link_ang", "link_vel") for how in SCALES},
     **{
@@ -52,7 +53,6 @@ ACCEPTED = {
     **{("l03", name, "sample"): ON_EDGE for name in ("link_vel", "contacts")},
     ("l03", "penetration", "sample"): ROUNDING,
 }
-"""By lesson, array and alteration, why a try may be accepted. No other may."""
 
 
 class Try(NamedTuple):

@@ -47,8 +47,8 @@ def test_it_needs_nothing_of_the_course(lesson):
     assert {name for name in found if name.startswith("rg.")} <= OF_COURSE
 
 
+# All lessons; each takes a quarter of a minute, so one of them runs by default.
 RUN = [pytest.param(name, marks=[pytest.mark.slow] * (name != "l04")) for name in LESSONS]
-"""All lessons; each takes a quarter of a minute, so one of them runs by default."""
 
 
 @pytest.mark.engine

@@ -9,8 +9,8 @@ import pytest
 from robo_genesis.core.project import BOOK
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 
+# The numbers of each lesson are a module beside its tests.
 LISTS = sorted(Path(__file__).parent.glob("*/prose_numbers.py"))
-"""The numbers of each lesson are a module beside its tests."""
 
 CONFIGURED = {f"{GRAVITY:g}"} | {
     f"{value:g}" for path in LISTS for value in runpy.run_path(str(path))["CONFIGURED"].values()

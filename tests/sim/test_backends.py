@@ -7,8 +7,8 @@ import pytest
 
 from robo_genesis.sim.backends import BACKENDS, contradictions
 
+# Versions of HIP and CUDA for which Torch was built.
 BUILDS = ((None, None), ("6.4", None), (None, "12.8"), ("6.4", "12.8"))
-"""Versions of HIP and CUDA for which Torch was built."""
 
 
 def agrees(actual, arch, device, build, torch="2.13.0"):

@@ -7,9 +7,9 @@ from typing import Any
 from playwright.sync_api import Browser, Page
 from watching import SCRIPTS, call, drawn, foreign, settle, violations, watch
 
+# Largest first visit before the reader asks for the viewer [bytes, compressed]. A page contains its
+# drawings.
 BUDGET = 490_000
-"""Largest first visit before the reader asks for the viewer [bytes, compressed]. A page contains
-its drawings."""
 MEASURE = 40  # Longest line of running text, in letter heights; one holds about two letters
 MIDDLE_ROWS = "tr:nth-child(n+11):nth-last-child(n+11)"
 """Neither gone through by Tab nor looked at by axe-core: a table shows with the ten rows at either
@@ -68,10 +68,10 @@ at it at widths that the phone does not have. Nothing in an article is hidden on
 axe-core looks there only at what depends on the shape. Colours hardly do, so the dark ones are
 looked at where the phone's page has been made as wide as a desktop."""
 
+# Pages on which axe-core looks for everything with closed folds and with large text, too (it skips
+# what a closed fold hides). On the desktop, these alone are gone through by Tab: all pages have the
+# same menus.
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
-"""Pages on which axe-core looks for everything with closed folds and with large text, too (it skips
-what a closed fold hides). On the desktop, these alone are gone through by Tab: all pages have the
-same menus."""
 
 
 class Visit:

@@ -15,20 +15,20 @@ from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim import diagnosis
 from robo_genesis.sim.fresh_process import last_value, run_python
 
+# The doctor's steps in their order.
 STEPS = tuple(step.__name__ for step in diagnosis.STEPS)
-"""The doctor's steps in their order."""
 
+# Groups of a bundle's metrics: 1 for each step that passed, and elapsed times.
 DOCTOR, TIMES = "doctor", "times"
-"""Groups of a bundle's metrics: 1 for each step that passed, and elapsed times."""
 
+# Parts of a start, and their words in a figure.
 PARTS = {
     "import": "import", "init": "gs.init", "scene": "scene, entities", "build": "scene.build",
     "first_step": "first step",
 }  # fmt: skip
-"""Parts of a start, and their words in a figure."""
 
+# A process that finds no compiled kernels, and one that finds those of the first.
 STARTS = ("first", "second")
-"""A process that finds no compiled kernels, and one that finds those of the first."""
 
 TIMED = [f"{start}_{part}" for start in STARTS for part in PARTS]
 # No machine of today makes a step in less than 0.1 ms.

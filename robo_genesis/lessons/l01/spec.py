@@ -15,8 +15,8 @@ MINIMUM_HARDWARE = "cpu"
 
 RADIUS = 0.08  # Radius of the sphere [m]
 
+# The fall; `size` is the diameter of the sphere.
 BASELINE = Drop(size=2 * RADIUS, density=500.0, height=0.5, steps=20)
-"""The fall; `size` is the diameter of the sphere."""
 
 CASES = {"baseline": BASELINE}
 
@@ -24,26 +24,26 @@ ASKED_STEPS = 15  # Outer steps after which the lab asks for the height
 
 LINK = "sphere_baselink"  # The engine's name of the sphere's only link
 
+# `entities` counts those of the scene with the ground, the others belong to the sphere.
 EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
-"""`entities` counts those of the scene with the ground, the others belong to the sphere."""
 
+# Tolerance of a float32 position of half a metre against the exact sum [m].
 FORMULA_TOLERANCE = 1e-6
-"""Tolerance of a float32 position of half a metre against the exact sum [m]."""
 
+# The lesson's camera: ground and sphere are in the picture.
 VIEW = CAMERA | {"pos": (0.75, -0.75, 0.5), "lookat": (0.0, 0.0, 0.32), "fov": 36}
-"""The lesson's camera: ground and sphere are in the picture."""
 
+# By unit, the difference below which two values count as equal.
 RESOLUTION = {"m": 1e-6, "s": DT / 2, "1": 0.5}
-"""By unit, the difference below which two values count as equal."""
 
+# By unit or array, (atol, rtol) of one value between engine versions or backends.
 TOLERANCES = {
     "m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "rad/s": (1e-6, 0.0), "s": (0.0, 0.0),
     "link_quat_wxyz": (1e-6, 0.0),
 }  # fmt: skip
-"""By unit or array, (atol, rtol) of one value between engine versions or backends."""
 
+# A single run claims no ordering.
 RELATIONS = ()
-"""A single run claims no ordering."""
 
 
 def parameters() -> dict[str, Any]:

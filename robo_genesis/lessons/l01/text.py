@@ -23,6 +23,7 @@ def metric_table(run: Experiment) -> str:
     return tables.six_digits(run.metrics)
 
 
+# What the lab says, by whether the measured heights are the computed ones.
 CONCLUSION = {
     True: "After {steps} outer steps the sphere's centre is at {height:.6f} m. No height differs "
     "from the computed one by more than {error:.2g} µm, which is the rounding of float32 numbers: "
@@ -31,7 +32,6 @@ CONCLUSION = {
     "from the computed one by {error:.2g} µm, which is more than rounding explains. Check version, "
     "gravity and step.",
 }
-"""What the lab says, by whether the measured heights are the computed ones."""
 
 
 def conclusion(run: Experiment) -> str:

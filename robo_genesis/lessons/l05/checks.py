@@ -20,8 +20,8 @@ from robo_genesis.sim.camera.record import SEGMENTS, view_of
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
+# The links of the chain among those of the arrays.
 OF_CHAIN = slice(HAND - ARM, HAND + 1)
-"""The links of the chain among those of the arrays."""
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
@@ -267,12 +267,12 @@ def mounted_camera(run: Experiment) -> Iterator[Finding]:
     return camera_checks.mounted_camera("hand", view_of(run, "hand"), *hand, offset)
 
 
+# Checks of every page that has the runs of the lab.
 WITHOUT_CAMERA = (
     mapping, stamps, acceptance, forward_kinematics, second_engine, arrived, sag_explains,
     smaller_angles_explain_more, kp_has_a_price, solver_ignores_the_floor, tolerance_costs_little,
     repeatable, laws_of_motion,
 )  # fmt: skip
-"""Checks of every page that has the runs of the lab."""
 
 VIEW = (camera_matrix, projection, sphere_surface, plane_surface)
 CHECKS = (*WITHOUT_CAMERA, posture, *VIEW)

@@ -19,21 +19,21 @@ MEASURES = False
 
 TINY = 1e-9  # Largest difference that rounding explains in float64
 
+# Largest difference of a pixel coordinate [pixel] or of a point [m] that rounding explains.
 ROUNDED = 1e-6
-"""Largest difference of a pixel coordinate [pixel] or of a point [m] that rounding explains."""
 
+# Columns and rows of the invented cameras.
 SIZE, OTHER = (32, 20), (24, 18)
-"""Columns and rows of the invented cameras."""
 
+# The pose of an invented camera that looks down, z backwards [m].
 TURNED = cameras.looking((1.1, -0.7, 0.9), (0.46, -0.22, 0.3))
-"""The pose of an invented camera that looks down, z backwards [m]."""
 
+# Camera matrix and pose of each invented camera.
 CAMERAS = {
     "straight": (cameras.intrinsics(60.0, SIZE), np.eye(4)),
     "turned": (cameras.intrinsics(42.0, SIZE), TURNED),
     "not_square": (cameras.intrinsics(42.0, OTHER) * [[1.1], [1.25], [1]], TURNED),
 }
-"""Camera matrix and pose of each invented camera."""
 
 
 @as_test

@@ -15,12 +15,13 @@ MEASURES = False
 
 COLUMNS = 9  # Most cells in a row of a map
 
+# Label, axes and values from the bottom of the maps of targets.
 PLACES = {
     "vertical": ("Plane y = 0", ("z", "x"), spec.GRID_Z),
     "horizontal": (f"Plane z = {spec.HEIGHT:g} m", ("y", "x"), spec.GRID_Y),
 }
-"""Label, axes and values from the bottom of the maps of targets."""
 
+# Alternative text and caption of the pictures that a reader can read.
 PICTURES = {
     spec.VIEWED: {
         "alt": "Camera frame of the robot at its start. An orange ball is below its hand.",
@@ -34,10 +35,9 @@ PICTURES = {
         "the hand is cut open, and the floor is a band.",
     },
 }
-"""Alternative text and caption of the pictures that a reader can read."""
 
+# What is read at a pixel.
 READ = ("pixel", "shows", "depth", "point in the world", "closed form", "depth − closed form")
-"""What is read at a pixel."""
 
 
 def explored(run: Experiment, name: str) -> dict[str, Any]:

@@ -56,6 +56,7 @@ JACOBIAN = replace(
 )
 """The page that computes Jacobians by hand."""
 
+# The page about cameras; each view has colours, depth and segmentation.
 CAMERAS = replace(
     BASELINE,
     readings=MODEL | SEEN | view_record.groups(*spec.VIEWS),
@@ -64,7 +65,6 @@ CAMERAS = replace(
     camera=True,
     frames=view_record.frame_names(*spec.VIEWS),
 )
-"""The page about cameras; each view has colours, depth and segmentation."""
 
 LESSON = Lesson(
     spec=spec,

@@ -27,14 +27,14 @@ SAME_POSE, SAME_RESIDUAL = reaching.SAME_POSE, reaching.SAME_RESIDUAL
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
 
+# Lower and upper limits (7,) of the arm's joints in the model file [rad].
 ARM_LIMITS = (
     franka.per_joint(-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0)[:7],
     franka.per_joint(2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04)[:7],
 )
-"""Lower and upper limits (7,) of the arm's joints in the model file [rad]."""
 
+# Target of the hand's origin in the world [m].
 TARGET = read_only((0.45, 0.0, 0.35))
-"""Target of the hand's origin in the world [m]."""
 
 BASELINE = ReachCase(TARGET, DOWN, IK, steps=180)
 KP_DOUBLED = replace(BASELINE, kp=2 * franka.KP_BASELINE)
@@ -54,8 +54,8 @@ FINER = {
 }
 """Runs of the lecture with a smaller solver step."""
 
+# The runs that the lecture has beside those of the lab; the last one never needs its limits.
 MORE = FINER | {"unlimited": replace(KP_DOUBLED, effort_limit=10 * franka.EFFORT_LIMIT)}
-"""The runs that the lecture has beside those of the lab; the last one never needs its limits."""
 
 LABELS = {
     name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ") for name in CASES
@@ -67,36 +67,36 @@ VIEWED = "world"  # The recorded view of the camera, before the first step
 
 FOV = 42.0  # Vertical field of view of the lesson's camera [degree]
 
+# The lesson's camera: the robot, the marker and the ground.
 VIEW = CAMERA | {
     "pos": (1.5, -1.1, 1.0), "lookat": (0.4, 0.0, 0.3), "fov": FOV, "near": 0.1, "far": 20.0,
 }  # fmt: skip
-"""The lesson's camera: the robot, the marker and the ground."""
 
+# Near and far limit of the view `cut` [m]: one is inside the hand, the other on the floor.
 CUT = (1.65, 2.2)
-"""Near and far limit of the view `cut` [m]: one is inside the hand, the other on the floor."""
 
 HAND_FOV = 60.0  # Vertical field of view of the camera on the hand [degree]
 
+# The camera in the frame of the hand, z backwards: it looks along the fingers [m].
 ON_HAND = ((0.0, -1, 0, 0.05), (-1, 0, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
-"""The camera in the frame of the hand, z backwards: it looks along the fingers [m]."""
 
+# The views of the page about cameras, and what the cameras are given, or have by default.
 VIEWS: dict[str, dict[str, Any]] = {
     VIEWED: VIEW,
     "cut": VIEW | {"near": CUT[0], "far": CUT[1]},
     "hand": {"fov": HAND_FOV, "near": 0.1, "far": 20.0},
 }
-"""The views of the page about cameras, and what the cameras are given, or have by default."""
 
+# What is looked up in the segmentation.
 SEGMENTS = ("plane", "hand", "marker")
-"""What is looked up in the segmentation."""
 
+# How the second case of a pair compares with the first [m]; not fitted to a run.
 RELATIONS = (
     (("baseline", "kp_doubled"), "final_distance", "lower", 1e-3),
     (("baseline", "gravity_compensated"), "final_distance", "lower", 1e-3),
     (("baseline", "kp_doubled"), "overshoot", "higher", 1e-3),
     (("kp_doubled", "kp_doubled_ramp"), "overshoot", "lower", 1e-3),
 )
-"""How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 GRID_X, GRID_Y, GRID_Z = (
     tuple(np.round(np.linspace(*ends), 3).tolist())
@@ -104,11 +104,11 @@ GRID_X, GRID_Y, GRID_Z = (
 )
 HEIGHT = 0.35  # Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0
 
+# Targets (63, 3) of the reach map, row by row [m].
 PLANES = {
     "vertical": read_only([(x, 0.0, z) for z in GRID_Z for x in GRID_X]),
     "horizontal": read_only([(x, y, HEIGHT) for y in GRID_Y for x in GRID_X]),
 }
-"""Targets (63, 3) of the reach map, row by row [m]."""
 
 REACH_MAP = {
     name: SolveCase(points, DOWN, np.tile(franka.Q_START, (len(points), 1)), ONE_START)
@@ -122,17 +122,17 @@ RANDOM_STARTS = np.hstack([
 ])  # fmt: skip
 """Starts (100, 9) of the solver, uniform within the limits [rad or m]."""
 
+# Joint positions (7,) of an arm whose Jacobian has a small singular value [rad].
 NEARLY_STRETCHED = read_only((0.0, 0.0, 0.0, -0.07, 0.0, 1.6, 0.0))
-"""Joint positions (7,) of an arm whose Jacobian has a small singular value [rad]."""
 
+# A target that the solver reaches with the fingertips below the floor.
 IN_THE_FLOOR = replace(BASELINE, position=read_only((0.5, 0.0, 0.05)))
-"""A target that the solver reaches with the fingertips below the floor."""
 
+# The lesson's question with smaller tolerances of the position.
 PRECISE = {
     f"at_{name}": replace(BASELINE, settings=replace(ONE_START, position_tolerance=most))
     for name, most in (("500_um", 5e-4), ("50_um", 5e-5), ("5_um", 5e-6), ("500_nm", 5e-7))
 }
-"""The lesson's question with smaller tolerances of the position."""
 
 MANY_STARTS = SolveCase(np.tile(TARGET, (RESTARTS, 1)), DOWN, RANDOM_STARTS, ONE_START)
 
@@ -142,25 +142,25 @@ UNREACHABLE = SolveCase(
 )
 """The target beyond reach from the lesson's start, then from 19 random ones."""
 
+# Questions to the solver beyond those of the lab.
 QUESTIONS = REACH_MAP | {
     "vertical_restarted": replace(REACH_MAP["vertical"], settings=IK),
     "many_starts": MANY_STARTS,
     "unreachable": UNREACHABLE,
 }
-"""Questions to the solver beyond those of the lab."""
 
 TOLERANCES = reaching.TOLERANCES | {"iterations": (0.0, 0.0)}
 TOLERANCES |= dict.fromkeys(QUESTIONS, (math.inf, 0.0))
 """As in `reaching`. The answers to these questions have no bound: rounding decides which of many
 postures a search finds."""
 
+# Share of the displacement that gravity, KP and the Jacobian may leave unexplained.
 SAG_SHARE = 0.02
-"""Share of the displacement that gravity, KP and the Jacobian may leave unexplained."""
 
 ANGLE_WEIGHT = 0.5  # Metres that count as much as one radian, where the nearest pose is sought
 
+# The engine's answer for the target beyond reach is farther than the nearest pose by more [m].
 BEYOND_NEAREST = 0.01
-"""The engine's answer for the target beyond reach is farther than the nearest pose by more [m]."""
 
 
 def parameters() -> dict[str, Any]:

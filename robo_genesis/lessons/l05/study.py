@@ -18,9 +18,11 @@ from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.kinematics import ARM, Pose, measured_hand
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
+# Groups of a bundle's metrics: what the engine's solver reported, also for smaller tolerances.
 GROUP, PRECISE, ITERATIONS = "ik", "ik_residuals", "iterations"
-"""Groups of a bundle's metrics: what the engine's solver reported, also for smaller tolerances."""
 
+# Residuals of the answers for the target and for one in the floor, with the height of the
+# fingertips there; the residual for each tolerance, and the iterations to it.
 READINGS = {
     GROUP: Readings({
         "residual_m": "m", "residual_rad": "rad",
@@ -29,8 +31,6 @@ READINGS = {
     PRECISE: Readings(dict.fromkeys(spec.PRECISE, "m")),
     ITERATIONS: Readings(dict.fromkeys(spec.PRECISE, "iterations"), "exact"),
 }  # fmt: skip
-"""Residuals of the answers for the target and for one in the floor, with the height of the
-fingertips there; the residual for each tolerance, and the iterations to it."""
 
 
 def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:

@@ -27,15 +27,16 @@ SHOWN = 3  # Joints with a row of their own in the table of gravity
 
 AT_LIMIT = 0.99  # Share of the force limit from which a sample is counted as at the limit
 
+# What chooses one of several answers: a key of `study.answers`, and which value is best.
 CRITERIA = {
     "nearest to the present posture": ("from_start", min),
     "farthest from the limits": ("margin", max),
     "largest manipulability": ("manipulability", max),
 }
-"""What chooses one of several answers: a key of `study.answers`, and which value is best."""
 
 TIP = "fingertips above the floor [mm]"
 
+# Columns of `records`: key of `study.answers`, factor and significant digits.
 QUANTITIES = {
     "manipulability": ("manipulability", 1, 3),
     "distance from limits [rad]": ("margin", 1, 3),
@@ -44,7 +45,6 @@ QUANTITIES = {
     "angle left [mrad]": ("rotation", 1000, 4),
     TIP: ("tip", 1000, 3),
 }
-"""Columns of `records`: key of `study.answers`, factor and significant digits."""
 
 
 def error_table(run: Experiment) -> str:

@@ -17,8 +17,8 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 # A hand that turns sideways pushes its fingers, which hold each other. That force is not in the
 # law. It is up to 0.34 N here, and 2.3 N with 20 times the limits, because the hand turns faster.
+# Tolerance of an internal force with the usual limits [N·m or N].
 NET_FORCE = per_joint(*(1e-2,) * 7, 0.6, 0.6)
-"""Tolerance of an internal force with the usual limits [N·m or N]."""
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:

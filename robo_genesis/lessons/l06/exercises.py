@@ -55,6 +55,7 @@ class Robot:
         self.calls += 1
 
 
+# Environments of the scene, DOFs and environments of commands that must be sent.
 VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
     "two_rows": (4, [0, 1, 2], [1, 3]),
     "other_order": (4, [0, 1, 2], [3, 1]),
@@ -62,11 +63,10 @@ VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
     "all_rows": (4, [0, 1, 2], [0, 1, 2, 3]),
     "more_environments": (6, [0, 1, 2], [5, 0]),
 }
-"""Environments of the scene, DOFs and environments of commands that must be sent."""
 
 # The engine would send many of these commands.
+# Shapes that do not have one row for each of two environments, with three DOFs; (2,) with two.
 SHAPES = ((1, 3), (3,), (6,), (3, 2), (2,), (2, 1), (2, 3, 1), (3, 3))
-"""Shapes that do not have one row for each of two environments, with three DOFs; (2,) with two."""
 
 MASK = [False, True]
 NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK, np.array(MASK))
@@ -97,8 +97,8 @@ def subset(command: Callable[..., Any]) -> Iterator[Finding]:
     yield equal("no_environments.commands_sent", robot.calls, 0)
 
 
+# Time of one undisturbed step of a simulated machine, of one wait, and of rounding [s].
 STEP, WAIT, TINY = 0.01, 2e-3, 1e-9
-"""Time of one undisturbed step of a simulated machine, of one wait, and of rounding [s]."""
 
 
 class Machine:
@@ -124,6 +124,7 @@ class Machine:
         return self.now
 
 
+# Durations of the steps of the warm-up, steps of a repeat, and their duration in each repeat.
 TRIALS: dict[str, tuple[Sequence[float], int, Sequence[float]]] = {
     "steady": ([1, 1, 1], 10, [1] * 5),
     "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),
@@ -133,7 +134,6 @@ TRIALS: dict[str, tuple[Sequence[float], int, Sequence[float]]] = {
     "five_different_repeats": ([1, 1], 2, [9, 0.1, 1, 30, 0.2]),
     "an_even_number_of_repeats": ([1, 1], 3, [1.5, 8, 0.5, 0.1]),
 }
-"""Durations of the steps of the warm-up, steps of a repeat, and their duration in each repeat."""
 
 
 @as_test

@@ -8,11 +8,11 @@ from robo_genesis.lessons.l06 import spec
 
 MEASURES = False
 
+# Label and noun of each group of readings that the map shows.
 SHOWN = {
     "sweep_end": ("distance at the end [mm]", "distance of the hand from its target at the end"),
     "sweep_overshoot": ("overshoot [mm]", "distance by which the hand passes its target"),
 }
-"""Label and noun of each group of readings that the map shows."""
 
 
 def explored(run: Experiment) -> dict[str, Any]:

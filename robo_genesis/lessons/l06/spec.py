@@ -30,21 +30,21 @@ EXPECTED_MODEL = franka.MODEL_COUNTS
 
 HAND_MASS = 0.73  # Mass of the hand in the model file [kg]
 
+# First target of the hand in each environment [m].
 TARGETS = read_only(
     [(0.42, -0.12, 0.35), (0.48, -0.04, 0.4), (0.48, 0.06, 0.32), (0.4, 0.14, 0.38)]
 )
-"""First target of the hand in each environment [m]."""
 
+# Second target of the hand in some environments [m].
 LATER = {1: [(0.44, -0.16, 0.32)], 3: [(0.50, 0.12, 0.40)]}
-"""Second target of the hand in some environments [m]."""
 
+# Outer steps until the second command, and of the whole run.
 SWITCH, STEPS = 180, 360
-"""Outer steps until the second command, and of the whole run."""
 
 RESET_AFTER = 30  # Outer steps until the partial reset, while all arms are moving
 
+# Targets of which one is refused [m].
 MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
-"""Targets of which one is refused [m]."""
 
 FIRST = Environment(TARGETS[:1], DOWN, IK, SWITCH, steps=STEPS)
 ENVS = tuple(range(len(TARGETS)))
@@ -67,17 +67,17 @@ VARIANTS = {
 }
 """One target, and four robots that differ in gains, mass of the hand or limits of the torques."""
 
+# By which the sweep multiplies all KP, and all KV.
 FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
-"""By which the sweep multiplies all KP, and all KV."""
 
+# Masses that the sweep adds to the hand [kg].
 LOADS = (0.0, 0.5, 1.0, 2.0)
-"""Masses that the sweep adds to the hand [kg]."""
 
+# Names of the sweep's robots by both factors and load, in the order of their rows.
 SWEEP = {
     (kp, kv, load): f"kp_{kp:g}_kv_{kv:g}_load_{load:g}".replace(".", "_")
     for kp, kv, load in product(FACTORS, FACTORS, LOADS)
 }
-"""Names of the sweep's robots by both factors and load, in the order of their rows."""
 
 SWEPT = {"plain_robot": (1.0, 1.0, 0.0), "stiff_robot": (2.0, 1.0, 0.0)}
 SWEPT |= {"loaded_robot": (1.0, 1.0, 1.0)}
@@ -92,11 +92,11 @@ PRESSED = {
 }
 """Targets of the hand that put its fingers into the floor; the solver does not know the floor."""
 
+# A target that the solver does not reach from the start, and reaches from random starts [m].
 RESTARTED = read_only([(0.25, 0.0, 0.2)])
-"""A target that the solver does not reach from the start, and reaches from random starts [m]."""
 
+# Row k of the permuted batch is the world of this environment.
 ORDER = (2, 0, 3, 1)
-"""Row k of the permuted batch is the world of this environment."""
 
 PERMUTED = {f"permuted_{k}": WORLDS[f"env_{k}"] for k in ENVS}
 BESIDE = {
@@ -106,11 +106,11 @@ BESIDE = {
 }
 """Environments that are not touched while their neighbours are reset and commanded."""
 
+# Environments from their partial reset on.
 AGAIN = {f"again_{k}": replace(FIRST, positions=TARGETS[[k]], steps=SWITCH) for k in LATER}
-"""Environments from their partial reset on."""
 
+# Runs that must repeat another one; they are recorded, and have no metrics.
 COPIES = PERMUTED | BESIDE | AGAIN
-"""Runs that must repeat another one; they are recorded, and have no metrics."""
 
 MARKS = ("baseline", "first", "second", "third")
 CASE_MARKS = {
@@ -118,37 +118,37 @@ CASE_MARKS = {
 }
 """The mark of each case in the palette."""
 
+# Words of a reader for runs.
 LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
     "plain_robot": "plain robot",
     "stiff_robot": "KP doubled",
     "loaded_robot": "1 kg in the hand",
     "unlimited_robot": "KP doubled, limits × 20",
 } | {name: f"environment {name[-1]} alone" for name in ALONE}  # fmt: skip
-"""Words of a reader for runs."""
 
 SPACING = 1.0  # Distance of neighbouring environments in pictures [m]; no state depends on it
 
+# Where the replay draws the environments [m]: from left to right, none hides another.
 PLACES = ((-0.81, -0.75), (-0.54, 0.09), (0.34, -0.09), (0.61, 0.75))
-"""Where the replay draws the environments [m]: from left to right, none hides another."""
 
 # The engine places it in the world of environment 0, which pictures show at a corner of the group.
+# The lesson's camera: all environments, side by side.
 VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
-"""The lesson's camera: all environments, side by side."""
 
+# How the second case of a pair compares with the first [m]; not fitted to a run.
 RELATIONS = (
     (("plain_robot", "stiff_robot"), "final_distance", "lower", 1e-3),
     (("plain_robot", "loaded_robot"), "final_distance", "higher", 5e-4),
     (("plain_robot", "stiff_robot"), "overshoot", "higher", 5e-3),
     (("stiff_robot", "unlimited_robot"), "overshoot", "lower", 5e-3),
 )
-"""How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 # Both are computed in float32.
+# Largest difference of a row from the same run alone [rad or m, rad/s or m/s, N·m or N].
 SAME_RUN = {"q": 5e-6, "qd": 5e-5, "control_force": 2e-2}
-"""Largest difference of a row from the same run alone [rad or m, rad/s or m/s, N·m or N]."""
 
+# Largest difference of a torque at rest from gravity and load, and from KP times error [N·m].
 HELD = 0.05
-"""Largest difference of a torque at rest from gravity and load, and from KP times error [N·m]."""
 
 
 def parameters() -> dict[str, Any]:

@@ -17,23 +17,24 @@ from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR, IkAnswer
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joints import JointMap, resolve_joints, to_numpy
 
+# Counts, residuals and verdicts of a question with a target beyond reach, and masses of hands.
 READINGS = {
     "model": counts(spec.EXPECTED_MODEL),
     "mixed": Readings({f"row_{k}_m": "m" for k in spec.ENVS}),
     "mixed_accepted": counts(spec.WORLDS),
     "hand_mass": Readings(dict.fromkeys(spec.VARIANTS, "kg")),
 }
-"""Counts, residuals and verdicts of a question with a target beyond reach, and masses of hands."""
 
 EQUALITY = "equality"
 READ = ("pressed_permuted", "pressed_again", "pressed_alone", "one_start", "restarts")
 COMPARED = {"compared": "1", "differ": "1", "apart": "rad"}
 """Of two runs: numbers that are compared, how many differ, largest difference of an arm joint."""
 
+# When contact forces of the pressed hands are read: around a partial reset, and a step later.
 WHEN = ("before", "after", "next")
-"""When contact forces of the pressed hands are read: around a partial reset, and a step later."""
 
 # Rounding decides how far runs in contact separate, so that another run need not repeat it.
+# Comparisons without arrays, and of each robot of the sweep two distances from the target.
 LECTURE_READINGS = {
     EQUALITY: Readings(
         {f"{claim}_{what}": unit for claim in READ for what, unit in COMPARED.items()}
@@ -45,7 +46,6 @@ LECTURE_READINGS = {
     "sweep_end": Readings(dict.fromkeys(spec.SWEEP.values(), "m")),
     "sweep_overshoot": Readings(dict.fromkeys(spec.SWEEP.values(), "m")),
 }
-"""Comparisons without arrays, and of each robot of the sweep two distances from the target."""
 
 
 def read_mixed(page: Any, robot: Any) -> IkAnswer:

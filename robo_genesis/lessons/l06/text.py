@@ -17,8 +17,8 @@ from robo_genesis.sim.throughput import Model, fit
 
 MEASURES = False
 
+# The joints with a torque in the table of variants: joint2 and joint4.
 SHOWN_TORQUES = (1, 3)
-"""The joints with a torque in the table of variants: joint2 and joint4."""
 
 
 def mm(value: float, digits: int = 2) -> str:
@@ -72,6 +72,7 @@ def ends(names: Iterable[str]) -> str:
     return listed([name[-1] for name in names])
 
 
+# What is compared, by claim; `equality_table` has a row for each one that a page measured.
 CLAIMED = {
     "permuted": f"the worlds in the order {', '.join(map(str, spec.ORDER))}",
     "beside": f"environments {ends(spec.BESIDE)}, while {ends(spec.AGAIN)} are reset and "
@@ -86,7 +87,6 @@ CLAIMED = {
     "one_start": "four equal questions to the solver in one call, with one start",
     "restarts": "the same with up to 50 starts",
 }
-"""What is compared, by claim; `equality_table` has a row for each one that a page measured."""
 
 
 def equality_table(run: Experiment) -> str:

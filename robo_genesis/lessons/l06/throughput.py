@@ -15,19 +15,19 @@ from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.throughput import Calls, Clock, calls_of
 
+# Groups of a bundle's metrics: times and memory, and how many environments did other work.
 GROUP, EQUAL = "throughput", "rows_that_differ"
-"""Groups of a bundle's metrics: times and memory, and how many environments did other work."""
 
 RAISED = 0.1  # Angle by which the timed command turns each arm joint from its start [rad]
 
+# Largest distance of an arm joint from its commanded angle at the end [rad], sag included.
 NEAR = RAISED / 5
-"""Largest distance of an arm joint from its commanded angle at the end [rad], sag included."""
 
+# Limits, with hardware of today, of the time of a step and a build [s], and of memory [MiB].
 STEP, BUILD, MEMORY = (1e-4, 10.0), (0.1, 300.0), (-(2.0**14), 2.0**14)
-"""Limits, with hardware of today, of the time of a step and a build [s], and of memory [MiB]."""
 
+# Returns a built scene with so many environments, its robot, and what else it has.
 Build = Callable[[int], tuple[Any, ...]]
-"""Returns a built scene with so many environments, its robot, and what else it has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,20 +63,20 @@ PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
 PARTS = {"sphere": 2, "robot_1": 1, "robot_4": 4}
 """Scenes that are timed with the sizes of `ENDS`, by content, and their substeps."""
 
+# Numbers of environments from which both parts of a step are computed.
 ENDS = (1, 64)
-"""Numbers of environments from which both parts of a step are computed."""
 
+# Four scenes of a size that are stepped in turn.
 FOUR = {"four_of_256": 256, "four_of_250": 250}
-"""Four scenes of a size that are stepped in turn."""
 
+# The same with sizes beside powers of two, and with other scenes.
 DEEPER = Protocol(
     (1, 4, 16, 60, 64, 250, 256, 1000, 1024),
     (*(f"{of}_{size}" for of in PARTS for size in ENDS), *FOUR),
 )
-"""The same with sizes beside powers of two, and with other scenes."""
 
+# Numbers of environments from which the model is fitted, three at a time. It predicts others.
 FITTED = (1, 16, 60, 64)
-"""Numbers of environments from which the model is fitted, three at a time. It predicts others."""
 
 
 def start(robot: Any) -> None:

@@ -67,20 +67,21 @@ ATTACKS = {
 }
 """The same with other steps, another start, and the hulls of another seed."""
 
+# Balls as thick as the wall, from above the rim, and from a start inside the bowl.
 SMALL = {
     "small_in_default_h1000us": BowlCase("default", 0.002, 10, steps=150),
     "small_in_pieces_h1000us": BowlCase("pieces", 0.002, 10, steps=150),
     "small_from_inside_h1000us": BowlCase("default", 0.002, 10, drop=-0.036, steps=150),
 }
-"""Balls as thick as the wall, from above the rim, and from a start inside the bowl."""
 
 CASES = BIG | ATTACKS | SMALL
 
 CUT = ("one_hull", "default")
 
+# Places x on the line y = 0, and heights, where `CUT` collision geometry is sampled [m].
 ACROSS, UP = np.arange(-72, 73, 3) / 1000, np.arange(101) / 2000
-"""Places x on the line y = 0, and heights, where `CUT` collision geometry is sampled [m]."""
 
+# The engine's values: of the geometry, and the time of a run and of one outer step.
 READINGS = {
     "bowl_geoms": Readings(dict.fromkeys(CHOICES, "1")),
     "bowl_volume": Readings(dict.fromkeys([*CHOICES, "visual"], "cm³")),
@@ -92,7 +93,6 @@ READINGS = {
         for what, limits in {"run": (0.0, 3600.0), "step": (1e-5, 10.0)}.items()
     },
 }
-"""The engine's values: of the geometry, and the time of a run and of one outer step."""
 
 # Another processor may get other hulls from CoACD, and each contact makes rounding grow: balls may
 # come to lie anywhere. Counts of the balls inside must agree, and all claims.

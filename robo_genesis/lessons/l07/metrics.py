@@ -10,8 +10,8 @@ from robo_genesis.sim.arm.kinematics import HAND
 from robo_genesis.sim.arm.lifting import ENDS
 from robo_genesis.sim.bodies.table import SceneCase
 
+# Indices of both bodies among the links of the arrays, after those of the robot.
 OBJECT, BALL = 11, 12
-"""Indices of both bodies among the links of the arrays, after those of the robot."""
 
 WINDOW = 20  # Steps at the end in which an object at rest keeps its place
 

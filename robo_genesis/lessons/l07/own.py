@@ -11,13 +11,13 @@ from robo_genesis.lessons.l07.study import Facts
 
 MEASURES = False
 
+# By quantity: its value, and the least and the largest one that passes.
 Results = dict[str, tuple[float, float, float]]
-"""By quantity: its value, and the least and the largest one that passes."""
 
+# Units in which quantities are printed; the others are counts, or true and false.
 UNITS = dict.fromkeys(("margin", "depth", "ball", "pregrasp", "grasp", "width"), "mm") | {
     "support": "µm", "drift": "µm", "moved": "µm", "mass": "%", "share": "%", "rise": "%"
 }  # fmt: skip
-"""Units in which quantities are printed; the others are counts, or true and false."""
 
 
 def given(facts: Facts, *names: str) -> Results:

@@ -15,8 +15,8 @@ from robo_genesis.sim.bodies.bowl import CHOICES
 
 MEASURES = False
 
+# Mark in the palette and words of the boxes that differ in friction.
 FRICTIONS = {"box": ("first", "μ = 0.5"), "firm": ("second", "μ = 1"), "rough": ("third", "μ = 2")}
-"""Mark in the palette and words of the boxes that differ in friction."""
 
 
 def posture(run: Experiment) -> Figure:

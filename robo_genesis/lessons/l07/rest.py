@@ -12,25 +12,25 @@ from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
+# A body is at rest if it moves less than this [m] in a window of this length [s].
 WINDOW, BOUND = 0.2, 2e-4
-"""A body is at rest if it moves less than this [m] in a window of this length [s]."""
 
 SPEED = ("link_vel_m_s", "link_ang_rad_s", "t_s")
 SLOW = 1e-3  # The criterion of a speed that the page examines [m/s]
 
+# The box of all runs. Its friction counts, because that of the table is smaller.
 BOX = ContactCase(
     start=(0.0, 0.0, TOP + 0.025), size=0.05, duration=0.5, friction=0.5, surface_friction=0.1,
     substeps=4,
 )  # fmt: skip
-"""The box of all runs. Its friction counts, because that of the table is smaller."""
 
 FALLING = replace(BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2)  # By 5 mm, on a level table
 
+# Six boxes side by side across the slope, and what distinguishes each from `BOX`.
 ROW: Mapping[str, Mapping[str, float]] = {
     "slick": {"friction": 0.3}, "box": {}, "firm": {"friction": 1.0}, "rough": {"friction": 2.0},
     "small": {"size": 0.02}, "heavy": {"density": 8000.0},
 }  # fmt: skip
-"""Six boxes side by side across the slope, and what distinguishes each from `BOX`."""
 
 STEEP = {"mu_150": {"friction": 1.5}} | {name: ROW[name] for name in [*ROW][1:]}
 
@@ -81,6 +81,7 @@ TWINS = {
 } | SLIDING  # fmt: skip
 """Runs in MuJoCo with equal settings, in float64."""
 
+# Words of a reader for runs.
 LABELS = {
     "tilt_10_box": "μ = 0.5", "tilt_10_slick": "μ = 0.3", "tilt_10_firm": "μ = 1",
     "tilt_10_rough": "μ = 2", "tilt_10_heavy": "16 times the density",
@@ -88,19 +89,18 @@ LABELS = {
     "T_5ms_box": "T = 5 ms", "T_20ms_box": "T = 20 ms", "impratio_100_box": "pyramid, impratio 100",
     "elliptic_10_box": "elliptic cone, impratio 100", "elliptic_alone_box": "elliptic cone alone",
 }  # fmt: skip
-"""Words of a reader for runs."""
 
 # The contact points of sliding boxes decide. All others differ by rounding.
+# By metric or case, (atol, rtol) of a value between engines, backends or processors.
 TOLERANCES: dict[str, tuple[float, float]] = {
     "creep": (2e-5, 0.2), "sunk": (1e-3, 0.05), "moved": (1e-5, 0.2),
     **dict.fromkeys([*CASES, *TWINS], (5e-3, 0.0)),
     **{name: (np.inf, 0.0) for of in (NOSLIP | {"": SLIDING}).values() for name in of},
 }  # fmt: skip
-"""By metric or case, (atol, rtol) of a value between engines, backends or processors."""
 
+# By unit, the difference below which two values are equal. float32 changes a creep by up to 3e-6
+# m/s at a solver step of 1 ms.
 RESOLUTION = {"m": 1e-5, "m/s": 5e-6, "%": 1.0}
-"""By unit, the difference below which two values are equal. float32 changes a creep by up to
-3e-6 m/s at a solver step of 1 ms."""
 
 
 def formulas(case: ContactCase, in_mujoco: bool = False) -> tuple[float, float]:

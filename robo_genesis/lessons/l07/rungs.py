@@ -16,8 +16,8 @@ from robo_genesis.sim.camera.views import View
 
 CAMERAS = ("world", "wrist")
 
+# Names of the contact points of each finger in the counts of a lift.
 FINGERS = ("closed_left", "closed_right", "held_left", "held_right")
-"""Names of the contact points of each finger in the counts of a lift."""
 
 
 def outline(corners: FloatArray, view: View, inside: bool = False) -> float:

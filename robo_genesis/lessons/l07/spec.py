@@ -23,19 +23,20 @@ MINIMUM_HARDWARE = "cpu"
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
 
+# Settings of the solver, and the orientation of the hand.
 ONE_START, DOWN = reaching.ONE_START, lifting.DOWN
-"""Settings of the solver, and the orientation of the hand."""
 
 KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
 KP[7:], KV[7:] = 480.0, 20.0  # Fingers that close on 50 mm press with 12 N
 
+# Outer steps of a scene at rest, and of a lift.
 RESTING, LIFTING = 60, lifting.ENDS["hold"]
-"""Outer steps of a scene at rest, and of a lift."""
 
 GOOD = SceneCase(
     shape="cylinder", size=(0.05, 0.05, 0.07), place=(0.5, -0.05, 0.0), kp=KP, kv=KV, steps=RESTING
 )
 
+# The scene that passes all rungs, and five that fail one each.
 SCENES = {
     "baseline": GOOD,
     "hovering": replace(GOOD, gap=0.005, weightless=True),
@@ -44,10 +45,9 @@ SCENES = {
     "below": replace(GOOD, place=(0.45, -0.46, -0.3)),
     "wide": replace(GOOD, shape="box", size=(0.05, 0.082, 0.06)),
 }
-"""The scene that passes all rungs, and five that fail one each."""
 
+# What readers call the scenes, so that a name does not answer a question.
 LETTERS = dict(zip(SCENES, "ABCDEF", strict=True))
-"""What readers call the scenes, so that a name does not answer a question."""
 
 LABELS = {name: f"scene {letter}" for name, letter in LETTERS.items()}
 LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETTERS.items()}
@@ -59,26 +59,26 @@ CASE_MARKS = {"baseline": "baseline", "hovering": "first"}
 CASE_MARKS |= {"forced": "second", "forced_fine": "third"}
 """The mark of each case in the palette."""
 
+# The lifts that are compared, with words for their objects.
 SHOWN_LIFTS = {
     "baseline": "50 mm",
     "wide": "82 mm",
     "forced": "82 mm, µ 0.3",
     "forced_fine": "82 mm, µ 0.3, half the step",
 }
-"""The lifts that are compared, with words for their objects."""
 
 RUNGS = ("built", "stable", "seen", "reachable", "graspable")
 
+# The one rung that each scene fails; not fitted to a run.
 FAILS = dict(zip(SCENES, (None, "stable", "built", "seen", "reachable", "graspable"), strict=True))
-"""The one rung that each scene fails; not fitted to a run."""
 
 
 FORCED = replace(SCENES["wide"], friction=0.3, pads=0.3)
 SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 
 
+# Where all lifts begin: a fault of an object's own place cannot fail them [m].
 SPOT = (0.55, 0.0, 0.0)
-"""Where all lifts begin: a fault of an object's own place cannot fail them [m]."""
 
 
 def lift_of(scene: SceneCase, **changed: Any) -> SceneCase:
@@ -92,17 +92,18 @@ def runs(*scenes: str) -> dict[str, SceneCase]:
     return lifts | {f"{name}_at_rest": SCENES[name] for name in scenes}
 
 
+# The wide box with little friction, at two solver steps.
 FURTHER = {"forced": lift_of(FORCED), "forced_fine": lift_of(FORCED, substeps=4)}
-"""The wide box with little friction, at two solver steps."""
 
 CASES = runs(*SCENES) | FURTHER
 
+# The camera in the world; `fov` is that of the scene.
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0), "near": 0.1, "far": 20.0}
-"""The camera in the world; `fov` is that of the scene."""
 
+# The camera on the hand. With the default near limit, 0.1 m, it would cut a held object open.
 WRIST = {"res": CAMERA["res"], "fov": 60, "near": 0.01, "far": 20.0, "GUI": False}
-"""The camera on the hand. With the default near limit, 0.1 m, it would cut a held object open."""
 
+# Least and largest value that passes, by quantity: [m], shares, pixels or counts.
 LIMITS: dict[str, tuple[float, float]] = {
     "margin": (5e-3, np.inf), "depth": (0, 1e-3), "mass": (0, 0.01), "ball": (0, 0.025),
     "support": (0, 5e-4), "drift": (0, 2e-3), "moved": (0, 2e-4),
@@ -110,7 +111,6 @@ LIMITS: dict[str, tuple[float, float]] = {
     "accepted": (2, 2), "pregrasp": (0.03, np.inf), "grasp": (0.02, np.inf), "touches": (0, 0),
     "width": (0, 0.076), "descending": (0, 0), "fingers": (1, np.inf), "rise": (0.8, np.inf),
 }  # fmt: skip
-"""Least and largest value that passes, by quantity: [m], shares, pixels or counts."""
 
 RESOLUTION = rest.RESOLUTION | {
     "s": DT / 2,
@@ -125,8 +125,8 @@ TOLERANCES = check_spec.TOLERANCES | bowls.TOLERANCES | rest.TOLERANCES | {
 """Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of the table
 have no bound: rounding decides which of many postures a search finds."""
 
+# How the second case of a pair compares with the first [m]; not fitted to a run.
 RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)
-"""How the second case of a pair compares with the first [m]; not fitted to a run."""
 
 
 def parameters(cases: dict[str, Any]) -> dict[str, Any]:

@@ -19,13 +19,13 @@ from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera import record
 from robo_genesis.sim.camera.views import View, look, segment_number
 
+# Units of the readings of a scene, by group and name.
 GROUPS = {
     "object": {"mass": "kg", "depth": "m"},
     "outline": dict.fromkeys(rungs.CAMERAS, "pixels"),
     "reach": {"accepted": "poses", "pregrasp": "m", "grasp": "m", "touches": "postures"},
     "contacts": {"descending": "steps"} | dict.fromkeys(rungs.FINGERS, "points"),
 }
-"""Units of the readings of a scene, by group and name."""
 
 
 def group(name: str, *scenes: str) -> Readings:

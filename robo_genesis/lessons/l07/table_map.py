@@ -22,15 +22,15 @@ from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera.record import view_of
 
+# Centres of the cells [m].
 X, Y = np.arange(2, 11) / 10, np.arange(-3, 4) * 0.12
-"""Centres of the cells [m]."""
 
+# Least and largest x and y of the places where objects begin [m].
 WORKSPACE = (0.40, 0.60), (-0.22, 0.28)
-"""Least and largest x and y of the places where objects begin [m]."""
 
+# Counts of each cell: of its two postures those that the solver accepts, without contact of the
+# robot with table, legs or itself, and of these those without contact with the bowl.
 COUNTED = ("reached", "free")
-"""Counts of each cell: of its two postures those that the solver accepts, without contact of the
-robot with table, legs or itself, and of these those without contact with the bowl."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,13 +116,13 @@ def outlines(found: Experiment, camera: str) -> FloatArray:
     return np.array([rungs.outline(spec.GOOD.corners(at), view, inside=True) for at in centres])
 
 
+# What each verdict says.
 WORDS = {
     "reachable": "the hand reaches it",
     "world": "in the picture of the camera beside the table",
     "wrist": "in the picture of the camera on the hand",
     "graspable": "free of the bowl and the edge",
 }
-"""What each verdict says."""
 
 READINGS = {f"table_{name}": counts(map(str, CELLS)) for name in COUNTED} | {"map": counts(WORDS)}
 

@@ -11,6 +11,7 @@ from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
 MEASURES = False
 
 
+# By rung: head, quantity, factor and digits of the value that decides in this lesson.
 DECIDES = {
     "built": ("built: ball above the bowl's foot [mm]", "ball", 1000.0, 1),
     "stable": ("stable: support error [mm]", "support", 1000.0, 3),
@@ -18,7 +19,6 @@ DECIDES = {
     "reachable": ("reachable: touching postures", "touches", 1.0, 0),
     "graspable": ("graspable: rise, share of the hand's", "rise", 1.0, 2),
 }
-"""By rung: head, quantity, factor and digits of the value that decides in this lesson."""
 
 
 @tables.as_table
@@ -94,11 +94,11 @@ def bowl_runs(run: Experiment, group: str) -> str:
     return tables.number_table("run", dict.fromkeys(heads, 0), rows)
 
 
+# The runs of both tables of creep.
 CREEPS = {
     "changes": [*rest.LABELS][:10],
     "cures": ["tilt_10_box", "T_5ms_box", *[*rest.LABELS][10:]],
 }
-"""The runs of both tables of creep."""
 
 
 def creep_table(run: Experiment, which: str) -> str:

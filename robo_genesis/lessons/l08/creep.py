@@ -14,17 +14,17 @@ from robo_genesis.sim.bodies.grippers import CONTACTS, PAD, SIZE, HeldCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 from robo_genesis.sim.mujoco.grippers import ratio_of
 
+# Runs that differ from `base` in one setting, by setting and name.
 SCANS: Mapping[str, Mapping[str, float]] = {
     "friction": {"mu_03": 0.3, "mu_05": 0.5, "base": 1.0, "mu_15": 1.5, "mu_2": 2.0},
     "force": {"N_2": 2.0, "N_5": 5.0, "base": 10.0, "N_20": 20.0, "N_40": 40.0},
     "mass": {"m_005": 0.05, "base": 0.1, "m_02": 0.2, "m_05": 0.5, "m_09": 0.9, "m_15": 1.5},
 }
-"""Runs that differ from `base` in one setting, by setting and name."""
 
 SCAN = {name: {of: value} for of, row in SCANS.items() for name, value in row.items()}
 
+# Boxes of each other scene. The weight of `m_15` is more than µN, that of the others is less.
 ROW = {name: SCAN[name] for name in ("base", "mu_03", "mu_2", "m_09", "m_15")}
-"""Boxes of each other scene. The weight of `m_15` is more than µN, that of the others is less."""
 
 SHALLOW = {name: own for name, own in ROW.items() if name != "mu_2"}  # Which would sink in by 5 mm
 
@@ -40,8 +40,8 @@ def scene(name: str, of: Mapping[str, Mapping[str, float]] = ROW, **common: Any)
     return {name: side_by_side({f"{name}_{one}": own for one, own in of.items()}, **common)}
 
 
+# Mass whose weight is µN [kg].
 LIGHT = HeldCase().friction * HeldCase().force / HeldCase().gravity
-"""Mass whose weight is µN [kg]."""
 
 LONG = {"long": side_by_side({"long": {}}, dt=0.1, substeps=40, duration=10.0)}
 SCENES: dict[str, dict[str, HeldCase]] = (
@@ -59,9 +59,10 @@ CASES = {n: case for of in SCENES.values() for n, case in of.items()}
 TIMED = [name for name, cases in SCENES.items() if len(cases) == len(ROW)]
 """Scenes whose steps are timed: they have the same boxes."""
 
+# The same runs in MuJoCo, in float64.
 TWINS = {f"mujoco_{name}": case for name, case in CASES.items()}
-"""The same runs in MuJoCo, in float64."""
 
+# What users try, by run: words, the run without it, and its price beside computing time.
 CHANGES = {
     "base": ("nothing", "base", "–"),
     "mu_2": ("friction 1 → 2", "base", "a deeper contact"),
@@ -77,19 +78,18 @@ CHANGES = {
     "elliptic_base": ("elliptic, impratio 100", "base", "depth as with µ = 1; no noslip"),
     "pyramid_100_base": ("pyramid, impratio 100", "base", "a stiffer normal direction"),
 }
-"""What users try, by run: words, the run without it, and its price beside computing time."""
 
+# Words of a reader for runs.
 LABELS = {
     "long": "10 s", "base": "μ = 1", "mu_2": "μ = 2", "h_1ms_base": "h = 1 ms",
     "T_5ms_base": "T = 5 ms", "m_15": "1.5 kg", "noslip_5_m_15": "1.5 kg, noslip",
     "noslip_5_base": "noslip", "elliptic_base": "elliptic cone, impratio 100",
 }  # fmt: skip
-"""Words of a reader for runs."""
 
+# By metric, (atol, rtol) of a value between engines, backends or processors.
 TOLERANCES: dict[str, tuple[float, float]] = {
     "creep": (4e-6, 0.005), "depth": (1e-7, 0.005), "path": (4e-6, 0.005)
 }  # fmt: skip
-"""By metric, (atol, rtol) of a value between engines, backends or processors."""
 
 RESOLUTION = {"m/s": 5e-6}
 

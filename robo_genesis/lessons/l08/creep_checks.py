@@ -24,9 +24,9 @@ STOPPED = 0.01  # Largest share of a creep that is called stopped
 
 TURN = 1e-4  # Rotation of a held box; noslip turns it by up to 2e-5 rad
 
+# Tolerances of the state after one outer step in MuJoCo; the residuals of the runs are at most 5e-8
+# m, 3e-7, 2e-6 m/s and 7e-5 rad/s.
 NEXT = {"link_pos": 1e-7, "link_quat": 1e-6, "link_vel": 6e-6, "link_ang": 2.5e-4}
-"""Tolerances of the state after one outer step in MuJoCo; the residuals of the runs are at most
-5e-8 m, 3e-7, 2e-6 m/s and 7e-5 rad/s."""
 
 
 def settings(run: Experiment) -> Iterator[Finding]:

@@ -15,8 +15,8 @@ TASK = "Pick up the cylinder and place it in the bowl."
 
 PLACE = tuple(f"object_{of}" for of in ("x", "y", "z", "qw", "qx", "qy", "qz"))
 
+# Columns that a robot outside a simulator does not have.
 PRIVILEGED = ("observation.environment_state", "finger_force", "phase")
-"""Columns that a robot outside a simulator does not have."""
 
 
 def columns(run: Experiment) -> dict[str, tuple[np.ndarray, tuple[str, ...] | None]]:

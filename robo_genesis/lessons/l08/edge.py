@@ -10,17 +10,17 @@ from robo_genesis.core.scene import FloatArray, read_only
 from robo_genesis.lessons.l08 import spec
 from robo_genesis.sim.arm.picking import PickCase
 
+# Samples of 0.1 s, for 6 s.
 STEPS: dict[str, Any] = {"dt": 0.1, "substeps": 20, "commands": 10, "steps": 60}
-"""Samples of 0.1 s, for 6 s."""
 
+# Place of the cylinder, number of errors along each axis, and the largest one [m].
 PLACE, CELLS, MOST = (0.5, -0.1), 16, 0.03
-"""Place of the cylinder, number of errors along each axis, and the largest one [m]."""
 
+# Standard deviation of the error along each axis [m], and number of starts for both experts.
 NOISE, PAIRS = 0.005, 128
-"""Standard deviation of the error along each axis [m], and number of starts for both experts."""
 
+# Place of the pads when the fingers close, from their command, with the opposite sign [m].
 SAG = read_only((0.0048, -0.0009))
-"""Place of the pads when the fingers close, from their command, with the opposite sign [m]."""
 
 CLOCKS = (10, 20, 30, 0)  # Outer steps after which the descent ends, 0 where it is measured
 
@@ -28,8 +28,8 @@ STRIDES = (0.024, 0.012, 0.006)  # Largest changes of a joint's command in one o
 
 TIMED = 16  # Episodes with each clock, and with each stride
 
+# Size of the box [m], and its largest yaw [rad].
 OBLONG, TURNED = (0.05, 0.07, 0.06), np.pi / 4
-"""Size of the box [m], and its largest yaw [rad]."""
 
 
 def batch(starts: FloatArray, errors: FloatArray | float = 0.0, **more: Any) -> PickCase:

@@ -16,12 +16,12 @@ PRESSES = 0.1  # Normal force from which a finger holds [N]
 
 RAISED = 0.05  # Height that an object must gain in the lift [m]
 
+# An object is in the bowl if its centre is this near to the axis, and its lowest point this far
+# below the rim [m].
 CENTRED, BELOW = 0.06, 0.01
-"""An object is in the bowl if its centre is this near to the axis, and its lowest point this far
-below the rim [m]."""
 
+# Time at the end [s] in which an object at rest moves by less than this [m], as in L07.
 WINDOW, STILL = 0.2, 2e-4
-"""Time at the end [s] in which an object at rest moves by less than this [m], as in L07."""
 
 
 def lowest(trace: Episodes, case: PickCase) -> FloatArray:
@@ -60,8 +60,8 @@ def rungs(trace: Episodes, case: PickCase) -> dict[str, np.ndarray]:
     }
 
 
+# The rungs in their order.
 RUNGS = ("planned", "held", "lifted", "carried", "released", "contained", "resting")
-"""The rungs in their order."""
 
 
 def reached(trace: Episodes, case: PickCase) -> np.ndarray:

@@ -66,8 +66,8 @@ def slide(run: Experiment) -> Figure:
     return figure
 
 
+# Label of each scanned setting.
 AXES = {"friction": "friction µ", "force": "force of a pad [N]", "mass": "mass [kg]"}
-"""Label of each scanned setting."""
 
 
 def creep_scans(run: Experiment) -> Figure:

@@ -26,14 +26,14 @@ EXPECTED_MODEL = franka.MODEL_COUNTS
 KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
 KP[7:], KV[7:] = 480.0, 20.0  # As in L07: fingers that close on 50 mm press with 12 N
 
+# Rows and columns of the map of starts.
 CELLS = 16
-"""Rows and columns of the map of starts."""
 
+# Least and largest x and y of the starts [m].
 REGION = (0.40, 0.60), (-0.25, 0.06)
-"""Least and largest x and y of the starts [m]."""
 
+# Where the camera that is turned sees right [m].
 MIDDLE = read_only((0.5, -0.095))
-"""Where the camera that is turned sees right [m]."""
 
 
 def starts(
@@ -60,36 +60,36 @@ def turned(places: FloatArray, degrees: float) -> FloatArray:
 
 STARTS = starts()
 
+# 256 episodes with a camera that is turned by 4°.
 ASKEW = PickCase(
     shape="cylinder", size=(0.05, 0.05, 0.07), place=(0.5, -0.05, 0.0), kp=KP, kv=KV,
     starts=STARTS, beliefs=turned(STARTS, 4.0), settings=reaching.ONE_START,
     dt=0.05, substeps=10, steps=130,
 )  # fmt: skip
-"""256 episodes with a camera that is turned by 4°."""
 
 FEW = starts(8, seed=2)
 EXACT = replace(ASKEW, starts=FEW, beliefs=FEW)
 """64 episodes in which the expert knows the place."""
 
+# Environment k of the permuted run has the episode of this number.
 ORDER = np.random.default_rng(3).permutation(len(STARTS))
-"""Environment k of the permuted run has the episode of this number."""
 
 PERMUTED = replace(ASKEW, starts=STARTS[ORDER], beliefs=ASKEW.beliefs[ORDER])
 
+# Batches of the lecture; `again` repeats `exact`, `permuted` has the episodes of `askew`.
 BATCHES = {"exact": EXACT, "again": EXACT, "askew": ASKEW, "permuted": PERMUTED}
-"""Batches of the lecture; `again` repeats `exact`, `permuted` has the episodes of `askew`."""
 
+# Batches that have metrics.
 COUNTED = ("exact", "askew")
-"""Batches that have metrics."""
 
+# Episodes of `ASKEW` that the replay shows, and their environments.
 SHOWN = {"placed": 105, "slipped": 199, "tipped": 224, "pushed": 246}
-"""Episodes of `ASKEW` that the replay shows, and their environments."""
 
+# Places of their robots in one view [m].
 PLACES = ((0.0, -0.5), (0.0, 0.5), (-1.4, -0.5), (-1.4, 0.5))
-"""Places of their robots in one view [m]."""
 
+# How many rungs each of them reaches; not fitted to a run.
 REACH = {"placed": 7, "slipped": 3, "tipped": 2, "pushed": 1}
-"""How many rungs each of them reaches; not fitted to a run."""
 
 
 def one(row: int, of: PickCase = ASKEW) -> SceneCase:
@@ -103,44 +103,44 @@ def one(row: int, of: PickCase = ASKEW) -> SceneCase:
 
 EPISODES = {name: one(row) for name, row in SHOWN.items()}
 
+# Batches of the lab.
 LAB = {"exact": EXACT, "again": EXACT}
-"""Batches of the lab."""
 
+# The episode of `EXACT` that the lab has at all its outer steps.
 LAB_EPISODE = {"one": one(0, EXACT)}
-"""The episode of `EXACT` that the lab has at all its outer steps."""
 
+# Films of the lab; they show the first environments of `EXACT` in their order.
 FILMS = ("film_0", "film_1", "film_2")
-"""Films of the lab; they show the first environments of `EXACT` in their order."""
 
+# By episode, its batch and its environment there.
 ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact", 0)}
-"""By episode, its batch and its environment there."""
 
+# The batches of lecture and lab that have metrics.
 CASES = {name: BATCHES[name] for name in COUNTED}
-"""The batches of lecture and lab that have metrics."""
 
+# The camera; it shows one environment.
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
-"""The camera; it shows one environment."""
 
+# Words of a reader for runs.
 LABELS = {"exact": "place known", "one": "one episode", "askew": "camera turned by 4°"} | {
     "placed": "in the bowl", "slipped": "grip lost on the way", "tipped": "lost in the lift",
     "pushed": "never held", "grid": "grid of errors", "plain": "plain",
     "corrected": "sag corrected", "timed": "descent by a clock", "boxes": "yaw ignored",
     "paced": "three speeds",
 } | creep.LABELS  # fmt: skip
-"""Words of a reader for runs."""
 
+# The mark of each case in the palette.
 CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=True))
-"""The mark of each case in the palette."""
 
+# By unit, the difference below which two values are equal.
 RESOLUTION = {"1": 0.5, "m": 1e-4, "N": 0.05} | creep.RESOLUTION
-"""By unit, the difference below which two values are equal."""
 
 TOLERANCES = check_spec.TOLERANCES | creep.TOLERANCES | {"off_centre": (0.02, 0.0)}
 TOLERANCES |= dict.fromkeys(("askew", "grid", "plain", "corrected", "timed", "boxes"), (20.0, 0.0))
 """Contacts make rounding grow: another version of the engine had three more successes of 256."""
 
+# No metric of two cases is compared.
 RELATIONS: tuple[Any, ...] = ()
-"""No metric of two cases is compared."""
 
 
 def parameters() -> dict[str, Any]:

@@ -17,6 +17,7 @@ from robo_genesis.sim.throughput import KEPT
 
 MEASURES = False
 
+# By head of a table and by row, what is counted: a batch and a metric.
 COUNTED = {
     "success means": {
         "all phases done": ("askew", "finished"),
@@ -32,7 +33,6 @@ COUNTED = {
         "hanging in the hand": ("boxes", "hanging"),
     },
 }
-"""By head of a table and by row, what is counted: a batch and a metric."""
 
 
 def rate(successes: float, of: int) -> dict[str, str]:

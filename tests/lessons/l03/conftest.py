@@ -13,8 +13,8 @@ from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, theory
 from robo_genesis.sim.bodies.contacts import SETTINGS
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
+# Of all pages; those of the lab are the longer ones.
 CASES = {n: case for page in LESSON.pages.values() for n, case in page.cases.items()} | spec.CASES
-"""Of all pages; those of the lab are the longer ones."""
 
 CLEAN = study_spec.ELLIPTIC | study_spec.FINER_SLIDES
 READINGS = {

@@ -15,8 +15,8 @@ from robo_genesis.lessons.l08.pages import LAB, LECTURE
 from robo_genesis.sim.arm import kinematics, picking
 from robo_genesis.sim.arm.kinematics import hand_pose
 
+# Outer steps of the phases; then the episode is done.
 LENGTHS = (90, 45, 10, 60, 100, 45, 20, 60)
-"""Outer steps of the phases; then the episode is done."""
 
 SLIDE = 1.6e-3  # Speed of the object in the fingers [m/s]
 

@@ -26,12 +26,12 @@ def joint(name):
     )  # fmt: skip
 
 
+# A robot whose limits are ± (10 + local DOF).
 ROBOT = SimpleNamespace(
     joints=[joint(name) for name in JOINTS],
     get_joint=joint,
     get_dofs_limit=lambda dofs: (-np.add(dofs, 10.0), np.add(dofs, 10.0)),
 )
-"""A robot whose limits are ± (10 + local DOF)."""
 
 
 def test_the_map_follows_the_names_and_not_the_model():

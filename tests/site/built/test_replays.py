@@ -23,8 +23,8 @@ LECTURE = "lessons/l04-joint-control/lecture"
 REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
 FIRST_SCREEN = (LECTURE, "lessons/l01-ready/lecture")  # Pages that begin with their replay
 
+# The links that joint4 turns.
 BELOW = ("link4", "link5", "link6", "link7", "hand", "left_finger", "right_finger")
-"""The links that joint4 turns."""
 
 PLAYING = [name for name in PAGES if "{replay}" in (BOOK / f"{name}.md").read_text()]
 

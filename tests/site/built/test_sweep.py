@@ -16,8 +16,8 @@ from watching import SERVED_ONLY, page_names
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 
+# Its results come one after the other, so they move the page and weigh what all pages weigh.
 FOUND = "search.html?q=joint"
-"""Its results come one after the other, so they move the page and weigh what all pages weigh."""
 
 
 def of(kind: Kind, name: str) -> Kind:

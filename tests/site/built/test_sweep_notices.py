@@ -22,6 +22,7 @@ def on_load(code: str) -> str:
     return f"<script>addEventListener('load', () => {code})</script>"
 
 
+# Rule, what it complains of, and the markup that breaks it, at the end of the head or article.
 SPOILS = [
     ("axe", "image-alt", f"<details><summary>fold</summary><img src='{PIXEL}'></details>"),
     ("axe", "color-contrast", "<p style='color: #aaa; background: #fff'>pale</p>"),
@@ -53,7 +54,6 @@ SPOILS = [
     # The last, because it ends the article.
     ("axe", "region", "</article></main><p>outside of all landmarks</p>"),
 ]
-"""Rule, what it complains of, and the markup that breaks it, at the end of the head or article."""
 
 
 class SpoilingHandler(CompressingHandler):

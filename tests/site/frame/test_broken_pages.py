@@ -12,6 +12,7 @@ from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.course import course_map
 from robo_genesis.site.text import glossary
 
+# What stands alone on the page, and what is said of its line.
 TEXT = {
     r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
     "{py:func}`module`": "reference target not found: module",
@@ -21,7 +22,6 @@ TEXT = {
     "```{cell-times}\n```": "timed has no cell with code",
     "```{replay} l02/lecture\n:blind:\n```": "`:blind:` needs a question above it",
 }
-"""What stands alone on the page, and what is said of its line."""
 
 IMPORTS = """\
 from IPython.display import Markdown
