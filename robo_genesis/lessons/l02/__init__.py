@@ -7,6 +7,8 @@ __getattr__ = on_demand(
     LESSON="pages",
     read_model="robo_genesis.sim.bodies.rigid_bodies",
     run_drop="robo_genesis.sim.bodies.rigid_bodies",
+    refused="robo_genesis.core.exercises",
+    require_frame="robo_genesis.sim.camera.frames",
     floor="robo_genesis.sim.visual_shape",
     read_shape="robo_genesis.sim.visual_shape",
 )

@@ -11,15 +11,15 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.spec import AFTER, BEFORE
 
+# Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused it.
 GROUP = "life_cycle"
-"""Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused it."""
 
 REFUSAL = "GenesisException"  # The exception with which the engine refuses a call
 
 RENDER = "camera.render"  # The call that needs a camera
 
+# By call and side: the engine's refusal, None if it accepted the call.
 Attempts = Mapping[tuple[str, str], str | None]
-"""By call and side: the engine's refusal, None if it accepted the call."""
 
 
 def refusal(call: Callable[[], Any]) -> str | None:

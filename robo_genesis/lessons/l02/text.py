@@ -8,9 +8,10 @@ from robo_genesis.sim.bodies.free_fall import continuous_drop, summed_drop
 
 MEASURES = False
 
+# Lengths below the first are written in mm, below the second in µm [m].
 TENTH, MILLIMETRE = 0.1, 1e-3
-"""Lengths below the first are written in mm, below the second in µm [m]."""
 
+# What the lab says if a check passed, with the metrics of the baseline.
 SENTENCES = {
     "falls": "The box fell {drop} in {duration}, and was faster after every step.",
     "clear_of_ground": "The box did not reach the ground. L03 is about landing.",
@@ -20,7 +21,6 @@ SENTENCES = {
     "acceleration the velocity has no error.",
     "straight_down": "The box did not move sideways and did not turn.",
 }
-"""What the lab says if a check passed, with the metrics of the baseline."""
 
 ADVICE = "Look first at the times of the samples, the first state, gravity, and contacts."
 

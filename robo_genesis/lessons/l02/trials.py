@@ -9,11 +9,11 @@ from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.common_checks import usable_frame
 
+# Groups of a bundle's metrics: counts of geometry, heights of balls, distances fallen.
 SHAPES, TRAYS, FURTHER = "shapes", "trays", "further"
-"""Groups of a bundle's metrics: counts of geometry, heights of balls, distances fallen."""
 
+# The two trays: several convex pieces, and one convex hull.
 PIECES, HULL = "pieces", "hull"
-"""The two trays: several convex pieces, and one convex hull."""
 
 FALLS = ("higher", "thrown", "heavier", "moon")
 

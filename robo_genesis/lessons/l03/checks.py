@@ -143,5 +143,5 @@ CHECKS = (
     energy_converges, laws_of_motion, posture,
 )  # fmt: skip
 
+# The checks that the runs of every page must pass.
 OF_ALL_PAGES = (structure, mass, settings, stamps, laws_of_motion)
-"""The checks that the runs of every page must pass."""

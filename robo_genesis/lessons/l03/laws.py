@@ -11,8 +11,8 @@ from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MEASURES = False
 
+# Tolerances of the next state of a run in MuJoCo: ten times what float32 leaves in these runs.
 NEXT = {"link_pos": 6e-7, "link_quat": 6e-6, "link_vel": 2e-5, "link_ang": 6e-4}
-"""Tolerances of the next state of a run in MuJoCo: ten times what float32 leaves in these runs."""
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:

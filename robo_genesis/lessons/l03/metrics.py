@@ -15,11 +15,11 @@ from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 
 CLEAR = 1e-4  # Clearance from which a body without contact points counts as separated [m]
 
+# Half width of the band around the resting height in which a body has settled [m].
 RESTING_BAND = 5e-4
-"""Half width of the band around the resting height in which a body has settled [m]."""
 
+# A body has stopped at the first sample from which it is slower [m/s] for this time [s].
 STOP_SPEED, STOP_HOLD = 0.01, 0.10
-"""A body has stopped at the first sample from which it is slower [m/s] for this time [s]."""
 
 BOUNCES_COUNTED = 4  # Number of bounces after which the remaining energy is measured
 

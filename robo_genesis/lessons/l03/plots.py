@@ -13,8 +13,8 @@ from robo_genesis.sim.bodies.contacts import TOP
 
 MEASURES = False
 
+# By run, the style of its line and the line's label in the legend.
 Styles = dict[str, dict[str, Any]]
-"""By run, the style of its line and the line's label in the legend."""
 
 
 def styles(**marks: str) -> Styles:
@@ -34,10 +34,10 @@ BOUNCES = styles(bounce_sub1="second", bounce_sub2="other", bounce_sub100="third
 WINDOW = (0.18, 0.44)  # Around the landing of the lab [s]
 STEP_LABEL = "solver step h [ms]"
 
+# Marks of the palette by scene; the landing from the baseline's height is drawn.
 STEP_MARKS = {
     "h_20000us": "second", "h_10000us": "third", "h_5000us": "baseline", "h_125us": "first",
 }  # fmt: skip
-"""Marks of the palette by scene; the landing from the baseline's height is drawn."""
 
 
 def legend_below(figure: Figure) -> None:

@@ -54,9 +54,10 @@ DROPPED_BALL = ContactCase(
 BOUNCES = {f"bounce_sub{n}": replace(DROPPED_BALL, substeps=n) for n in (1, 2, 4, 10, 20, 100)}
 """One ball on a nearly undamped contact, named by its number of substeps."""
 
+# The runs of the lab.
 CASES = LANDINGS | SLIDES | BOUNCES
-"""The runs of the lab."""
 
+# Words of a reader for runs: the steps of a landing, the frictions of a slide, the solver step.
 LABELS = {
     "baseline": "two steps of 5 ms",
     "dt10_sub1": "one step of 10 ms",
@@ -69,11 +70,11 @@ LABELS = {
     },
     **{name: f"h = {1000 * case.h:g} ms" for name, case in BOUNCES.items()},
 }
-"""Words of a reader for runs: the steps of a landing, the frictions of a slide, the solver step."""
 
+# A pair with equal solver steps and different outer steps.
 EQUAL_STEP = ("dt10_sub1", "dt20_sub2")
-"""A pair with equal solver steps and different outer steps."""
 
+# The only settings in which compared cases may differ.
 ONE_FACTOR = {
     ("dt10_sub1", "baseline"): {"substeps"},
     ("dt20_sub1", "dt20_sub2"): {"substeps"},
@@ -83,10 +84,9 @@ ONE_FACTOR = {
     ("high_on_050", "high_on_030"): {"surface_friction"},
     **{(name, "bounce_sub100"): {"substeps"} for name in BOUNCES if name != "bounce_sub100"},
 }
-"""The only settings in which compared cases may differ."""
 
+# `entities` counts those of the scene with the surface, the others belong to the cube.
 EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
-"""`entities` counts those of the scene with the surface, the others belong to the cube."""
 
 # Tolerances that only judge
 
@@ -103,13 +103,13 @@ LEVEL_SHARE = 1e-4
 FINE_SHARE = 0.3  # Of the share kept at the first bounce with the finest step, against a spring [%]
 COARSE_SHARE = 1.5  # With some coarser step, that share differs from a spring's by more [%]
 
+# The lesson's camera, close enough to show the cube large and its whole path.
 VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.87), "fov": 16}
-"""The lesson's camera, close enough to show the cube large and its whole path."""
 
+# By unit, the difference below which two values count as equal.
 RESOLUTION = {
     "m": 1e-5, "m/s": 1e-3, "rad/s": 0.05, "s": 0.005, "kg": 1e-6, "1": 0.5, "J": 1e-6, "%": 0.1,
 }  # fmt: skip
-"""By unit, the difference below which two values count as equal."""
 
 # By unit, metric or array, (atol, rtol) of one value between engines, backends or processors.
 #
@@ -126,11 +126,11 @@ TOLERANCES = {
     "link_quat_wxyz": (0.014, 0.0), "penetration_m": (0.003, 0.0), "contacts": (math.inf, 0.0),
 }  # fmt: skip
 
+# Claimed orderings: ((first, second), metric, order of the second to the first, margin).
 RELATIONS = (
     (("low_on_050", "high_on_050"), "stop_distance", "lower", 0.05),
     (("low_on_050", "low_on_030"), "stop_distance", "higher", 0.05),
 )
-"""Claimed orderings: ((first, second), metric, order of the second to the first, margin)."""
 
 
 def parameters() -> dict[str, Any]:

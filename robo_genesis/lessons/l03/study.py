@@ -9,14 +9,14 @@ from robo_genesis.lessons.l03 import study_spec, theory
 from robo_genesis.lessons.l03.metrics import LandingMetrics, aligned
 from robo_genesis.sim.bodies.contacts import ContactCase
 
+# Group of a bundle's metrics: the engine's time constant of a contact by scene [s].
 GROUP = "time_constant"
-"""Group of a bundle's metrics: the engine's time constant of a contact by scene [s]."""
 
+# Scenes with the landings from all heights side by side.
 ROWS = study_spec.STEP_CASES | study_spec.STIFF_CASES | study_spec.RELEASE_CASES
-"""Scenes with the landings from all heights side by side."""
 
+# By cube, its push at the coarsest step.
 LANES = {"low": "low_on_050", "high": "high_on_050"}
-"""By cube, its push at the coarsest step."""
 
 
 def row(run: Experiment, *scenes: str) -> list[tuple[str, ContactCase, LandingMetrics]]:

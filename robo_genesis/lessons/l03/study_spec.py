@@ -9,17 +9,17 @@ from robo_genesis.sim.bodies.contacts import ContactCase
 
 MEASURES = False
 
+# The landings of the lecture's first replay; the cubes have settled at its end.
 DROPPED = {name: replace(LANDINGS[name], duration=0.5) for name in ("baseline", "dt10_sub1")}
-"""The landings of the lecture's first replay; the cubes have settled at its end."""
 
+# The camera frames of both at their deepest sample, with words for the solver step.
 DEEPEST = {"deepest_10ms": "h = 10 ms", "deepest_5ms": "h = 5 ms"}
-"""The camera frames of both at their deepest sample, with words for the solver step."""
 
+# The camera's pose for them: at the height of the surface, on the side of the light.
 CLOSE = {"pos": (0.0, 0.75, 0.742), "lookat": (0.0, 0.0, 0.745), "up": (0.0, 0.0, 1.0)}
-"""The camera's pose for them: at the height of the surface, on the side of the light."""
 
+# The slides of the lecture's second replay, with the engine's default friction model.
 HOPPED = {name: SLIDES[name] for name in ("low_on_050", "high_on_050")}
-"""The slides of the lecture's second replay, with the engine's default friction model."""
 
 
 def by_step(kind: str, *steps: tuple[float, int]) -> dict[str, dict[str, Any]]:
@@ -29,8 +29,8 @@ def by_step(kind: str, *steps: tuple[float, int]) -> dict[str, dict[str, Any]]:
 
 # Landings by solver step and by time constant
 
+# Initial heights [m]: with them the cubes meet the surface at many phases of a step.
 HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
-"""Initial heights [m]: with them the cubes meet the surface at many phases of a step."""
 
 
 def side_by_side(
@@ -55,6 +55,8 @@ STIFF = "T_2ms"
 STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.0005, substeps=5)}
 """The landings with a time constant of 2 ms, with a twentieth of it as solver step."""
 
+# The landings by time constant, each with a fortieth of it as solver step. All cubes are at the top
+# of their rebound before the end.
 RELEASE_CASES = {
     name: side_by_side(name, HEIGHTS_STUDIED[::4], 0.275, time_constant=seconds, dt=dt, substeps=n)
     for name, seconds, dt, n in (
@@ -63,24 +65,22 @@ RELEASE_CASES = {
         ("release_2ms", 0.002, 0.0005, 10),
     )
 }
-"""The landings by time constant, each with a fortieth of it as solver step. All cubes are at the
-top of their rebound before the end."""
 
 # Slides with the elliptic cone
 
+# The lab's slides with the engine's other friction model.
 ELLIPTIC = {f"{name}_elliptic": replace(case, cone="elliptic") for name, case in SLIDES.items()}
-"""The lab's slides with the engine's other friction model."""
 
 FINER_SLIDES = {
     f"{name}_sub10": replace(ELLIPTIC[name], substeps=10)
     for name in ("low_on_050_elliptic", "high_on_050_elliptic")
 }
 
+# The elliptic cone alone; all other settings are the defaults of the pyramid.
 CONVEX_SLIDES = {
     f"{name}_convex": replace(SLIDES[name], cone="elliptic", resolution="convex", impratio=1.0)
     for name in HOPPED
 }
-"""The elliptic cone alone; all other settings are the defaults of the pyramid."""
 
 # Pushes with the default cone
 
@@ -104,6 +104,7 @@ STOP_CASES = pushes(
 )  # fmt: skip
 """Those that are recorded until they stop; `HOPPED` continues them at 5 ms."""
 
+# The cube with the low coefficient, pushed at each speed [m/s] with a solver step of 5 ms.
 HOP_SPEED_CASES = {
     f"hop_{round(1000 * speed)}mm_s": replace(
         PUSHED, start=(-0.6, round(0.16 * k - 0.32, 2), 0.765), speed=speed, dt=0.005, substeps=1,
@@ -111,7 +112,6 @@ HOP_SPEED_CASES = {
     )
     for k, speed in enumerate((0.1, 0.2, 0.5, 1.0, 2.0))
 }  # fmt: skip
-"""The cube with the low coefficient, pushed at each speed [m/s] with a solver step of 5 ms."""
 
 HALF_THE_STEP = "stop_2500us_high"  # The push at half the solver step of `HOPPED`
 
@@ -128,6 +128,7 @@ OWN_DEFAULTS = "mujoco_own_baseline"  # The baseline in MuJoCo with MuJoCo's def
 IN_MUJOCO = {ENGINE_PAIRS[name]: case for name, case in BY_BOTH.items()} | {OWN_DEFAULTS: BASELINE}
 
 
+# The runs in Genesis of each page, by scene or by the studies that belong together.
 SCENES = {
     "lecture": {"dropped": DROPPED, **STEP_CASES, **STIFF_CASES, "elliptic": ELLIPTIC,
                 "hopped": HOPPED, **HOP_STEP_CASES, "hop_speeds": HOP_SPEED_CASES},
@@ -135,19 +136,18 @@ SCENES = {
     "energy": {"bounces": BOUNCES, **RELEASE_CASES},
     "mistakes": {"landings": LANDINGS, "hopped": HOPPED},
 }  # fmt: skip
-"""The runs in Genesis of each page, by scene or by the studies that belong together."""
 
+# The same without scenes.
 CASES_OF = {
     page: {name: case for cases in scenes.values() for name, case in cases.items()}
     for page, scenes in SCENES.items()
 }
-"""The same without scenes."""
 
 # Limits, and tolerances of what comments name, that only judge; a share is relative
 
+# Of a depth against v T / e, by scene with fine steps: at depths of a millimetre, with a time
+# constant of 2 ms, the contact is softer.
 DEPTH_SHARES = {"h_125us": 0.1, STIFF: 0.2}
-"""Of a depth against v T / e, by scene with fine steps: at depths of a millimetre, with a time
-constant of 2 ms, the contact is softer."""
 
 FIRST_DEPTH = 2e-5  # Of a depth against that of the first sample in the table [m]
 SCATTER_COARSE = 0.5  # Least scatter of depth / (v T / e) over the heights at h = T / 2

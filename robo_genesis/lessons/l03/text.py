@@ -10,6 +10,7 @@ MEASURES = False
 
 SHORT = {"m": 0.1, "J": 1.0}  # By unit, smaller values are written in its thousandth
 
+# By title, what the lab says if a check passed, with the metrics of its runs.
 SENTENCES = {
     "The landings": {
         "lands": "Each cube touches the table. Its depth is {baseline.penetration} with two steps "
@@ -55,7 +56,6 @@ SENTENCES = {
         "by {bounce_sub100.flight_drift}.",
     },
 }
-"""By title, what the lab says if a check passed, with the metrics of its runs."""
 
 ADVICE = (
     "Look first at the settings of the cases, the times of the samples, and contacts with the body."

@@ -12,13 +12,13 @@ import numpy as np
 from robo_genesis.sim.bodies.contacts import ContactCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
+# The rules by which engines combine the coefficients of two surfaces, by their names in a text.
 RULES: Mapping[str, Callable[[float, float], float]] = {
     "the larger": max,
     "the smaller": min,
     "the mean": lambda a, b: (a + b) / 2,
     "the geometric mean": lambda a, b: float(np.sqrt(a * b)),
 }
-"""The rules by which engines combine the coefficients of two surfaces, by their names in a text."""
 
 
 def pair_friction(case: ContactCase) -> float:
