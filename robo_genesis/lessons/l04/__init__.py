@@ -14,6 +14,7 @@ __getattr__ = on_demand(
     assign_path="robo_genesis.sim.arm.joint_control",
     describe="robo_genesis.sim.arm.joints",
     differences="robo_genesis.sim.arm.joint_control",
+    refused="robo_genesis.core.exercises",
     reset="robo_genesis.sim.arm.joint_control",
     run_case="robo_genesis.sim.arm.joint_control",
     validate="robo_genesis.sim.arm.joint_control",
