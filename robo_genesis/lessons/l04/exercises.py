@@ -25,12 +25,12 @@ MEASURES = False
 
 TINY = 1e-6  # Largest difference of a returned time or angle that rounding explains
 
+# Arguments of `stepped` in the order of its signature.
 INVENTED = {
     "not_clipped": (1.1, 3500.0, 100.0, 1.0, np.inf, 0.0, 0.005, 0.005, 80),
     "clipped_with_gravity": (1.1, 7000.0, 100.0, 1.0, 87.0, 22.0, 0.25, 0.005, 80),
     "much_passive_damping": (0.4, 900.0, 10.0, 30.0, 12.0, -3.0, -0.2, 0.002, 80),
 }
-"""Arguments of `stepped` in the order of its signature."""
 
 RESPONSE = ("rise_time", "overshoot", "settling_time")
 

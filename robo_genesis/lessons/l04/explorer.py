@@ -19,25 +19,25 @@ from robo_genesis.lessons.l04.tables import NOUNS, UNITS, margin_text, share_tex
 
 MEASURES = False
 
+# Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays.
 PACKED = {"q": 1e-4, "force": 1e-2}
-"""Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays."""
 
 UNTIL = 0.6  # End of the time axis of the curves [s]; after it, no run of the grid moves visibly
 
+# The metrics shown for a run. The initial error is left out: it equals the step.
 LABELS = {n: label for n, label in StepMetrics.about("label").items() if n != "initial_error"}
-"""The metrics shown for a run. The initial error is left out: it equals the step."""
 
+# Not in the table, because it is the number of saturated samples times the time step.
 REPEATED = "saturation_duration"
-"""Not in the table, because it is the number of saturated samples times the time step."""
 
+# Factor, digits and unit of the number in a cell of the map, by metric. These metrics have a
+# declared margin, so a reader can be asked for the order of two runs.
 CELLS = {
     "saturation_samples": (1, 0, "samples"),
     "rise_time": (1000, 0, "ms"),
     "overshoot": (1000, 1, "mrad"),
     "peak_speed": (1, 2, "rad/s"),
 }
-"""Factor, digits and unit of the number in a cell of the map, by metric. These metrics have a
-declared margin, so a reader can be asked for the order of two runs."""
 
 NAMES = {point: name for name, point in CASE_POINTS.items()}
 

@@ -16,9 +16,9 @@ RISE_FRACTION = 0.9  # Share of the step that counts as risen
 
 SETTLING_BAND = 0.01  # Half width of the settling band around the target [rad or m]
 
+# Share of the read-back limit from which a sample is called saturated. It detects saturation; the
+# engine clips at the full limit.
 SATURATION_THRESHOLD = 0.99
-"""Share of the read-back limit from which a sample is called saturated. It detects saturation; the
-engine clips at the full limit."""
 
 
 def is_saturated(control_force: FloatArray | float, limit: FloatArray | float) -> np.ndarray:

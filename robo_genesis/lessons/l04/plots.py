@@ -25,22 +25,22 @@ START = 0.4  # End of the time axis where the compared cases differ [s]
 BEFORE_REST = 0.6  # End of the time axis of the baseline [s]
 DOTS = {"marker": ".", "markersize": 5}
 
+# The array of a trace that each panel of a response shows, and the label of its axis.
 PANELS = {
     "position": ("q", "q [rad]"),
     "velocity": ("qd", "q̇ [rad/s]"),
     "control force": ("control_force", "control force [N·m]"),
 }
-"""The array of a trace that each panel of a response shows, and the label of its axis."""
 
+# The one dashed line of a figure: theory. Measured data have solid lines.
 IDEAL = look("target", linestyle=(0, (4, 2)), linewidth=1.6)
-"""The one dashed line of a figure: theory. Measured data have solid lines."""
 
+# All curves are G2's. Marker shapes distinguish the engines as well as colours.
 ENGINE_STYLES = {
     "Genesis": look(CASE_MARKS["G2"], marker="o"),
     "MuJoCo implicitfast": look("other", marker="s"),
     "MuJoCo Euler": look("further", marker="^"),
 }
-"""All curves are G2's. Marker shapes distinguish the engines as well as colours."""
 
 
 def posture(run: Experiment) -> Figure:

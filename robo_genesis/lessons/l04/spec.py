@@ -30,8 +30,8 @@ STEPS = round(WINDOW / DT)
 
 EXPECTED_MODEL, EXPECTED_TYPES = franka.MODEL_COUNTS, franka.JOINT_TYPES
 
+# By unit: values that differ by no more than this are called equal, the noise floor.
 RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
-"""By unit: values that differ by no more than this are called equal, the noise floor."""
 
 
 def changed(case: ControlCase, **entries: float) -> ControlCase:
@@ -55,16 +55,18 @@ CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
 CASE_MARKS = {"baseline": "baseline", "G1": "first", "G2": "second", "G3": "third"}
 """The mark of each case in the palette."""
 
+# The only entry that may differ between two compared cases.
 ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}
-"""The only entry that may differ between two compared cases."""
 
+# An order counts as shown when the difference exceeds this margin. The margins are above
+# `RESOLUTION`, because a time or a count may fall one sample to either side.
 MARGINS = {
     "rise_time": 1.5 * DT, "settling_time": 1.5 * DT, "peak_speed": 0.05, "overshoot": 1e-3,
     "saturation_samples": 1.5,
 }  # fmt: skip
-"""An order counts as shown when the difference exceeds this margin. The margins are above
-`RESOLUTION`, because a time or a count may fall one sample to either side."""
 
+# The lesson's predictions: how the second case of a pair compares with the first. They are not
+# fitted to a run, and a refreshed run must still show them.
 RELATIONS = tuple(
     (pair, metric, order, MARGINS[metric])
     for pair, metric, order in (
@@ -77,16 +79,14 @@ RELATIONS = tuple(
         (("G2", "G3"), "rise_time", "later"),
     )
 )
-"""The lesson's predictions: how the second case of a pair compares with the first. They are not
-fitted to a run, and a refreshed run must still show them."""
 
+# By unit, or by metric or array: (atol, rtol) of a value between engine versions or backends. A
+# time on the grid of samples must not move at all; counts are exact.
 TOLERANCES = {
     "rad": (1e-4, 1e-3), "rad/s": (1e-3, 1e-3), "s": (DT / 2, 0.0), "N·m": (1e-2, 1e-3),
     "kg·m²": (1e-4, 1e-3), "N·m·s/rad": (1e-6, 0.0), "initial_error": (1e-6, 0.0),
     "m": (1e-4, 1e-3), "m/s": (1e-3, 1e-3), "N": (1e-2, 1e-3), "link_quat_wxyz": (1e-4, 0.0),
 }  # fmt: skip
-"""By unit, or by metric or array: (atol, rtol) of a value between engine versions
-or backends. A time on the grid of samples must not move at all; counts are exact."""
 
 LIMIT_EXCESS = 1e-3  # Tolerance of a control force above its limit [N·m or N]
 

@@ -20,28 +20,28 @@ from robo_genesis.sim.arm.joint_control import ControlCase, run_case
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
+# Genesis, and MuJoCo by its integrator.
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
-"""Genesis, and MuJoCo by its integrator."""
 
+# The lesson's number of solver steps, and the length of one [s].
 SUBSTEPS, H = spec.G1.substeps, spec.G1.dt / spec.G1.substeps
-"""The lesson's number of solver steps, and the length of one [s]."""
 
+# Velocity gains of the compared cases [N·m·s/rad].
 COMPARED_KV = sorted({float(case.kv[ENTRY]) for case in study_spec.COMPARED.values()})
-"""Velocity gains of the compared cases [N·m·s/rad]."""
 
+# Group of a bundle's metrics: what the engines report of the stepped joint without a run.
 GROUP = "readings"
-"""Group of a bundle's metrics: what the engines report of the stepped joint without a run."""
 
+# What Genesis reports of the start pose, with units. Gravity is the effort that holds it.
 AT_START = {
     "passive_damping": "N·m·s/rad", "inertia_Genesis": "kg·m²", "gravity_at_start_Genesis": "N·m",
 }  # fmt: skip
-"""What Genesis reports of the start pose, with units. Gravity is the effort that holds it."""
 
+# Entry of the mass matrix at the start while a position is commanded with this KV.
 MASSES = {f"mass_KV_{kv:g}": "kg·m²" for kv in COMPARED_KV}
-"""Entry of the mass matrix at the start while a position is commanded with this KV."""
 
+# Effort that holds the end state of a case.
 GRAVITY = {f"gravity_{case}": "N·m" for case in spec.CASES}
-"""Effort that holds the end state of a case."""
 
 
 def measure(trace: Trace, case: ControlCase) -> StepMetrics:

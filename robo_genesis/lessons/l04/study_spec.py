@@ -14,8 +14,8 @@ MEASURES = False
 
 COMPARED = {"G1": G1, "G2": G2, "G3": G3}
 
+# Height of a step whose demand stays below the effort limit with the gains of G1 and G2 [rad].
 SMALL_STEP = 0.005
-"""Height of a step whose demand stays below the effort limit with the gains of G1 and G2 [rad]."""
 
 SMALL_STEPPED = ("G1", "G2")
 STEP_CASES = {
@@ -29,13 +29,13 @@ SUBSTEPS_STUDIED = (1, 2, 4, 10, 20, 50)
 REFINED = (4, 20)
 """Numbers of substeps with which all compared cases run: half the solver step, and a tenth."""
 
+# The solver's step is the one factor. Each number of substeps needs its own scene.
 SUBSTEP_CASES = {
     f"{name}_substeps_{n}": replace(case, substeps=n)
     for n in SUBSTEPS_STUDIED
     for name, case in COMPARED.items()
     if n != SUBSTEPS and (name == "G2" or n in REFINED)
 }
-"""The solver's step is the one factor. Each number of substeps needs its own scene."""
 
 EXAMPLE = "example"
 EXAMPLE_CASES = {EXAMPLE: changed(G1, kv=50.0)}
@@ -78,8 +78,8 @@ SECOND_RUNS = {
 }
 """All compared cases at the lesson's solver step, and G2 at every studied one."""
 
+# Heights of the commanded step in the grid [rad].
 STEP_SIZES = (0.02, 0.05, 0.1, STEP)
-"""Heights of the commanded step in the grid [rad]."""
 
 KP = (3500.0, 4375.0, 5250.0, 6125.0, 7000.0)
 KV = (100.0, 150.0, 200.0, 250.0, 300.0)
@@ -99,14 +99,14 @@ class GridPoint(NamedTuple):
         return f"grid_step_{1000 * self.step:.0f}mrad_KP_{self.kp:.0f}_KV_{self.kv:.0f}"
 
 
+# All points; KV changes fastest, the step slowest.
 POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
-"""All points; KV changes fastest, the step slowest."""
 
+# The runs of the grid: one batch, one environment for each.
 GRID_CASES = {
     point.name: changed(G1, kp=point.kp, kv=point.kv, q_target=START_OF_STEP + point.step)
     for point in POINTS
 }
-"""The runs of the grid: one batch, one environment for each."""
 
 
 def point_of(case: ControlCase) -> GridPoint:
@@ -116,8 +116,8 @@ def point_of(case: ControlCase) -> GridPoint:
     return GridPoint(round(step, 9), *gains)  # without rounding errors of the difference
 
 
+# The points of the lesson's own cases.
 CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}
-"""The points of the lesson's own cases."""
 
 # What only judges
 
@@ -129,19 +129,19 @@ GRAVITY_AGREEMENT = 0.01  # Share within which KP × final error and gravity agr
 SAME_MODEL = 3e-4
 """Share within which the readings of the stepped joint agree with the model in MuJoCo; the largest
 difference is 1.1e-4, of gravity at an end."""
+# Largest difference in overshoot between a model of one joint and a small unsaturated step, as a
+# share of the step.
 SMALL_STEP_TOLERANCE = 0.03
-"""Largest difference in overshoot between a model of one joint and a small unsaturated step, as a
-share of the step."""
 ONE_JOINT_TOLERANCE = 0.015  # The same of the stepped model and a large step [rad]
 CHATTER_SHARE = 0.5  # A run is unstable if a joint's effort is clipped in a larger share of samples
 SPREAD_SHARE = 0.2  # Largest spread of the engines at the finest step, by that at the lesson's step
 
+# Smallest and largest value of each axis: no point is more violent than the compared cases.
 BOUNDS = {"step": (0.0, STEP), "kp": (3500.0, 7000.0), "kv": (100.0, 300.0)}
-"""Smallest and largest value of each axis: no point is more violent than the compared cases."""
 
+# By unit: largest difference between a run in the batch and the same case run alone. Times and
+# counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m.
 AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
-"""By unit: largest difference between a run in the batch and the same case run alone. Times and
-counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m."""
 
 
 def parameters(page: str) -> dict[str, Any]:

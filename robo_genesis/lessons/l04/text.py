@@ -18,16 +18,16 @@ INSPECT = (
     "the length of the window."
 )
 
+# Metrics that the text compares between two cases.
 COMPARED_METRICS = ("rise_time", "peak_speed", "overshoot", "settling_time")
-"""Metrics that the text compares between two cases."""
 
+# By the order of the second rise time, the cost of a change.
 COSTS = {
     None: "The cost in response time is unknown: no rise was observed.",
     "lower": "The change costs no response time: {second} reaches 90 % earlier than {first}.",
     "equal": "No cost in response time is visible: the rise times are within the margin.",
     "higher": "The change costs response time: {second} reaches 90 % after {first}, if at all.",
 }
-"""By the order of the second rise time, the cost of a change."""
 
 LIMITS_OF_ERROR = (
     "A small remaining error would be consistent with a controller without an integral term "
