@@ -9,7 +9,8 @@ DT = 0.01  # Outer time step that one `scene.step()` advances [s]
 
 SUBSTEPS = 2  # Solver steps inside one outer step; one lasts DT / SUBSTEPS
 
-# Seed of every run. It is part of the key of compiled kernels, so all pages use one value.
+# Seed of every run. It is part of the key of compiled kernels, so all pages
+# use one value.
 SEED = 0
 
 CAMERA_RES = (720, 540)  # Width and height of a camera frame [pixel]
