@@ -44,8 +44,9 @@ REPORT_FORMAT = 4
 MARK = "\x1e"  # Begins a report among the other output of the process that runs the steps
 STEPS_PROCESS = "from robo_genesis import doctor; doctor.send_reports()"
 MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
+
+# What a manifest and a report say about a machine.
 FACTS = ("engine", "quadrants", "torch", "python", "system", "backend", "device")
-"""What a manifest and a report say about a machine."""
 
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 

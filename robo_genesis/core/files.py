@@ -22,9 +22,9 @@ NEXT, OLD = ".next", ".old"
 DIGEST = hashlib.sha256().digest_size
 KEPT = 30 * 24 * 3600  # Seconds until an unused file is removed
 
+# Names of what Python and Jupyter make; the same with hidden files and back-ups of editors.
 MADE_BY_TOOLS = ("__pycache__", ".ipynb_checkpoints")
 NO_SOURCE = ("__pycache__", ".*", "*~", "#*#", "*.bak", "*.orig", "*.rej")
-"""Names of what Python and Jupyter make; the same with hidden files and back-ups of editors."""
 
 
 @contextmanager

@@ -32,6 +32,8 @@ RUN_BY_HAND = (
     "A notebook that is run by hand does not name its code cells, so nobody can tell whether they "
     "are the page's. To record them, run: make evidence LESSON={lesson} BACKEND=cpu TO=folder."
 )
+
+# Advice by what changed in a stale bundle.
 BY_CHANGE = {
     "engine": f"Another version of the engine computed. {LOCK}",
     "page": f"Your code cells differ from the page's. {OWN}",
@@ -39,7 +41,6 @@ BY_CHANGE = {
     "parameters": f"Your run has other settings. {OWN}",
     "seed": f"Your run started from another seed. {OWN}",
 }
-"""Advice by what changed in a stale bundle."""
 
 
 def advice(code: str, changes: tuple[str, ...], predicate: Predicate | None) -> list[str]:

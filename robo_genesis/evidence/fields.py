@@ -32,8 +32,9 @@ def _plain(limit: int, other: str = "") -> AfterValidator:
 
 Line = Annotated[str, _plain(200)]  # A name, version or unit
 LongLine = Annotated[str, _plain(2000)]  # A command or a path
+
+# A warning of the engine, which may have several lines.
 Message = Annotated[str, _plain(LINE_LIMIT, BLANK)]
-"""A warning of the engine, which may have several lines."""
 
 
 Found = bool | int | float | LongLine | None  # A value that a check found

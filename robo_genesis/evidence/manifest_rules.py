@@ -32,8 +32,9 @@ STATED = ("backend", "device", "engine version", "seed", "precision")
 CLOCKS = timedelta(days=1)  # Allowed difference between the clocks of two machines
 
 LEVELS = "WARNING|ERROR|CRITICAL"
+
+# A message at WARNING or above, which may have several lines.
 WARNING = re.compile(rf"^(?:{LEVELS}) (.*?)\n?(?=^(?:DEBUG|INFO|{LEVELS}) |\Z)", re.M | re.S)
-"""A message at WARNING or above, which may have several lines."""
 
 # The fact that the engine draws in software, and the line that states it for `llvmpipe`.
 SOFTWARE, SOFTWARE_LINE = "software rendering", "Software rendering context detected"

@@ -13,8 +13,9 @@ import numpy as np
 from robo_genesis.sim.camera.frames import require_frame
 
 KEY = b"run_id\0"
+
+# The filter of every row: each pixel is stored as its difference from the one on its left.
 LEFT = 1
-"""The filter of every row: each pixel is stored as its difference from the one on its left."""
 
 TEXT_PLACE = 33  # Where the chunk of text begins, after the signature and the header
 

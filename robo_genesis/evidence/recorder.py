@@ -29,8 +29,9 @@ from robo_genesis.sim.camera.frames import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
+
+# The pathspec of git for all files of a checkout that are not in a recorded bundle.
 NOT_RECORDED = f":(exclude,glob){project.BOOK.name}/evidence/*/*/**"
-"""The pathspec of git for all files of a checkout that are not in a recorded bundle."""
 
 
 class RecordError(ValueError):

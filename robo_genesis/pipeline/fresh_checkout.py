@@ -35,8 +35,9 @@ OUTER = (
 )  # fmt: skip
 
 SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "ROBO_GENESIS_BACKEND")
+
+# What npm needs to fetch the locked packages; it compares them with the lock.
 NETWORK = ("HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY", "NODE_EXTRA_CA_CERTS")
-"""What npm needs to fetch the locked packages; it compares them with the lock."""
 
 # The whole configuration of the git that makes the checkout. A container's user may differ from the
 # owner of the checkout, which git would refuse.

@@ -20,11 +20,12 @@ from robo_genesis.core.project import PUBLISHED, ProjectError
 RECORD = "build.json"
 
 FOLDERS = ("robo_genesis", "build_scripts")
+
+# What a build reads of the checkout apart from the book.
 FILES = (
     "pyproject.toml", "requirements.lock", "package.json", "package-lock.json", ".npmrc",
     "README.md", "LICENSE",
 )  # fmt: skip
-"""What a build reads of the checkout apart from the book."""
 
 # What a build reads of the environment apart from what decides the pages' measurements.
 VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC_TIME", "TZ")

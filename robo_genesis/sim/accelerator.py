@@ -23,8 +23,9 @@ from robo_genesis.sim.diagnosis import DoubtError, StepError, StepResult, run_st
 PROBE_SECONDS = 180  # Until Torch must have answered
 
 VISIBILITY = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
+
+# Where the engine's compiler looks for `llvm/bin/ld.lld` after ROCM_PATH and before PATH.
 ROCM_FOLDERS = ("opt/rocm", "opt/rocm-7.0.0", "opt/rocm-6.0.0")
-"""Where the engine's compiler looks for `llvm/bin/ld.lld` after ROCM_PATH and before PATH."""
 
 
 @dataclass(slots=True)

@@ -24,9 +24,10 @@ BUILDS = {"cpu": (False, False), "rocm": (True, False), "cu": (False, True)}
 TAG = re.compile(r"\+(cpu|rocm|cu(?=\d))(\d*)\.?(\d*)")
 
 PROCESSOR = r"intel|xeon|epyc|threadripper|opteron|processor|\bcpu\b|apple|pipe\b|swrast"
+
+# Words that the name of an accelerator's device never has: of processors and of software that
+# draws, and by backend those of other makers.
 FOREIGN = {"amdgpu": "nvidia|geforce|tesla|quadro", "cuda": r"\bamd\b|radeon|instinct"}
-"""Words that the name of an accelerator's device never has: of processors and of software that
-draws, and by backend those of other makers."""
 
 
 def contradictions(backend: Any) -> Iterator[tuple[str, object, object]]:

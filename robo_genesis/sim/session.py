@@ -27,8 +27,9 @@ CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
 LIBRARIES = ("libGL.so.1", "libEGL.so.1")  # What the engine needs even without a camera
 
 PRECISION = "32"
+
+# Of each `gs.init` of the course, beside backend and log.
 ARGUMENTS = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}
-"""Of each `gs.init` of the course, beside backend and log."""
 
 PLATFORM_DEVICE = 0x313F  # Of EGL: without a window system
 

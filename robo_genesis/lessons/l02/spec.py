@@ -16,14 +16,16 @@ MEASURES = False
 MINIMUM_HARDWARE = "cpu"
 
 BASELINE = Drop(size=0.10, density=500.0, height=0.5, steps=20)
+
+# The run of the lab.
 CASES = {"baseline": BASELINE}
-"""The run of the lab."""
 
 SUBSTEPS_STUDIED = (1, 2, 4, 10, 20)
+
+# These cases differ from the baseline in the solver step alone; each needs its own scene.
 SUBSTEP_CASES = {
     f"substeps_{n}": replace(BASELINE, substeps=n) for n in SUBSTEPS_STUDIED if n != SUBSTEPS
 }
-"""These cases differ from the baseline in the solver step alone; each needs its own scene."""
 
 # Words of a reader for runs: number and length of the solver steps in an outer step.
 LABELS = {

@@ -25,10 +25,10 @@ BOUNCES_COUNTED = 4  # Number of bounces after which the remaining energy is mea
 
 SHORTEST = 3  # Smallest number of consecutive states in the air that count as a flight
 
+# Arrays of a bundle that several metrics are computed from.
 POSE = ("link_pos_m", "link_quat_wxyz")
 FLIGHT = ("contacts", *POSE, "t_s")
 ENERGY = ("link_pos_m", "link_vel_m_s", "link_ang_rad_s")
-"""Arrays of a bundle that several metrics are computed from."""
 
 
 @dataclass(frozen=True, slots=True)

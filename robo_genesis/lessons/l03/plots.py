@@ -22,12 +22,12 @@ def styles(**marks: str) -> Styles:
     return {name: look(mark, label=spec.LABELS[name]) for name, mark in marks.items()}
 
 
+# Markers of the samples: two landings coincide, and one stays visible through the other's.
 LANDINGS = styles(baseline="baseline", dt10_sub1="first", dt20_sub2="third", dt20_sub1="second")
 SAMPLES: Styles = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
     "dt20_sub2": {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8},
     "dt20_sub1": {"marker": "^", "markersize": 3},
 }
-"""Markers of the samples: two landings coincide, and one stays visible through the other's."""
 
 SLIDES = styles(low_on_050="first", high_on_050="second", low_on_030="third", high_on_030="other")
 BOUNCES = styles(bounce_sub1="second", bounce_sub2="other", bounce_sub100="third")

@@ -21,13 +21,14 @@ MINIMUM_HARDWARE = "cpu"
 LINK = "body"  # The record's name of the only link; the engine's name depends on the shape
 
 BASELINE = ContactCase(start=(0.0, 0.0, 1.0), duration=1.5)
+
+# One dropped cube, named by dt in milliseconds and substeps; the baseline has 10 and 2.
 LANDINGS = {
     "baseline": BASELINE,
     "dt10_sub1": replace(BASELINE, substeps=1),
     "dt20_sub2": replace(BASELINE, dt=0.02, substeps=2),
     "dt20_sub1": replace(BASELINE, dt=0.02, substeps=1),
 }
-"""One dropped cube, named by dt in milliseconds and substeps; the baseline has 10 and 2."""
 
 PUSHED = ContactCase(
     start=(-0.6, -0.15, TOP + 0.04),
@@ -38,21 +39,23 @@ PUSHED = ContactCase(
     settle=0.30,
 )
 BESIDE = replace(PUSHED, start=(-0.6, 0.15, TOP + 0.04), friction=0.80)
+
+# Two cubes of low and high own friction, side by side on two surfaces.
 SLIDES = {
     "low_on_050": PUSHED,
     "high_on_050": BESIDE,
     "low_on_030": replace(PUSHED, surface_friction=0.30),
     "high_on_030": replace(BESIDE, surface_friction=0.30),
 }
-"""Two cubes of low and high own friction, side by side on two surfaces."""
 
 SPRING = (1.0, 0.01)  # Time constant [s] and damping ratio of a nearly undamped contact
 
 DROPPED_BALL = ContactCase(
     start=(0.0, 0.0, TOP + 0.04 + 0.10), duration=2.0, shape="ball", spring=SPRING
 )
+
+# One ball on a nearly undamped contact, named by its number of substeps.
 BOUNCES = {f"bounce_sub{n}": replace(DROPPED_BALL, substeps=n) for n in (1, 2, 4, 10, 20, 100)}
-"""One ball on a nearly undamped contact, named by its number of substeps."""
 
 # The runs of the lab.
 CASES = LANDINGS | SLIDES | BOUNCES

@@ -48,12 +48,14 @@ def side_by_side(
 STEPS = (
     (0.02, 1), (0.01, 1), (0.005, 1), (0.004, 1), (0.0025, 1), (0.001, 1), (0.001, 2), (0.001, 8),
 )  # fmt: skip
+
+# By solver step, the landing from each height with the default time constant.
 STEP_CASES = {name: side_by_side(name, **step) for name, step in by_step("h", *STEPS).items()}
-"""By solver step, the landing from each height with the default time constant."""
 
 STIFF = "T_2ms"
+
+# The landings with a time constant of 2 ms, with a twentieth of it as solver step.
 STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.0005, substeps=5)}
-"""The landings with a time constant of 2 ms, with a twentieth of it as solver step."""
 
 # The landings by time constant, each with a fortieth of it as solver step. All cubes are at the top
 # of their rebound before the end.
@@ -98,11 +100,12 @@ HOP_STEP_CASES = pushes(
     "hop", 0.4,
     (0.01, 1), (0.005, 1), (0.0025, 1), (0.002, 1), (0.001, 1), (0.001, 2), (0.001, 10),
 )  # fmt: skip
+
+# Those that are recorded until they stop; `HOPPED` continues them at 5 ms.
 STOP_CASES = pushes(
     "stop", 1.2,
     (0.0025, 1), (0.001, 1), (0.001, 2), (0.001, 4), (0.001, 8), (0.02, 200), (0.001, 12),
 )  # fmt: skip
-"""Those that are recorded until they stop; `HOPPED` continues them at 5 ms."""
 
 # The cube with the low coefficient, pushed at each speed [m/s] with a solver step of 5 ms.
 HOP_SPEED_CASES = {
@@ -120,8 +123,9 @@ HALF_THE_STEP = "stop_2500us_high"  # The push at half the solver step of `HOPPE
 COMPARED = ("baseline", "dt10_sub1", "dt20_sub1")  # Landings that also run in MuJoCo
 
 BY_BOTH = {name: LANDINGS[name] for name in COMPARED} | HOPPED | CONVEX_SLIDES
+
+# Runs in Genesis and in MuJoCo with equal settings.
 ENGINE_PAIRS = {name: f"mujoco_{name}" for name in BY_BOTH}
-"""Runs in Genesis and in MuJoCo with equal settings."""
 
 OWN_DEFAULTS = "mujoco_own_baseline"  # The baseline in MuJoCo with MuJoCo's default contact
 
@@ -158,8 +162,9 @@ REBOUND_SHARE = 0.25  # Of a rebound against that of a linear contact
 
 HOP = 0.01  # Clearance from which a slide counts as a hop [m]
 HOP_SHARE = 0.25  # Of a hop against the formula of one step, where it applies
+
+# The steps at which the formula of one step is compared: the first step throws the cube off.
 HOP_APPLIES = ("hop_10000us", "hop_5000us", "hop_2500us", "hop_2000us")
-"""The steps at which the formula of one step is compared: the first step throws the cube off."""
 HOP_LEFT = 0.15  # Largest share of the hop at 5 ms that is left at the smaller steps studied
 INVISIBLE = 1e-3  # Height of a hop that nobody sees in a film of the scene [m]
 SLOW = 0.2  # Speed up to which a hop is invisible at a solver step of 5 ms [m/s]
@@ -170,9 +175,10 @@ NEARLY = 0.05  # Share of a stopping distance that counts as nearly Coulomb's
 RATIO_TOLERANCE = 0.02  # Share of the ratio of two impulses against the coefficient of friction
 BLOW = 5.0  # Loss of speed, in multiples of μ g dt, that friction under the weight cannot cause
 FINEST = 6  # Number of the smallest steps that are compared for convergence, all at most T / 10
+
+# Change at half the step, or spread over the finest steps, from which a stopping distance depends
+# on the step, as a share of Coulomb's distance.
 UNSETTLED = 0.05
-"""Change at half the step, or spread over the finest steps, from which a stopping distance depends
-on the step, as a share of Coulomb's distance."""
 
 SAME_HOP = 1e-4  # Of a hop between two engines with equal settings [m]
 ENGINES_APART = 5e-5  # Of landings between them [m]

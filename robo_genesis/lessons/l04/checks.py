@@ -215,7 +215,8 @@ CHECKS = (
     control_law, not_observed, measurements, saturation, laws_of_motion, posture,
 )  # fmt: skip
 WITHOUT_CAMERA = tuple(check for check in CHECKS if check is not posture)
+
+# Those that the lecture has besides.
 LECTURE = (
     claimed_orders, clipped_start, gravity_support, ends_at_rest, same_beginning, same_metrics,
 )  # fmt: skip
-"""Those that the lecture has besides."""

@@ -26,9 +26,9 @@ def is_saturated(control_force: FloatArray | float, limit: FloatArray | float) -
     return np.asarray(np.abs(control_force) >= SATURATION_THRESHOLD * limit)
 
 
+# Arrays of a bundle that several metrics are computed from.
 RESPONSE = ("q_rad_or_m", "target_rad_or_m")
 EFFORT = ("control_force_Nm_or_N", "effort_limit_Nm_or_N")
-"""Arrays of a bundle that several metrics are computed from."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,8 +52,9 @@ G2 = changed(G1, kp=7000.0)
 G3 = changed(G2, kv=300.0)
 
 CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
+
+# The mark of each case in the palette.
 CASE_MARKS = {"baseline": "baseline", "G1": "first", "G2": "second", "G3": "third"}
-"""The mark of each case in the palette."""
 
 # The only entry that may differ between two compared cases.
 ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}

@@ -18,16 +18,18 @@ COMPARED = {"G1": G1, "G2": G2, "G3": G3}
 SMALL_STEP = 0.005
 
 SMALL_STEPPED = ("G1", "G2")
+
+# Step size is the one factor: a small step, and no step, with the gains of a compared case.
 STEP_CASES = {
     f"{name}_{kind}": changed(COMPARED[name], q_target=START_OF_STEP + height)
     for name in SMALL_STEPPED
     for kind, height in (("small", SMALL_STEP), ("hold", 0.0))
 }
-"""Step size is the one factor: a small step, and no step, with the gains of a compared case."""
 
 SUBSTEPS_STUDIED = (1, 2, 4, 10, 20, 50)
+
+# Numbers of substeps with which all compared cases run: half the solver step, and a tenth.
 REFINED = (4, 20)
-"""Numbers of substeps with which all compared cases run: half the solver step, and a tenth."""
 
 # The solver's step is the one factor. Each number of substeps needs its own scene.
 SUBSTEP_CASES = {
@@ -38,12 +40,14 @@ SUBSTEP_CASES = {
 }
 
 EXAMPLE = "example"
+
+# Illustrates the metrics before the comparison: it overshoots, and is not one of the cases.
 EXAMPLE_CASES = {EXAMPLE: changed(G1, kv=50.0)}
-"""Illustrates the metrics before the comparison: it overshoots, and is not one of the cases."""
 
 LONGER = "G2_longer"
+
+# The length of the window is the one factor.
 LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
-"""The length of the window is the one factor."""
 
 ASSIGNED = "assigned"  # Name of the run whose states are assigned, without control and steps
 
@@ -68,6 +72,8 @@ class SecondRun:
 
 
 SECOND_INTEGRATORS = ("implicitfast", "Euler")
+
+# All compared cases at the lesson's solver step, and G2 at every studied one.
 SECOND_RUNS = {
     run.name: run
     for integrator in SECOND_INTEGRATORS
@@ -76,14 +82,13 @@ SECOND_RUNS = {
         *(SecondRun("G2", integrator, n) for n in SUBSTEPS_STUDIED if n != SUBSTEPS),
     )
 }
-"""All compared cases at the lesson's solver step, and G2 at every studied one."""
 
 # Heights of the commanded step in the grid [rad].
 STEP_SIZES = (0.02, 0.05, 0.1, STEP)
 
+# Gains of the stepped joint in the grid [N·m/rad, N·m·s/rad].
 KP = (3500.0, 4375.0, 5250.0, 6125.0, 7000.0)
 KV = (100.0, 150.0, 200.0, 250.0, 300.0)
-"""Gains of the stepped joint in the grid [N·m/rad, N·m·s/rad]."""
 
 
 class GridPoint(NamedTuple):
@@ -122,13 +127,15 @@ CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}
 # What only judges
 
 PARTING_THRESHOLD = SETTLING_BAND  # Distance at which a position has left the ideal one [rad]
+
+# Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone explain the
+# final error, so this selects the cases that `gravity_support` checks.
 AT_REST = 0.01
-"""Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone explain the
-final error, so this selects the cases that `gravity_support` checks."""
 GRAVITY_AGREEMENT = 0.01  # Share within which KP × final error and gravity agree
+
+# Share within which the readings of the stepped joint agree with the model in MuJoCo; the largest
+# difference is 1.1e-4, of gravity at an end.
 SAME_MODEL = 3e-4
-"""Share within which the readings of the stepped joint agree with the model in MuJoCo; the largest
-difference is 1.1e-4, of gravity at an end."""
 # Largest difference in overshoot between a model of one joint and a small unsaturated step, as a
 # share of the step.
 SMALL_STEP_TOLERANCE = 0.03

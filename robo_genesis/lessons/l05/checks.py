@@ -281,8 +281,9 @@ LECTURE = (*CHECKS, price_at_finer_step, limits_cause_the_swing)
 JACOBIAN = (
     mapping, stamps, forward_kinematics, jacobians_agree, stretched_is_singular, laws_of_motion,
 )  # fmt: skip
+
+# Checks of the page about many solutions, beyond those of the lab.
 SOLUTIONS = (
     first_start_fails, restarts_rescue_few, map_has_targets_in_the_floor, unreachable_refused,
     nearest_is_nearer,
 )  # fmt: skip
-"""Checks of the page about many solutions, beyond those of the lab."""

@@ -45,16 +45,18 @@ LAB = with_functions(RECORDED, "chain", "damped", "accept", "project", "back_pro
 
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
 ANSWERS = runs_of(spec.QUESTIONS, measured=False, note=ANSWERS_NOTE)
+
+# The page about many solutions, the map of targets and the target beyond reach.
 SOLUTIONS = MOTION.with_more(spec.solution_parameters, ANSWERS, checks=checks.SOLUTIONS)
-"""The page about many solutions, the map of targets and the target beyond reach."""
 
 BASELINE = replace(MOTION, runs=runs_of({"baseline": spec.BASELINE}))
+
+# The page that computes Jacobians by hand.
 JACOBIAN = replace(
     BASELINE,
     readings=MODEL | {study.JACOBIANS: Readings(dict.fromkeys(study.POSTURES, "m"))},
     checks=checks.JACOBIAN,
 )
-"""The page that computes Jacobians by hand."""
 
 # The page about cameras; each view has colours, depth and segmentation.
 CAMERAS = replace(

@@ -44,15 +44,16 @@ CASES = {
     "gravity_compensated": replace(BASELINE, compensated=True),
     "kp_doubled_ramp": replace(KP_DOUBLED, ramp=100),
 }
-CASE_MARKS = dict(zip(CASES, ("baseline", "first", "second", "third"), strict=True))
-"""The mark of each case in the palette."""
 
+# The mark of each case in the palette.
+CASE_MARKS = dict(zip(CASES, ("baseline", "first", "second", "third"), strict=True))
+
+# Runs of the lecture with a smaller solver step.
 FINE = 20
 FINER = {
     f"{name}_fine": replace(CASES[name], substeps=FINE)
     for name in ("baseline", "kp_doubled", "kp_doubled_ramp")
 }
-"""Runs of the lecture with a smaller solver step."""
 
 # The runs that the lecture has beside those of the lab; the last one never needs its limits.
 MORE = FINER | {"unlimited": replace(KP_DOUBLED, effort_limit=10 * franka.EFFORT_LIMIT)}
@@ -116,11 +117,12 @@ REACH_MAP = {
 }
 
 RESTARTS, RESTART_SEED = 100, 0
+
+# Starts (100, 9) of the solver, uniform within the limits [rad or m].
 RANDOM_STARTS = np.hstack([
     np.random.default_rng(RESTART_SEED).uniform(*ARM_LIMITS, (RESTARTS, 7)),
     np.tile(franka.Q_START[7:], (RESTARTS, 1)),
 ])  # fmt: skip
-"""Starts (100, 9) of the solver, uniform within the limits [rad or m]."""
 
 # Joint positions (7,) of an arm whose Jacobian has a small singular value [rad].
 NEARLY_STRETCHED = read_only((0.0, 0.0, 0.0, -0.07, 0.0, 1.6, 0.0))
@@ -137,10 +139,11 @@ PRECISE = {
 MANY_STARTS = SolveCase(np.tile(TARGET, (RESTARTS, 1)), DOWN, RANDOM_STARTS, ONE_START)
 
 DRAWS = 20
+
+# The target beyond reach from the lesson's start, then from 19 random ones.
 UNREACHABLE = SolveCase(
     np.tile(BEYOND_REACH, (DRAWS, 1)), DOWN, np.vstack([franka.Q_START, RANDOM_STARTS[1:DRAWS]]), IK
 )
-"""The target beyond reach from the lesson's start, then from 19 random ones."""
 
 # Questions to the solver beyond those of the lab.
 QUESTIONS = REACH_MAP | {
@@ -149,10 +152,10 @@ QUESTIONS = REACH_MAP | {
     "unreachable": UNREACHABLE,
 }
 
+# As in `reaching`. The answers to these questions have no bound: rounding decides which of many
+# postures a search finds.
 TOLERANCES = reaching.TOLERANCES | {"iterations": (0.0, 0.0)}
 TOLERANCES |= dict.fromkeys(QUESTIONS, (math.inf, 0.0))
-"""As in `reaching`. The answers to these questions have no bound: rounding decides which of many
-postures a search finds."""
 
 # Share of the displacement that gravity, KP and the Jacobian may leave unexplained.
 SAG_SHARE = 0.02

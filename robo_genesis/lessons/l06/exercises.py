@@ -69,8 +69,9 @@ VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
 SHAPES = ((1, 3), (3,), (6,), (3, 2), (2,), (2, 1), (2, 3, 1), (3, 3))
 
 MASK = [False, True]
+
+# Environments that do not fit two rows and a scene of three environments.
 NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK, np.array(MASK))
-"""Environments that do not fit two rows and a scene of three environments."""
 
 
 @as_test

@@ -51,8 +51,9 @@ def timed(page: MeasuringPage, protocol: throughput.Protocol) -> MeasuringPage:
 
 LAB = timed(WORLDS, throughput.PROTOCOL)
 LAB = with_functions(LAB, "accept", "command", "step_time")
+
+# The page that explains why the curve of throughput bends.
 THROUGHPUT = timed(MISTAKES, throughput.DEEPER)
-"""The page that explains why the curve of throughput bends."""
 
 LESSON = Lesson(
     spec=spec,

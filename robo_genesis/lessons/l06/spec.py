@@ -21,9 +21,10 @@ MINIMUM_HARDWARE = "cpu"
 IK, ONE_START, DOWN = reaching.IK, reaching.ONE_START, reaching.DOWN
 BEYOND_REACH, MARKER_RADIUS = reaching.BEYOND_REACH, reaching.MARKER_RADIUS
 RESOLUTION, REACHED = reaching.RESOLUTION, reaching.REACHED
+
+# As in `reaching`. A robot with little damping still swings at the end of the sweep; between two
+# processors it was up to 24 mm elsewhere.
 TOLERANCES = reaching.TOLERANCES | {"sweep_end": (0.1, 0.0)}
-"""As in `reaching`. A robot with little damping still swings at the end of the sweep; between two
-processors it was up to 24 mm elsewhere."""
 SAME_POSE, SAME_RESIDUAL = reaching.SAME_POSE, reaching.SAME_RESIDUAL
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
@@ -47,16 +48,20 @@ RESET_AFTER = 30  # Outer steps until the partial reset, while all arms are movi
 MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
 
 FIRST = Environment(TARGETS[:1], DOWN, IK, SWITCH, steps=STEPS)
+
+# Numbers of the environments.
 ENVS = tuple(range(len(TARGETS)))
-"""Numbers of the environments."""
 
 WORLDS = {
     f"env_{k}": replace(FIRST, positions=read_only([TARGETS[k], *LATER.get(k, [])])) for k in ENVS
 }
+
+# The same worlds, each in a scene with one robot and without environments.
 ALONE = {f"alone_{k}": WORLDS[f"env_{k}"] for k in ENVS}
-"""The same worlds, each in a scene with one robot and without environments."""
 
 SHORT = replace(FIRST, steps=SWITCH)
+
+# One target, and four robots that differ in gains, mass of the hand or limits of the torques.
 VARIANTS = {
     "plain_robot": SHORT,
     "stiff_robot": replace(SHORT, kp=2 * franka.KP_BASELINE),
@@ -65,7 +70,6 @@ VARIANTS = {
         SHORT, kp=2 * franka.KP_BASELINE, effort_limit=20 * franka.EFFORT_LIMIT
     ),
 }
-"""One target, and four robots that differ in gains, mass of the hand or limits of the torques."""
 
 # By which the sweep multiplies all KP, and all KV.
 FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
@@ -79,18 +83,19 @@ SWEEP = {
     for kp, kv, load in product(FACTORS, FACTORS, LOADS)
 }
 
+# The robots of `VARIANTS` that are also in the sweep.
 SWEPT = {"plain_robot": (1.0, 1.0, 0.0), "stiff_robot": (2.0, 1.0, 0.0)}
 SWEPT |= {"loaded_robot": (1.0, 1.0, 1.0)}
-"""The robots of `VARIANTS` that are also in the sweep."""
 
 CASES = WORLDS | ALONE | VARIANTS
 
 INTO_THE_FLOOR = replace(FIRST, settings=replace(IK, clearance=-0.1), switch=STEPS, steps=STEPS)
+
+# Targets of the hand that put its fingers into the floor; the solver does not know the floor.
 PRESSED = {
     f"pressed_{k}": replace(INTO_THE_FLOOR, positions=read_only([[x, y, 0.05]]))
     for k, (x, y, _) in enumerate(TARGETS)
 }
-"""Targets of the hand that put its fingers into the floor; the solver does not know the floor."""
 
 # A target that the solver does not reach from the start, and reaches from random starts [m].
 RESTARTED = read_only([(0.25, 0.0, 0.2)])
@@ -99,12 +104,13 @@ RESTARTED = read_only([(0.25, 0.0, 0.2)])
 ORDER = (2, 0, 3, 1)
 
 PERMUTED = {f"permuted_{k}": WORLDS[f"env_{k}"] for k in ENVS}
+
+# Environments that are not touched while their neighbours are reset and commanded.
 BESIDE = {
     f"beside_{k}": replace(WORLDS[f"env_{k}"], steps=RESET_AFTER + SWITCH)
     for k in ENVS
     if k not in LATER
 }
-"""Environments that are not touched while their neighbours are reset and commanded."""
 
 # Environments from their partial reset on.
 AGAIN = {f"again_{k}": replace(FIRST, positions=TARGETS[[k]], steps=SWITCH) for k in LATER}
@@ -113,10 +119,11 @@ AGAIN = {f"again_{k}": replace(FIRST, positions=TARGETS[[k]], steps=SWITCH) for 
 COPIES = PERMUTED | BESIDE | AGAIN
 
 MARKS = ("baseline", "first", "second", "third")
+
+# The mark of each case in the palette.
 CASE_MARKS = {
     name: mark for group in (WORLDS, VARIANTS) for name, mark in zip(group, MARKS, strict=True)
 }
-"""The mark of each case in the palette."""
 
 # Words of a reader for runs.
 LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {

@@ -27,8 +27,9 @@ READINGS = {
 
 EQUALITY = "equality"
 READ = ("pressed_permuted", "pressed_again", "pressed_alone", "one_start", "restarts")
+
+# Of two runs: numbers that are compared, how many differ, largest difference of an arm joint.
 COMPARED = {"compared": "1", "differ": "1", "apart": "rad"}
-"""Of two runs: numbers that are compared, how many differ, largest difference of an arm joint."""
 
 # When contact forces of the pressed hands are read: around a partial reset, and a step later.
 WHEN = ("before", "after", "next")

@@ -60,8 +60,9 @@ class Protocol:
 
 
 PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
+
+# Scenes that are timed with the sizes of `ENDS`, by content, and their substeps.
 PARTS = {"sphere": 2, "robot_1": 1, "robot_4": 4}
-"""Scenes that are timed with the sizes of `ENDS`, by content, and their substeps."""
 
 # Numbers of environments from which both parts of a step are computed.
 ENDS = (1, 64)

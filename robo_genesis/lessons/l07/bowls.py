@@ -59,13 +59,14 @@ class BowlCase:
 
 
 BIG = {f"in_{choice}": BowlCase(choice) for choice in CHOICES}
+
+# The same with other steps, another start, and the hulls of another seed.
 ATTACKS = {
     "in_default_h10000us": BowlCase(substeps=1),
     "in_default_h2500us": BowlCase(substeps=4),
     "in_default_shifted": BowlCase(shift=0.03),
     "in_default_seed1": BowlCase(seed=1),
 }
-"""The same with other steps, another start, and the hulls of another seed."""
 
 # Balls as thick as the wall, from above the rim, and from a start inside the bowl.
 SMALL = {

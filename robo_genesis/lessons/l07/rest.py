@@ -59,6 +59,9 @@ PARTS = {
     "impratio_100": (10, {"impratio": 100.0}),
 }
 NOSLIP = rows({"box": {}}, noslip_5=(5, {"noslip": 5}))
+
+# In MuJoCo alone: versions of Genesis differ in the contact points of a sliding box, and in noslip
+# on a steep slope.
 SLIDING = {
     f"mujoco_{name}": replace(BOX, tilt=np.radians(tilt), duration=0.3, yaw=yaw)
     for name, tilt, yaw in (
@@ -67,19 +70,19 @@ SLIDING = {
 } | {
     f"mujoco_noslip_{tilt}_box": replace(BOX, tilt=np.radians(tilt), noslip=5) for tilt in (15, 20)
 }  # fmt: skip
-"""In MuJoCo alone: versions of Genesis differ in the contact points of a sliding box, and in noslip
-on a steep slope."""
 COMPARED = PYRAMIDS | ELLIPTIC | NOSLIP  # Some of their boxes run in MuJoCo as well
 ALONE = {"alone": {"alone_box": replace(BOX, tilt=np.radians(10))}, "fall": {"fall_box": FALLING}}
+
+# The runs in Genesis, by scene.
 SCENES = ALONE | COMPARED | LEVEL | rows(**PARTS)
-"""The runs in Genesis, by scene."""
 
 CASES = {name: case for scene in SCENES.values() for name, case in scene.items()}
+
+# Runs in MuJoCo with equal settings, in float64.
 TWINS = {
     f"mujoco_{name}": case for scene in COMPARED.values() for name, case in scene.items()
     if name.endswith(("_box", "_firm", "_rough"))
 } | SLIDING  # fmt: skip
-"""Runs in MuJoCo with equal settings, in float64."""
 
 # Words of a reader for runs.
 LABELS = {

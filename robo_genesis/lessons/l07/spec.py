@@ -49,15 +49,15 @@ SCENES = {
 # What readers call the scenes, so that a name does not answer a question.
 LETTERS = dict(zip(SCENES, "ABCDEF", strict=True))
 
+# Words of a reader for runs.
 LABELS = {name: f"scene {letter}" for name, letter in LETTERS.items()}
 LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETTERS.items()}
 LABELS |= rest.LABELS | {"in_one_hull": "one hull", "in_default": "several hulls"}
 LABELS |= {"forced": "two solver steps", "forced_fine": "four solver steps"}
-"""Words of a reader for runs."""
 
+# The mark of each case in the palette.
 CASE_MARKS = {"baseline": "baseline", "hovering": "first"}
 CASE_MARKS |= {"forced": "second", "forced_fine": "third"}
-"""The mark of each case in the palette."""
 
 # The lifts that are compared, with words for their objects.
 SHOWN_LIFTS = {
@@ -118,12 +118,13 @@ RESOLUTION = rest.RESOLUTION | {
     "m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5, "kg": 1e-6, "pixels": 3.0, "steps": 0.5,
     "points": 0.5, "poses": 0.5, "postures": 0.5,
 }  # fmt: skip
+
+# Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of the table
+# have no bound: rounding decides which of many postures a search finds.
 TOLERANCES = check_spec.TOLERANCES | bowls.TOLERANCES | rest.TOLERANCES | {
     "pixels": (20.0, 0.01), "steps": (20.0, 0.0), "points": (4.0, 0.0), "poses": (0.0, 0.0),
     "postures": (3.0, 0.0),
 } | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1)) | {"table": (np.inf, 0.0)}  # fmt: skip
-"""Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of the table
-have no bound: rounding decides which of many postures a search finds."""
 
 # How the second case of a pair compares with the first [m]; not fitted to a run.
 RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)

@@ -44,6 +44,8 @@ def scene(name: str, of: Mapping[str, Mapping[str, float]] = ROW, **common: Any)
 LIGHT = HeldCase().friction * HeldCase().force / HeldCase().gravity
 
 LONG = {"long": side_by_side({"long": {}}, dt=0.1, substeps=40, duration=10.0)}
+
+# The runs in Genesis, by scene.
 SCENES: dict[str, dict[str, HeldCase]] = (
     LONG | {"scan": side_by_side(SCAN)} | scene("plain")
     | scene("T_5ms", time_constant=0.005) | scene("T_20ms", SHALLOW, time_constant=0.02)
@@ -53,11 +55,11 @@ SCENES: dict[str, dict[str, HeldCase]] = (
     | scene("pyramid_10", impratio=10.0) | scene("pyramid_100", impratio=100.0)
     | scene("noslip_5", noslip=5)
 )  # fmt: skip
-"""The runs in Genesis, by scene."""
 
 CASES = {n: case for of in SCENES.values() for n, case in of.items()}
+
+# Scenes whose steps are timed: they have the same boxes.
 TIMED = [name for name, cases in SCENES.items() if len(cases) == len(ROW)]
-"""Scenes whose steps are timed: they have the same boxes."""
 
 # The same runs in MuJoCo, in float64.
 TWINS = {f"mujoco_{name}": case for name, case in CASES.items()}

@@ -68,8 +68,9 @@ ASKEW = PickCase(
 )  # fmt: skip
 
 FEW = starts(8, seed=2)
+
+# 64 episodes in which the expert knows the place.
 EXACT = replace(ASKEW, starts=FEW, beliefs=FEW)
-"""64 episodes in which the expert knows the place."""
 
 # Environment k of the permuted run has the episode of this number.
 ORDER = np.random.default_rng(3).permutation(len(STARTS))
@@ -135,9 +136,9 @@ CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=Tr
 # By unit, the difference below which two values are equal.
 RESOLUTION = {"1": 0.5, "m": 1e-4, "N": 0.05} | creep.RESOLUTION
 
+# Contacts make rounding grow: another version of the engine had three more successes of 256.
 TOLERANCES = check_spec.TOLERANCES | creep.TOLERANCES | {"off_centre": (0.02, 0.0)}
 TOLERANCES |= dict.fromkeys(("askew", "grid", "plain", "corrected", "timed", "boxes"), (20.0, 0.0))
-"""Contacts make rounding grow: another version of the engine had three more successes of 256."""
 
 # No metric of two cases is compared.
 RELATIONS: tuple[Any, ...] = ()

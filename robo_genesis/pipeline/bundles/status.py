@@ -29,13 +29,16 @@ PASSING = ("verified", "inconclusive", "missing", "stale")
 UNREADABLE = (
     "The bundle was refused. The command make verify shows the found and the expected value."
 )
+
+# What a reader of the site learns about a refusal, by its code.
 SUMMARIES = {
     "older-schema": "It was recorded in an older form of the bundle.",
     "failed": "Its own checks did not all pass.",
 }
-"""What a reader of the site learns about a refusal, by its code."""
 
 RECORDED_WITH = "it was recorded with {name} {{}}; this site uses {{}}"
+
+# What a stale bundle's change is called, by the beginning of its path in the evidence key.
 CHANGES = {
     "engine.version": ("engine", RECORDED_WITH.format(name="Genesis")),
     "engine.quadrants_version": ("engine", RECORDED_WITH.format(name="Quadrants")),
@@ -44,7 +47,6 @@ CHANGES = {
     "parameters": ("parameters", "the parameters changed since"),
     "seed": ("seed", "the seed changed since"),
 }
-"""What a stale bundle's change is called, by the beginning of its path in the evidence key."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,9 @@ from robo_genesis.core.project import ProjectError
 # The archive's place in the site, for the link of the home page: unpack it, open `index.html`.
 ARCHIVE = "offline/robo-genesis-site.zip"
 FOLDER = "robo-genesis-site"  # The folder that unpacking makes
+
+# A page's offer of the archive; the archive's own copy of the page must not have it.
 OFFER = ".offline-offer"
-"""A page's offer of the archive; the archive's own copy of the page must not have it."""
 # Suffixes of files that compression makes no smaller.
 COMPRESSED = {".jpg", ".png", ".webp", ".whl", ".woff2", ".zip"}
 # The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 % smaller.

@@ -25,8 +25,9 @@ SERVICES = re.compile(
     re.IGNORECASE,
 )
 FILE_NAME = re.compile(r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.IGNORECASE)
+
+# Classes of elements that quote bundles, whose text no markup of a page makes.
 QUOTING = ["evidence-panel", "run-block", "lesson-status", "measured"]
-"""Classes of elements that quote bundles, whose text no markup of a page makes."""
 LEFTOVERS = re.compile(r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size ")
 
 

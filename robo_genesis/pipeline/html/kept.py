@@ -20,9 +20,10 @@ from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import RECORD
 
 STATE = "state.json"
+
+# Sphinx writes this file if it found something that an incremental render could get wrong; see
+# `site.frame.incremental`.
 UNFIT = "unfit"
-"""Sphinx writes this file if it found something that an incremental render could get wrong; see
-`site.frame.incremental`."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,8 +34,9 @@ FOLDER = "live"
 SHOWN_LINES = 2  # Lines of warnings and errors of Sphinx that the terminal shows
 
 INTERVAL = 0.1  # Seconds between two looks at the files; a look takes milliseconds
+
+# A page asks for the name of the shown state, and reloads when it is another.
 RELOAD = Path(__file__).with_name("live_reload.html").read_bytes()
-"""A page asks for the name of the shown state, and reloads when it is another."""
 
 Seen = dict[Path, tuple[int, int]]
 

@@ -43,8 +43,9 @@ HANDLERS = {("button", "onclick", "window.print()")}  # The theme's own event ha
 REFUSED = {"applet", "base", "embed", "foreignobject", "frame", "frameset", "iframe", "object"}
 
 VIEWER = "model-viewer.js"
+
+# The digest of `replay/model-viewer.js`, which `site/replay/viewer.py` makes of npm's file.
 VIEWER_SHA256 = "4ba524218533577b1acd9a14afa2a1584ad70290ffd15fe72a65f85aaa72a875"
-"""The digest of `replay/model-viewer.js`, which `site/replay/viewer.py` makes of npm's file."""
 
 # The whole of a script that holds the model of a replay.
 MODEL = re.compile(rb'\(globalThis\.replayModels \?\?= \{\}\)\["[\w-]+"\] = "[A-Za-z0-9+/=]+";\n')

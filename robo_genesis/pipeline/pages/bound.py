@@ -43,8 +43,9 @@ PLACE = re.compile(
     r'(?<=\s)(?:d|points|[xy][12]?|c[xy]|width|height|viewBox)="[^"]*"|translate\([^()]*\)'
 )
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+
+# A name in a drawing. Matplotlib makes some of them from coordinates.
 NAME = re.compile(r'(\sid="|url\(#|href="#)([^")]*)')
-"""A name in a drawing. Matplotlib makes some of them from coordinates."""
 
 
 # One call that shows an output: its `function`, the name, and its `arguments`, a list; so is the

@@ -27,8 +27,9 @@ from robo_genesis.pipeline.pages.printed import keep_outputs
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
+
+# Is added to a folder of the store whose bundle was refused: `require_this_page` refuses it.
 MARK = "refused-by-a-build.txt"
-"""Is added to a folder of the store whose bundle was refused: `require_this_page` refuses it."""
 SIZE_LIMIT = 64 * 2**20  # Bytes of one file; those of a lesson have under 2 MiB
 FILES_LIMIT = 500
 

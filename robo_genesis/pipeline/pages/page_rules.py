@@ -31,15 +31,17 @@ TAGS = (
     "after-yours", "alone", "figure", "hide-cell", "hide-input", "hide-output", "inputs",
     "own-kernels", "raises-exception", "remove-cell", "remove-input", "remove-output", SOLUTION,
 )  # fmt: skip
+
+# The options of a cell by its type; nothing else would notice a wrong option or tag.
 OPTIONS = {"code": ("tags", "mystnb", "prints", "expects"), "markdown": ("tags",)}
-"""The options of a cell by its type; nothing else would notice a wrong option or tag."""
 
 # Directives, and classes of others, whose content a click shows.
 FOLDS = {"dropdown", "toggle"}
 ADMONITIONS = ("note", "tip", "hint", "important", "attention", "caution", "warning", "danger")
 TITLED = {*ADMONITIONS, "admonition", "card", "rubric", "seealso", "sidebar", "tab-item", "topic"}
+
+# Directives whose content is not Markdown.
 VERBATIM = {"code", "code-block", "csv-table", "literalinclude", "math", "sourcecode"}
-"""Directives whose content is not Markdown."""
 
 DIRECTIVE = re.compile(r"\{([\w:-]+)\}\s*(.*)")
 ANSWER = re.compile(r"\b(?:answer|solution)s?\b", re.IGNORECASE)
@@ -79,8 +81,9 @@ READERS: dict[str, Callable[[str], object]] = {
     ".yml": yaml.safe_load, ".svg": ElementTree.fromstring
 }  # fmt: skip
 CONFLICT = re.compile(r"^(?:<{7}|={7}|>{7}|\|{7})(?=\s|$)", re.MULTILINE)  # as git finds them
+
+# Characters that an editor does not show, or that end a line for some programs only.
 ODD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ufeff]|\r(?!\n)")
-"""Characters that an editor does not show, or that end a line for some programs only."""
 
 # A line, counted from 1, and what is wrong there, with its cure.
 Problem = tuple[int, str]

@@ -28,8 +28,9 @@ OPTION = "prints"  # The option of a cell that names the measured values which i
 
 DECIMAL = re.compile(r"(?<![\w.])[-+−]?\d+\.\d+(?:e[-+]?\d+)?(?!\.?\d)")
 LOG = re.compile(r"^\[Genesis\].*", re.MULTILINE)
+
+# Relative difference of a printed value from the recorded one: a float32 has seven digits.
 ROUNDED = 1e-7
-"""Relative difference of a printed value from the recorded one: a float32 has seven digits."""
 
 
 def outputs_of(executed: NotebookNode) -> list[list[Any]]:

@@ -22,8 +22,9 @@ from robo_genesis.pipeline.pages.page_rules import first_line
 LOG_LINES = 15
 Status = Literal["executed", "reused", "taken over", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
+
+# What a cell may put out. HTML could hide or imitate what the site says about its evidence.
 KINDS = PICTURES | {"text/plain", "text/markdown"}
-"""What a cell may put out. HTML could hide or imitate what the site says about its evidence."""
 
 INSTEAD = (
     "Show a table as `Markdown(tables.markdown(rows))` of robo_genesis.core, with the rows "
@@ -40,8 +41,9 @@ ANEW = (
     "It differs in each run, or is a command for a terminal. Print names and values; a semicolon "
     "at the end of the last line hides the value of a call."
 )
+
+# Begins the kind of an output that is kept for another place of its page.
 GLUED = "application/papermill.record/"
-"""Begins the kind of an output that is kept for another place of its page."""
 # Addresses and temporary folders, which differ in each run, and characters for terminals.
 CHANGING = re.compile(
     r"\bat 0x[0-9a-f]+|\b0x[0-9a-f]{9,}|/(?:tmp|robo-)[a-z0-9_]{8}\b|[\0-\x08\x0b\x0c\x0e-\x1f\x7f]"

@@ -8,8 +8,9 @@ from typing import Any
 from robo_genesis.core.text import printable
 
 COLUMNS = ("lab", "backend", "device", "state", "checks", "seconds", "place or reason")
+
+# The exit status that each state of a lab asks for; the largest wins.
 STATUS = {"recorded": 0, "kept": 0, "failed": 1, "interrupted": 130}
-"""The exit status that each state of a lab asks for; the largest wins."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,8 +75,9 @@ TOUCHED = 5
 ROLL, FALL, SLIDING, PATH, UPRIGHT, IMPULSE = 5e-4, 8e-4, 1.2e-2, 2e-3, 3e-3, 5e-5
 
 NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
+
+# Tolerances of the state after one outer step, in `UNITS`, and without contacts in MuJoCo.
 FLIGHT = {"link_pos": 5e-6, "link_quat": 1e-6, "link_vel": 3e-5, "link_ang": 3e-6}
-"""Tolerances of the state after one outer step, in `UNITS`, and without contacts in MuJoCo."""
 
 UNITS = {"link_pos": "m", "link_quat": "1", "link_vel": "m/s", "link_ang": "rad/s"}
 

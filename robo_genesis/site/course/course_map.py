@@ -28,8 +28,9 @@ from robo_genesis.site.evidence.plain_nodes import bullets, html, marked, paragr
 from robo_genesis.site.pages import PageDirective, PageRole
 
 FILE = "course_map.yml"
+
+# A link to a lesson's page: its words, the lesson and the page.
 LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
-"""A link to a lesson's page: its words, the lesson and the page."""
 
 
 @dataclass(frozen=True, slots=True, config={"extra": "forbid"})

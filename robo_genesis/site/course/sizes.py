@@ -20,12 +20,14 @@ LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
 MINUTES_A_QUESTION = 2
 MINUTES_A_CHECKPOINT = 1  # To think of an answer before a fold shows it
 MINUTES_A_FUNCTION = 10  # An estimate of the time to write a function until its test passes
+
+# An estimate of the time of one run of a lab, in which the engine compiles its kernels.
 MINUTES_A_RUN = 5
-"""An estimate of the time of one run of a lab, in which the engine compiles its kernels."""
 MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
 STUB = "raise NotImplementedError"  # Occurs in a cell with a function that the reader writes
+
+# Tags of cells whose code is not visible.
 HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
-"""Tags of cells whose code is not visible."""
 
 COLUMN = 80  # Most characters in a line of an excerpt that the column shows without scrolling
 
@@ -48,8 +50,9 @@ SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
 INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
+
+# The beginning of a fold that a reader opens after an own answer.
 THOUGHT = re.compile(r"^ *[`:]{3,}\{dropdown\} *(?:answer|diagnosis)", re.MULTILINE | re.IGNORECASE)
-"""The beginning of a fold that a reader opens after an own answer."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,8 +50,9 @@ T = TypeVar("T")
 BACKEND = project.BUILD_BACKEND
 REFERENCE = "amdgpu"
 COUNTED = ("episodes", "cells")  # Units that a page gives to counts
+
+# The names of backends in the line below a title.
 READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
-"""The names of backends in the line below a title."""
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
 
 

@@ -11,8 +11,9 @@ INPUTS = "inputs"  # The tag of a cell whose tables contain only chosen values, 
 
 
 NO_BUNDLE = ("",)
+
+# What MyST-NB calls the parts of a page that are the output of a cell.
 MADE_BY_CELL = {"cell_code", "mime_bundle"}
-"""What MyST-NB calls the parts of a page that are the output of a cell."""
 
 
 def above(node: nodes.Node, kind: type | tuple[type, ...] = nodes.Element) -> Iterator[Any]:

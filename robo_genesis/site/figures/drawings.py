@@ -27,17 +27,20 @@ VARIABLES = {
 WIDE = 480
 
 DRAWING = re.compile(r"\.svg$")
+
+# What a page gets no part of; a style sheet, for example, would apply to all of it.
 DROPPED = re.compile(
     r'(?is)<!--.*?-->|<(metadata|style|title|script|foreignObject)\b.*?</\1\s*>|\s+xmlns:\w+="[^"]*"'
 )
-"""What a page gets no part of; a style sheet, for example, would apply to all of it."""
 REFERENCE = re.compile(r'(?<=url\(#)[^)]+|(?<=href="#)[^"]+')
 IDENTIFIER = re.compile(r'\s+id="([^"]*)"')
+
+# Digits beyond a hundredth of a coordinate; a scale is smaller than one and keeps all.
 FRACTION = re.compile(r"\b([1-9]\d*\.\d\d)\d+")
-"""Digits beyond a hundredth of a coordinate; a scale is smaller than one and keeps all."""
 SIZE = re.compile(r'\s(?:width|height|version|role|style|class)="[^"]*"')
+
+# Matplotlib's own style sheet, which would apply to the whole page.
 LINES = "stroke-linejoin: round; stroke-linecap: butt"
-"""Matplotlib's own style sheet, which would apply to the whole page."""
 
 
 # CSS pixels in one unit of length.

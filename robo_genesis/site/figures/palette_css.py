@@ -21,8 +21,9 @@ from robo_genesis.site.figures import case_labels
 
 SHEET = Path(__file__).with_name("palette.css")  # Its template. Paper has the light theme
 NAMES = sorted({*course_marks()} - {"baseline"})
+
+# A case's name in prose; without named cases it matches nothing.
 NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES)) or '(?!)'})\b")
-"""A case's name in prose; without named cases it matches nothing."""
 OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
 
 

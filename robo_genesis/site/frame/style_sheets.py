@@ -20,9 +20,10 @@ from robo_genesis.pipeline.command import output_of
 OWN = ("print", "calm", "course", "explorer", "replay", "look", "plot", "home", "icons")
 THEME = ("basic", "styles/pydata-sphinx-theme", "pygments", "styles/sphinx-book-theme")
 EXTENSIONS = ("palette", "togglebutton", "copybutton", "mystnb.*", "sphinx-design.min")
+
+# The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only
+# pages with formulas load it.
 SHEETS = tuple(f"_static/{name}.css" for name in (*THEME, *EXTENSIONS, *OWN))
-"""The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only
-pages with formulas load it."""
 # A sheet of the theme that imports the first one and has no rule.
 IMPORTING = "_static/styles/theme.css"
 # The sheets of the theme and its extensions that have rules for other sites.
@@ -32,8 +33,9 @@ JOINED = "_static/styles/site.css"
 # Classes and identifiers of a page, which its tags name.
 NAMES = re.compile(r' (?:class|id)="([^"]*)"')
 WORD = re.compile(r"[\w-]+", re.ASCII)
+
+# A word of a sheet that is neither a class nor an identifier: elements, attributes, states.
 OTHER_WORD = re.compile(r"(?<![.#\w-])[\w-]+", re.ASCII)
-"""A word of a sheet that is neither a class nor an identifier: elements, attributes, states."""
 # The beginning of an address that is relative to its sheet.
 ADDRESS = re.compile(r"url\(\s*([\"']?)(?![\"']?(?:data:|https?:|[/#]))")
 PURGE = "purgecss/bin/purgecss.js"

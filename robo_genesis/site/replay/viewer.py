@@ -17,11 +17,12 @@ FOLDER = REPLAYS
 
 VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
 NOTICE = "NOTICE.txt"
+
+# Addresses in the viewer: of decoders for compressed models, which the site does not have, and of
+# the viewer's own source.
 ELSEWHERE = re.compile(
     rb"https://(?:www\.gstatic\.com|cdn\.jsdelivr\.net)/[^\"'`\s]*|//# sourceMappingURL=.*"
 )
-"""Addresses in the viewer: of decoders for compressed models, which the site does not have, and of
-the viewer's own source."""
 
 # The packages in the viewer's single file, each in the lock.
 PARTS = (

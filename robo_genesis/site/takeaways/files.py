@@ -41,8 +41,9 @@ from robo_genesis.site.takeaways.plain_markdown import Writer
 NOT_SHOWN = "*(your run measures it)*"
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z"), "finger": ("left", "right")}
+
+# The field that holds the value before the first step, where it was read.
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
-"""The field that holds the value before the first step, where it was read."""
 
 DEBIAN = ("python3-venv", "libegl1", "libgl1")  # Packages of Debian that a fresh system lacks
 

@@ -22,13 +22,15 @@ AFTER_YOURS = "after-yours"  # The tag of a cell that students run after their o
 WAITS = "# Write your own text first. Then remove the # from the lines below, and run this cell.\n"
 
 SOURCE, OUTPUTS = "source_hidden", "outputs_hidden"
+
+# What Jupyter hides of a cell, by its tag on the site. Outputs are hidden in the executed notebook
+# alone: JupyterLab shows those of a cell that it runs, and a student must see a failed test.
 HIDDEN = {"hide-input": (SOURCE,), "hide-output": (OUTPUTS,), "hide-cell": (SOURCE, OUTPUTS)}
-"""What Jupyter hides of a cell, by its tag on the site. Outputs are hidden in the executed notebook
-alone: JupyterLab shows those of a cell that it runs, and a student must see a failed test."""
 
 BEFORE = "before the run"  # Words in the heading of each part of the work sheet that comes first
+
+# The heading of a part of the work sheet.
 PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
-"""The heading of a part of the work sheet."""
 # Words of a lab that name parts of its work sheet.
 NAMED = re.compile(r"\bparts?\s+(\d+)(?:\s+(?:to|and)\s+(\d+))?\s+of\s+the\s+work\s+sheet")
 

@@ -20,8 +20,9 @@ from sphinx.util import logging
 from robo_genesis.site.evidence.origin import above
 
 GLOSSARY = "glossary"
+
+# File in the glossary's folder: further forms of its terms, and terms that are not linked.
 FORMS = "glossary_forms.yml"
-"""File in the glossary's folder: further forms of its terms, and terms that are not linked."""
 
 KEPT = (
     addnodes.pending_xref, nodes.caption, nodes.literal, nodes.literal_block, nodes.math,

@@ -51,16 +51,18 @@ from robo_genesis.site.figures.case_labels import label
 from robo_genesis.site.pages import PageDirective
 
 EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
+
+# The options by order; `{}` is the smallest difference that counts.
 LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
-"""The options by order; `{}` is the smallest difference that counts."""
 CLOSE = "about the same (less than {} apart)"
 UNDECIDED = "this record cannot tell"
 UNKNOWN = "unknown"  # The key of the option that no order was observed
 JUDGED = ("right", "low", "high")  # The keys of an answer that is a number
 WRONG = "x57.3"  # Represents the keys of typical wrong numbers, which `FACTOR` matches
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
+
+# The key of a typical wrong number: the value times this factor.
 FACTOR = re.compile(r"x\d+(\.\d+)?")
-"""The key of a typical wrong number: the value times this factor."""
 # Below a question; `course.css` hides what follows it.
 HIDES = '<p class="after-answer">The rest of this section shows when you have answered.</p>'
 
