@@ -1,7 +1,4 @@
-"""The stages of `make book`: execute, render and verify, pack, sums, check, publish.
-
-`make execute` is the first of them, for one page.
-"""
+"""The stages of `make book`, from executing to publishing; `make execute` is one, for one page."""
 
 import os
 from collections.abc import Callable, Mapping, Sequence

@@ -28,10 +28,9 @@ from robo_genesis.pipeline.pages.worker import PageRun, work
 class Underway:
     """One page that runs.
 
-    `cells` is the number of its code cells and `cell` the one that runs, counted from 1; 0 while
-    the kernel starts. It `waits` before its first cell that must run alone, and is `alone` from
-    there on. `last` is the record of its last stored run, `log` the file that gets what the engine
-    writes, None if it is not kept. Times are seconds of the monotonic clock.
+    `cells` is the number of its code cells and `cell` the one that runs, from 1; 0 while the kernel
+    starts. It `waits` before its first cell that must run alone, and is `alone` from there on.
+    `last` is its last stored record, `log` the engine's log. Times are of the monotonic clock [s].
     """
 
     name: str
