@@ -7,21 +7,16 @@ from robo_genesis.sim.arm import picking
 from robo_genesis.sim.bodies import bowl
 
 
-def episodes(
-    case, good, hanging=False, early=False, late=False, opening=0.08, moved=0.0, length=6, creep=0.0
-):
-    """Return a batch; the hand touches objects `early`, and moves them [m] until it closes.
+def episodes(case, good, hanging=False, early=False, length=6, creep=0.0):
+    """Return a batch; the hand touches some objects `early`.
 
-    Each phase takes `length` (e,) samples, and a `late` descent 13 more. Held objects `creep` down
-    [m/s].
+    Each phase takes `length` (e,) samples. Held objects `creep` down [m/s].
     """
     shape = case.steps + 1, len(case.starts)
     begin = np.column_stack([case.starts, np.full(shape[1], case.size[2] / 2)])
     ends = np.multiply.outer(length * np.ones(shape[1]), np.arange(1, 9))
-    ends += 13 * late * (np.arange(8) > 0)
     phase = (np.arange(shape[0])[:, None, None] >= ends).sum(axis=2).astype(np.int8)
     place = np.tile(begin, (shape[0], 1, 1))
-    place[phase >= picking.CLOSE, 0] += moved
     held = (phase >= picking.LIFT) & (phase < picking.OPEN) & good
     place[held, 2] += 0.1
     place[..., 2] -= creep * case.dt * np.cumsum(held, axis=0) * held
@@ -29,7 +24,6 @@ def episodes(
     place[hangs, 2] += 2 * bowl.HEIGHT
     place[hangs | (phase >= picking.MOVE) & good, :2] = case.bowl_at
     q = np.tile(np.float32(case.q_start), (*shape, 1))
-    q[..., -2:] = opening / 2
     return Episodes(
         t=np.arange(shape[0]) * case.dt,
         phase=phase,
