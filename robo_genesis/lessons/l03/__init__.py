@@ -9,7 +9,6 @@ __getattr__ = on_demand(
     TOP="robo_genesis.sim.bodies.contacts",
     build_world="robo_genesis.sim.bodies.contacts",
     record_world="robo_genesis.sim.bodies.contacts",
-    run_world="robo_genesis.sim.bodies.contacts",
     time_constant="robo_genesis.sim.bodies.contacts",
     read_model="robo_genesis.sim.bodies.rigid_bodies",
     mujoco_contacts="robo_genesis.sim.mujoco.contacts",
