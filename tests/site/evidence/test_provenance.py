@@ -78,8 +78,8 @@ def kinds(rows):
 
 def test_an_output_without_the_name_of_its_function_is_not_called_measured(html):
     page, lines, rows = lines_and_rows(html, "lab")
-    assert lines == [CHOSEN, *[OF_RUN] * 7]
-    assert kinds(rows) == ["settings", "table", *["printed"] * 5, "figure"]
+    assert lines == [OF_RUN, CHOSEN, *[OF_RUN] * 7]
+    assert kinds(rows) == ["printed", "settings", "table", *["printed"] * 5, "figure"]
     text = page.select_one("[id^=printed]:has(.traceback)")
     assert [line.get_text() for line in text.select(".stream ~ .provenance")] == [OF_RUN]
     (row,) = (row for row in rows if row.a["href"].endswith(f"#{text['id']}"))
@@ -88,11 +88,11 @@ def test_an_output_without_the_name_of_its_function_is_not_called_measured(html)
 
 def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
     page, lines, rows = lines_and_rows(html, "lecture")
-    assert lines == [CHOSEN, OF_RUN, OF_RUN]
-    assert kinds(rows) == ["settings", "printed", "printed"]
-    assert rows[0].select("td")[3].get_text() == "no run"
+    assert lines == [OF_RUN, CHOSEN, OF_RUN, OF_RUN]
+    assert kinds(rows) == ["printed", "settings", "printed", "printed"]
+    assert [row.select("td")[3].get_text() for row in rows][:2] == ["–", "no run"]
     anchors = [row.a["href"].split("#")[1] for row in rows]
-    assert [page.find(id=anchor).name for anchor in anchors] == ["table", "table", "svg"]
+    assert [page.find(id=anchor).name for anchor in anchors] == ["div", "table", "table", "svg"]
 
 
 def read(text):
