@@ -188,7 +188,7 @@ def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
     assert 0 < call(page, "frames_asked") <= 11  # two loops would ask twice in each of ten frames
     speed.select_option("1")
     page.wait_for_function("document.querySelector('input[type=range]').value === '40'")
-    assert play.inner_text() == "Play"
+    page.wait_for_function("document.querySelector('.play').innerText === 'Play'")
 
 
 @pytest.mark.browser
