@@ -13,7 +13,7 @@ ifneq ($(findstring :,$(CURDIR)),)
 endif
 
 # What each target reads. Another word with = after make would be ignored without a message.
-book_READS := EXECUTED JOBS RELEASE RENDER SITE_URL SOLUTIONS
+book_READS := EXECUTED JOBS RELEASE RENDER SECOND SITE_URL SOLUTIONS
 execute_READS := PAGE RENDER TO
 evidence_READS := BACKEND LESSON TO
 evidence-rocm_READS := LESSON

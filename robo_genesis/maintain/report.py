@@ -39,13 +39,13 @@ BREAK = "\x1e"
 
 # The ledger lists digests of other pages; the costs are the times of the build itself.
 LEFT_OUT = {Path("evidence", "ledger.html"), Path("performance", "costs.html")}
+
+# What to decide about a page whose run was judged, and about one that ended before.
 JUDGED = (
     "Rule, if the run obeys mechanics: our check assumes more than the engine documents, for "
     "example an order of work within a step. Correct the check. Engine, if the run does not: keep "
     "the pin, and report the run to the engine's developers."
 )
-
-# What to decide about a page whose run was judged, and about one that ended before.
 RAISED = (
     "Engine, if its interface, a message or its speed changed: adapt the page, or keep the pin and "
     "report the change. Rule, if the page expects more than the engine documents: correct the page."

@@ -22,8 +22,9 @@ def styles(**marks: str) -> Styles:
     return {name: look(mark, label=spec.LABELS[name]) for name, mark in marks.items()}
 
 
-# Markers of the samples: two landings coincide, and one stays visible through the other's.
 LANDINGS = styles(baseline="baseline", dt10_sub1="first", dt20_sub2="third", dt20_sub1="second")
+
+# Markers of the samples: two landings coincide, and one stays visible through the other's.
 SAMPLES: Styles = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
     "dt20_sub2": {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8},
     "dt20_sub1": {"marker": "^", "markersize": 3},

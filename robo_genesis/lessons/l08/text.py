@@ -98,7 +98,7 @@ def pace_table(run: Experiment) -> Iterator[dict[str, str]]:
     found = (of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"]))
     for stride, seconds, slid in zip(edge.STRIDES, *found, strict=True):
         yield {
-            "joint speed, at most [rad/s]": decimal(stride / DT, 1),
+            "command, at most [rad/s]": decimal(stride / DT, 1),
             "held [s]": decimal(np.median(seconds), 1),
             "slid [mm]": decimal(1000 * np.median(slid), 2),
             "slid per second [mm/s]": decimal(1000 * np.median(slid / seconds), 2),

@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 
 PANEL = Path(__file__).with_name("panel.html")  # The template of the controls
 
+SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
+
 # The initial speed: most of the motion happens in a small part of the window. The other is for runs
 # of more than `LONG` seconds.
-SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
 SLOW, SLOW_FOR_LONG = "0.1", "0.25"
 
 LONG = 3.0

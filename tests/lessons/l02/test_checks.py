@@ -7,7 +7,7 @@ import pytest
 from lessons.body_runs import make_drop
 from lessons.changed_runs import case, copied, failed, frames, put, reading, trace
 
-from robo_genesis.lessons.l02 import life_cycle, spec, text
+from robo_genesis.lessons.l02 import life_cycle, plots, spec, text
 from robo_genesis.lessons.l02.metrics import drop_metrics
 from robo_genesis.lessons.l02.pages import DROP
 
@@ -88,3 +88,18 @@ def test_the_task_of_the_lab_fails_the_checks_of_its_answer(run, frames, changes
         page=DROP, traces={"baseline": make_drop(case)}, frames=frames,
     )  # fmt: skip
     assert {check.name for check in changed.outcomes() if not check.passed} == names
+
+
+def test_tables_have_words_units_and_signs(run):
+    assert "| continuous, g t² / 2 | 0.196200 | −4.9050 |" in text.three_drops(run)
+    assert "| 10 | 1 | 0.197181 | 0.981 | 0.981 |" in text.substep_table(run)
+    assert "| metric | 2 substeps of 5 ms |" in text.metric_table(run)
+    found = [text.readable(value, "m") for value in (None, 0.201105, 0.0, -0.00490494, 6.9e-8)]
+    assert found == ["not observed", "0.2011 m", "0.0000 m", "−4.9 mm", "0.069 µm"]
+
+
+def test_figures_without_a_camera_show_what_was_measured(run):
+    without = replace(run, rendered=False, frames={})
+    (heights,) = plots.trays(without).axes
+    assert [bar.get_height() for bar in heights.patches] == [0.0308, 0.1749]
+    assert [len(plots.posture(of).axes) for of in (run, without)] == [2, 1]
