@@ -33,6 +33,7 @@ from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.text import format_value, listed, quoted, scaled_value
 from robo_genesis.evidence import bundle
+from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
     Status,
@@ -76,6 +77,9 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     if name == "engine":
         return predicate.engine.version, origin
     name, _, unit = name.partition(" ")
+    of_camera = name.partition(".")[0] in find_page(*lesson_page.split("/")).with_camera
+    if of_camera and predicate.render.mode != "camera":
+        return "SKIP: no camera", origin
     value, given, source = value_of(folder, name, "" if unit in COUNTED else unit)
     if unit in COUNTED:
         if given != "1":
