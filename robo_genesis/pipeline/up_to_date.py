@@ -21,13 +21,13 @@ RECORD = "build.json"
 
 FOLDERS = ("robo_genesis", "build_scripts")
 
-# What a build reads of the checkout apart from the book.
+# Folders and files of the checkout, beside the book, that a build reads.
 FILES = (
     "pyproject.toml", "requirements.lock", "package.json", "package-lock.json", ".npmrc",
     "README.md", "LICENSE",
 )  # fmt: skip
 
-# What a build reads of the environment apart from what decides the pages' measurements.
+# Environment variables that a build reads, beside those that decide the pages' measurements.
 VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC_TIME", "TZ")
 
 SITE = ("html", "evidence", "pages")

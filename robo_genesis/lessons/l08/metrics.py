@@ -121,7 +121,7 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
 
 
 def slides(trace: Episodes) -> tuple[FloatArray, FloatArray]:
-    """Return the time (e,) from the begin of the lift to the end of lowering [s], and the way that
+    """Return the time (e,) from the beginning of the lift to the end of lowering [s], and the way that
     each object slides down in the fingers meanwhile (e,) [m].
     """
     held, rows = (trace.phase >= LIFT) & (trace.phase <= LOWER), np.arange(trace.phase.shape[1])

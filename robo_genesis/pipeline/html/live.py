@@ -29,7 +29,7 @@ from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
 from robo_genesis.pipeline.pages.folder import PageRefused, read_record
 from robo_genesis.pipeline.pages.store import folders, places
 
-# Below the cache folder: what is rendered and shown, apart from what `make book` makes.
+# Below the cache folder: what is rendered and shown, separate from the results of `make book`.
 FOLDER = "live"
 SHOWN_LINES = 2  # Lines of warnings and errors of Sphinx that the terminal shows
 
