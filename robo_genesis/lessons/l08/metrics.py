@@ -121,8 +121,8 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
 
 
 def slides(trace: Episodes) -> tuple[FloatArray, FloatArray]:
-    """Return the time (e,) from the beginning of the lift to the end of lowering [s], and the way that
-    each object slides down in the fingers meanwhile (e,) [m].
+    """Return how long each object is held, from lift to lower (e,) [s], and how far it slides down
+    in the fingers meanwhile (e,) [m].
     """
     held, rows = (trace.phase >= LIFT) & (trace.phase <= LOWER), np.arange(trace.phase.shape[1])
     above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
