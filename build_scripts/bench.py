@@ -7,10 +7,12 @@
 | live | `make live`, until it serves an edit | the same |
 | lab | `make execute` of the last lab, kernels compiled | nbclient on its cells |
 
-Environment: ROWS (names of rows, by default all) and RUNS (of each side, by default 3). It checks
-the last commit out in `.cache/bench`, with the compiled kernels and the executed pages of this
-checkout; uncommitted changes are not measured. The two sides of a row run in turn. Nothing else
-should run on the machine. Exit status: 0 measured, 1 a command failed, 130 interrupted.
+Environment: ROWS (names of rows, by default all) and RUNS (of each side, by default 3).
+    It checks
+the last commit out in `.cache/bench`, with the compiled kernels and the executed pages
+of this checkout; uncommitted changes are not measured. The two sides of a row run in
+turn. Nothing else should run on the machine. Exit status: 0 measured, 1 a command
+failed, 130 interrupted.
 """
 
 import os
@@ -26,7 +28,12 @@ from urllib.request import urlopen
 
 from robo_genesis.core import project
 from robo_genesis.pipeline.command import output_of, positive, run
-from robo_genesis.pipeline.fresh_checkout import CHECKOUT, SETTINGS, environment, fresh_checkout
+from robo_genesis.pipeline.fresh_checkout import (
+    CHECKOUT,
+    SETTINGS,
+    environment,
+    fresh_checkout,
+)
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK
@@ -42,7 +49,9 @@ PYTHON = quote(sys.executable)
 MAKE = f"make PYTHON={PYTHON}"
 SPHINX = f"{PYTHON} -m sphinx -c bare book bare/html"
 LAB = f"rm -rf warm/{project.STORE} && {PYTHON} build_scripts/execute.py --cache warm"
-NBCLIENT = "import nbclient, nbformat, sys; nbclient.execute(nbformat.read(sys.argv[1], 4))"
+NBCLIENT = (
+    "import nbclient, nbformat, sys; nbclient.execute(nbformat.read(sys.argv[1], 4))"
+)
 BARE_CONFIG = """\
 import yaml
 extensions = ["myst_nb", "sphinx_external_toc", "sphinx_design", "sphinx_book_theme"]
@@ -69,7 +78,9 @@ def bare_sphinx() -> partial[None]:
     """Build the site, then its pages by bare Sphinx; return what runs bare Sphinx again."""
     shell(f"{MAKE} book && mkdir -p bare")
     (TREE / "bare" / "conf.py").write_text(BARE_CONFIG, "utf8")
-    newest = {page.docname: folders(STORE, page)[0] for page in find_pages(TREE / "book")}
+    newest = {
+        page.docname: folders(STORE, page)[0] for page in find_pages(TREE / "book")
+    }
     built = BuiltPages(folders=newest).write(TREE / "bare" / "executed-pages.json")
     shell(SPHINX, **built)
     return partial(shell, SPHINX, **built)
@@ -112,17 +123,26 @@ def sides(name: str, started: ExitStack) -> tuple[partial[None], partial[None]]:
         course()  # compiles what is not compiled yet
         notebook = quote(str(folders(STORE, page)[0] / NOTEBOOK))
         compiled = project.engine_cache_environment(TREE)
-        return course, partial(shell, f'{PYTHON} -c "{NBCLIENT}" {notebook}', **compiled)
+        return course, partial(
+            shell, f'{PYTHON} -c "{NBCLIENT}" {notebook}', **compiled
+        )
     bare = bare_sphinx()
     if name == "unchanged":
         return partial(shell, f"{MAKE} book", "Nothing changed"), bare
     if name == "prose":  # both sides see the same edit
         return partial(build_edited, page), bare
-    command, given = ["make", f"PYTHON={sys.executable}", "live"], VARIABLES | {"PORT": "0"}
-    live = subprocess.Popen(command, cwd=TREE, env=given, stdout=subprocess.PIPE, text=True)
+    command, given = (
+        ["make", f"PYTHON={sys.executable}", "live"],
+        VARIABLES | {"PORT": "0"},
+    )
+    live = subprocess.Popen(
+        command, cwd=TREE, env=given, stdout=subprocess.PIPE, text=True
+    )
     started.enter_context(live)
     started.callback(live.terminate)
-    address = next(line.split()[0] for line in live.stdout or () if line.startswith("http"))
+    address = next(
+        line.split()[0] for line in live.stdout or () if line.startswith("http")
+    )
     return partial(serve_edited, page, f"{address}{page.docname}.html"), bare
 
 
@@ -145,7 +165,9 @@ def measured(name: str, runs: int) -> str:
     print(f"{name}: preparation, then {runs} runs of each side", flush=True)
     with ExitStack() as started:
         both = sides(name, started)
-        return result(name, [[timeit(side, number=1) for side in both] for _ in range(runs)])
+        return result(
+            name, [[timeit(side, number=1) for side in both] for _ in range(runs)]
+        )
 
 
 def measure() -> list[str]:
@@ -153,7 +175,9 @@ def measure() -> list[str]:
     names = os.environ.get("ROWS", "").replace(",", " ").split() or [*LIMITS]
     runs = positive("RUNS", 3)
     if unknown := [name for name in names if name not in LIMITS]:
-        raise project.ProjectError(f"ROWS names {unknown}. Choices: {', '.join(LIMITS)}.")
+        raise project.ProjectError(
+            f"ROWS names {unknown}. Choices: {', '.join(LIMITS)}."
+        )
     with fresh_checkout(project.ROOT, FOLDER, project.CACHE):
         return [measured(name, runs) for name in names]
 

@@ -1,7 +1,8 @@
 """Compare two evidence bundles: `make compare OLD=path NEW=path [REPORT=folder]`.
 
 Writes report.md, by default below .cache/reports/, and prints the summary.
-Exit status: 0 equal or within tolerance, 1 differs or inconclusive, 2 not comparable or refused.
+Exit status: 0 equal or within tolerance, 1 differs or inconclusive, 2 not comparable or
+    refused.
 `make` itself ends with 2 for each but 0; call this script if you need the difference.
 """
 
@@ -48,7 +49,9 @@ def main() -> int:
     try:
         written = report.document(comparison).write(folder)
     except OSError as error:
-        return refused(f"REPORT={folder} cannot be written: {error}. Give another folder.")
+        return refused(
+            f"REPORT={folder} cannot be written: {error}. Give another folder."
+        )
     print(report.summary(comparison), f"Report: {written}", sep="\n")
     return STATUS.get(comparison.state, 0)
 

@@ -1,10 +1,11 @@
 """Record labs in a container with ROCm: `make evidence-rocm`.
 
-Environment: LESSON (one lab; unset, all labs without an accepted bundle), and the switches of
-engine and drivers, which are passed to the container.
-It builds the image of `.rocm/Dockerfile` and runs `make evidence BACKEND=amdgpu` in it, on this
-checkout.
-Exit status: 0 recorded, 1 nothing was started, 130 interrupted, otherwise that of the command that
+Environment: LESSON (one lab; unset, all labs without an accepted bundle), and the
+    switches of
+engine and drivers, which are passed to the container. It builds the image of
+`.rocm/Dockerfile` and runs `make evidence BACKEND=amdgpu` in it, on this checkout.
+Exit status: 0 recorded, 1 nothing was started, 130 interrupted, otherwise that of the
+    command that
 failed.
 """
 

@@ -1,6 +1,7 @@
 """Add a lesson that is made from the template: `make lesson NEW=l07`.
 
-Exit status: 0 added, 1 refused or failed, 130 interrupted. A refused name changes nothing.
+Exit status: 0 added, 1 refused or failed, 130 interrupted. A refused name changes
+    nothing.
 """
 
 import os

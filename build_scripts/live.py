@@ -1,9 +1,9 @@
 """Show the book on localhost while it is written: `make live`.
 
 Environment: PORT (default 8000; 0: a free one), and EXECUTE=0|1 (default 0; 1: a page whose code
-changed, or code that it imports, runs as with `make execute`). The page in the browser reloads
-after each change. Nothing is published, and book/_build is not used. Exit status: 1 failed, 130
-ended with Ctrl-C.
+changed, or code that it imports, runs as with `make execute`). The page in the browser
+reloads after each change. Nothing is published, and book/_build is not used. Exit
+status: 1 failed, 130 ended with Ctrl-C.
 """
 
 import asyncio

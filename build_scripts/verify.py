@@ -1,9 +1,11 @@
 """Verify evidence: `make verify` (BUNDLE=path checks one folder).
 
-One line for each bundle that is recorded in the book and for each of the last build: lesson,
-backend, state, reason. For one folder, also what a refusal means for somebody who recorded it at
-home, and how its numbers differ from the last build's run on the CPU of the same page.
-Exit status: 0 all verified, or no bundle; 1 any is inconclusive, stale, failed or refused.
+One line for each bundle that is recorded in the book and for each of the last build:
+lesson, backend, state, reason. For one folder, also what a refusal means for somebody
+who recorded it at home, and how its numbers differ from the last build's run on the CPU
+of the same page.
+Exit status: 0 all verified, or no bundle; 1 any is inconclusive, stale, failed or
+    refused.
 """
 
 import sys
@@ -28,7 +30,10 @@ def all_bundles() -> Iterator[tuple[str, Status]]:
     for folder in recorded_folders(BOOK):
         lesson, backend = folder.parts[-2:]
         labs = {lesson: built(lesson)}
-        yield f"{lesson} recorded", states.recorded_status(BOOK, lesson, backend, labs=labs)
+        yield (
+            f"{lesson} recorded",
+            states.recorded_status(BOOK, lesson, backend, labs=labs),
+        )
     for folder in recorded_folders(BOOK / PUBLISHED):
         lesson = folder.parent.name
         yield f"{lesson} built", bundle_status(folder, lesson, "lab")
@@ -45,14 +50,24 @@ def one_bundle(folder: Path) -> tuple[Status, list[str]]:
     with suppress(BundleRefused, OSError):
         bundle_files.scan(folder)
         predicate = read_manifest(folder).predicate
-    lab = built(predicate.lesson) if predicate and predicate.page == states.RECORDED_PAGE else None
+    lab = (
+        built(predicate.lesson)
+        if predicate and predicate.page == states.RECORDED_PAGE
+        else None
+    )
     runs = [lab] if lab and lab.is_dir() else []
     status = bundle_status(folder, book=BOOK, cpu_runs=runs)
     lines = []
     if status.code:
-        changed = states.changes(read_manifest(folder), BOOK) if status.code == "stale" else []
+        changed = (
+            states.changes(read_manifest(folder), BOOK)
+            if status.code == "stale"
+            else []
+        )
         kinds = tuple(dict.fromkeys(kind for kind, _ in changed))
-        lines += [f"What this means: {text}" for text in advice(status.code, kinds, predicate)]
+        lines += [
+            f"What this means: {text}" for text in advice(status.code, kinds, predicate)
+        ]
     if runs and folder.resolve() != runs[0].resolve():
         lines += compared(runs[0], folder)
     return status, lines
@@ -72,7 +87,9 @@ def line(place: str, status: Status) -> str:
     text = status.reason
     if not text and status.manifest:
         run = status.manifest.predicate
-        text = f"run {run.run_id[:8]} of {run.started[:10]}, Genesis {run.engine.version}"
+        text = (
+            f"run {run.run_id[:8]} of {run.started[:10]}, Genesis {run.engine.version}"
+        )
     return printable(f"{place:14} {status.backend:8} {status.state:12} {text}")
 
 

@@ -2,7 +2,8 @@
 
     python -m robo_genesis.compare outputs/l04/lab/cpu l04-lab-cpu-1a2b3c4d.zip
 
-Each is the folder of a bundle, or a bundle's archive as the ledger of the site offers it.
+Each is the folder of a bundle, or a bundle's archive as the ledger of the site offers
+it.
 Exit status: 0 they agree, 1 they differ or it is undecided, 2 they cannot be compared.
 """
 
@@ -21,7 +22,13 @@ from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.rows import DIFFERS, EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
+from robo_genesis.evidence.rows import (
+    DIFFERS,
+    EQUAL,
+    INCONCLUSIVE,
+    NOT_COMPARABLE,
+    WITHIN,
+)
 
 # Most bytes that an archive may hold; a bundle has a few hundred thousand.
 LARGEST = 500_000_000
@@ -51,7 +58,10 @@ def bundle_folder(given: str, opened: ExitStack) -> Path:
     Raises:
         BundleRefused: there is neither a folder nor an archive of a bundle.
     """
-    path, remedy = Path(given), "expected a run's folder, as outputs/l04/lab/cpu, or its archive"
+    path, remedy = (
+        Path(given),
+        "expected a run's folder, as outputs/l04/lab/cpu, or its archive",
+    )
     if not path.is_dir():
         if not zipfile.is_zipfile(path):
             raise BundleRefused(
@@ -60,7 +70,9 @@ def bundle_folder(given: str, opened: ExitStack) -> Path:
         with zipfile.ZipFile(path) as archive:
             size = sum(entry.file_size for entry in archive.infolist())
             if size > LARGEST:
-                raise BundleRefused("size", f"{given!r} holds {size} bytes, expected a bundle.")
+                raise BundleRefused(
+                    "size", f"{given!r} holds {size} bytes, expected a bundle."
+                )
             path = Path(opened.enter_context(tempfile.TemporaryDirectory()))
             archive.extractall(path)
     if not (path / MANIFEST).is_file():
@@ -94,7 +106,9 @@ def explained(comparison: BundleComparison) -> list[str]:
             "digits; a larger difference comes from a changed cell of the notebook. The check "
             "`functions` fails if the test of a function did not pass."
         ]
-    without_notes = report.summary(replace(comparison, notes=()))  # they are about recordings
+    without_notes = report.summary(
+        replace(comparison, notes=())
+    )  # they are about recordings
     own = [OWN] * (comparison.new.run_id == comparison.old.run_id)
     return [*without_notes.splitlines(), CONCLUSIONS[comparison.state], *own, *found]
 
@@ -109,7 +123,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     args = parser.parse_args(arguments)
     with ExitStack() as opened:
         try:
-            mine, site = (bundle_folder(given, opened) for given in (args.mine, args.site))
+            mine, site = (
+                bundle_folder(given, opened) for given in (args.mine, args.site)
+            )
             comparison = compare(site, mine)
         except (BundleRefused, zipfile.BadZipFile) as error:
             print(printable(f"Not compared: {error}"), file=sys.stderr)

@@ -6,16 +6,18 @@
     python -m robo_genesis.doctor --report FILE  the table of a saved report, without any step
     python -m robo_genesis.doctor --report FILE --like BUNDLE    and what differs from its machine
 
-A bundle is a folder, or an archive as the ledger of the site offers it. A report is a file that
-`--json` wrote, on this machine or another.
-The steps run in a process of their own. If the system ends it, the step that it ran is broken.
+A bundle is a folder, or an archive as the ledger of the site offers it. A report is a
+file that `--json` wrote, on this machine or another. The steps run in a process of
+their own. If the system ends it, the step that it ran is broken.
 Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 
 import sys
 
 if not (3, 11) <= sys.version_info < (3, 14):
-    sys.exit(f"DOCTOR: Python {sys.version.split()[0]} runs, the course needs 3.11, 3.12 or 3.13")
+    sys.exit(
+        f"DOCTOR: Python {sys.version.split()[0]} runs, the course needs 3.11, 3.12 or 3.13"
+    )
 if __name__ == "__main__" and not sys.flags.safe_path:
     sys.path.pop(0)  # a student's own json.py is not imported here
 
@@ -39,9 +41,14 @@ from typing import Annotated, Any, Literal
 from robo_genesis.core import project
 from robo_genesis.core.text import ended, printable
 
-WIDTH, INDENT = 72, 28  # Characters of a row, which fits 80 columns, and before what was found
+WIDTH, INDENT = (
+    72,
+    28,
+)  # Characters of a row, which fits 80 columns, and before what was found
 REPORT_FORMAT = 4
-MARK = "\x1e"  # Begins a report among the other output of the process that runs the steps
+MARK = (
+    "\x1e"  # Begins a report among the other output of the process that runs the steps
+)
 STEPS_PROCESS = "from robo_genesis import doctor; doctor.send_reports()"
 MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
 
@@ -54,18 +61,23 @@ PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 def table(steps: Sequence[Mapping[str, str]]) -> str:
     """Return the rows of the steps that are done, and the beginning of the next one's.
 
-    If none is left, the verdict is the last line. Only a long word makes a row longer than `WIDTH`.
+    If none is left, the verdict is the last line. Only a long word makes a row longer
+    than `WIDTH`.
     """
     text, verdict = "", f"all {len(steps)} steps pass"
     for number, step in enumerate(steps, start=1):
         text += f"{number:2}/{len(steps):<2}  {step['step']:{INDENT - 18}}  "
         if step["state"] == "not run" and verdict.startswith("all"):
             return text
-        wrap = textwrap.TextWrapper(WIDTH - INDENT, break_long_words=False, break_on_hyphens=False)
+        wrap = textwrap.TextWrapper(
+            WIDTH - INDENT, break_long_words=False, break_on_hyphens=False
+        )
         found = f"\n{' ' * INDENT}".join(map(printable, wrap.wrap(step["found"])))
         text += f"{step['state']:7}  {found}".rstrip() + "\n"
         if step["state"] == "broken":
-            verdict = f"step {number}, {step['step']}, is broken; fix it and run this again"
+            verdict = (
+                f"step {number}, {step['step']}, is broken; fix it and run this again"
+            )
     return f"{text}\nDOCTOR: {verdict}\n"
 
 
@@ -79,7 +91,9 @@ def report_of(steps: Sequence[Mapping[str, str]], engine: Any = None) -> dict[st
     return {
         "format": REPORT_FORMAT,
         "ok": all(step["state"] == "ok" for step in steps),
-        "broken": next((step["step"] for step in steps if step["state"] == "broken"), None),
+        "broken": next(
+            (step["step"] for step in steps if step["state"] == "broken"), None
+        ),
         "steps": steps,
         "machine": machine(engine),
         "versions": {name: project.installed_version(name) for name in PACKAGES},
@@ -95,7 +109,10 @@ def examine() -> Iterator[dict[str, Any]]:
     with tempfile.TemporaryDirectory() as folder:
         # Without it, the outputs would go to the working directory.
         bench = diagnosis.Bench({project.OUTPUTS_DIR: folder} | os.environ)
-        steps = [{"step": s.__name__, "state": "not run", "found": ""} for s in diagnosis.STEPS]
+        steps = [
+            {"step": s.__name__, "state": "not run", "found": ""}
+            for s in diagnosis.STEPS
+        ]
         yield report_of(steps)
         for number, result in enumerate(diagnosis.run_steps(diagnosis.STEPS, bench)):
             steps[number] = asdict(result)
@@ -112,14 +129,18 @@ def send_reports() -> None:
 def reports() -> Iterator[dict[str, Any]]:
     """Run the steps in a process of their own; yield its reports.
 
-    If it ends before the last step does, the step that it ran is broken in one more report.
+    If it ends before the last step does, the step that it ran is broken in one more
+    report.
     """
     report = report_of([{"step": "version", "state": "not run", "found": ""}])
     said = deque[str](maxlen=3)
     with subprocess.Popen(
-        [sys.executable, "-c", STEPS_PROCESS], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        encoding="utf8", errors="replace",
-    ) as process:  # fmt: skip
+        [sys.executable, "-c", STEPS_PROCESS],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf8",
+        errors="replace",
+    ) as process:
         signal.signal(signal.SIGINT, lambda *_: process.send_signal(signal.SIGINT))
         for line in process.stdout or ():
             text, mark, sent = line.partition(MARK)
@@ -152,7 +173,10 @@ def machine(engine: Any) -> dict[str, str]:
     found = [*versions, platform.python_version(), platform.platform()]
     if engine:
         found += [engine.backend.actual, engine.backend.device_name]
-    return {name: value or "not installed" for name, value in zip(FACTS, found, strict=False)}
+    return {
+        name: value or "not installed"
+        for name, value in zip(FACTS, found, strict=False)
+    }
 
 
 def shareable(text: str) -> str:
@@ -173,7 +197,12 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     with ExitStack() as opened:
         run = read_manifest(bundle_folder(bundle, opened)).predicate
     engine, backend, host = run.engine, run.backend, run.host
-    versions = [engine.version, engine.quadrants_version, backend.torch_version, host.python]
+    versions = [
+        engine.version,
+        engine.quadrants_version,
+        backend.torch_version,
+        host.python,
+    ]
     found = [*versions, host.os, backend.actual, backend.device_name]
     return dict(zip(FACTS, found, strict=True))
 
@@ -182,7 +211,8 @@ def read_report(file: str) -> dict[str, Any]:
     """Return a saved report.
 
     Raises:
-        ValueError: the file is not a report of this format, or of no complete examination.
+        ValueError: the file is not a report of this format, or of no complete
+            examination.
     """
     from pydantic import AfterValidator, BaseModel, ValidationError
 
@@ -227,11 +257,17 @@ def differences(
     rows = [("", "recorded", head)]
     for name, value in recorded.items():
         found = here.get(name, "unknown: the engine did not start")
-        rows.append((name, printable(value), "equal" if found == value else printable(found)))
+        rows.append(
+            (name, printable(value), "equal" if found == value else printable(found))
+        )
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [f"{name:{widths[0]}}  {value:{widths[1]}}  {found}" for name, value, found in rows]
+    lines = [
+        f"{name:{widths[0]}}  {value:{widths[1]}}  {found}"
+        for name, value, found in rows
+    ]
     advice = (
-        "If the engine differs, install the site's version. Another backend rounds differently;"
+        "If the engine differs, install the site's version. Another "
+        "backend rounds differently;"
     )
     return [*lines, f"{advice} other differences usually change only the last digits."]
 
@@ -243,12 +279,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--json", action="store_true", help="a report for a bug, on stdout")
-    parser.add_argument("--like", metavar="BUNDLE", help="compare with the machine of this run")
-    parser.add_argument("--report", metavar="FILE", help="show this report, run no step")
+    parser.add_argument(
+        "--json", action="store_true", help="a report for a bug, on stdout"
+    )
+    parser.add_argument(
+        "--like", metavar="BUNDLE", help="compare with the machine of this run"
+    )
+    parser.add_argument(
+        "--report", metavar="FILE", help="show this report, run no step"
+    )
     options = parser.parse_args(arguments)
     if options.json and {options.like, options.report} != {None}:
-        parser.error("--json is alone: compare its output later, with --report FILE --like BUNDLE")
+        parser.error(
+            "--json is alone: compare its output later, with --report FILE --like BUNDLE"
+        )
     try:
         recorded = None if options.like is None else recorded_machine(options.like)
         saved = None if options.report is None else read_report(options.report)

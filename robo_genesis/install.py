@@ -2,16 +2,19 @@
 
     PYTHONPATH=robo_genesis-….whl python3 -m robo_genesis.install [ADDRESS]
 
-ADDRESS is an index with builds of Torch for the CPU. Without it, Torch comes from pip's own index,
-on Linux with CUDA. The wheel and constraints.txt are in one folder, which gets the folder `course`.
-The command needs Python alone, without packages. `make` installs the lock with this module.
+ADDRESS is an index with builds of Torch for the CPU. Without it, Torch comes from pip's
+own index, on Linux with CUDA. The wheel and constraints.txt are in one folder, which
+gets the folder `course`. The command needs Python alone, without packages. `make`
+installs the lock with this module.
 Exit status: 0 installed, 1 failed, 130 interrupted. The same command then begins again.
 """
 
 import sys
 
 if not (3, 11) <= sys.version_info < (3, 14):
-    found = "The course needs Python 3.11 to 3.13, found {}.{}.".format(*sys.version_info)
+    found = "The course needs Python 3.11 to 3.13, found {}.{}.".format(
+        *sys.version_info
+    )
     sys.exit(f"{found} Start one of these.")
 
 import os
@@ -36,17 +39,32 @@ ENVIRONMENT, CONSTRAINTS = "course", "constraints.txt"
 MARK, DONE, LOG = ".robo-genesis", ".installed", "install.log"
 
 EVERY = 20.0  # Seconds between two lines of progress
-QUIETLY = ("--no-compile", "--disable-pip-version-check", "--progress-bar=off", "--retries=3")
-COMPILE = ("-m", "compileall", "-qq", "-j", "0")  # Fails, because packages have files for no Python
+QUIETLY = (
+    "--no-compile",
+    "--disable-pip-version-check",
+    "--progress-bar=off",
+    "--retries=3",
+)
+COMPILE = (
+    "-m",
+    "compileall",
+    "-qq",
+    "-j",
+    "0",
+)  # Fails, because packages have files for no Python
 # Settings that make pip install elsewhere, or nothing.
-REDIRECTIONS = {f"PIP_{name}" for name in ("TARGET", "PREFIX", "ROOT", "PYTHON", "DRY_RUN")}
+REDIRECTIONS = {
+    f"PIP_{name}" for name in ("TARGET", "PREFIX", "ROOT", "PYTHON", "DRY_RUN")
+}
 
 TAKEN = re.compile(r"Collecting|Processing|Requirement already satisfied")
 PYPI, LOOKING = "https://pypi.org/simple", "Looking in indexes: "
 # What pip prints when its attempts are used up: the reason, and the path at the index.
 LOST = re.compile(r"Retry\(total=0.* after connection broken by (.*): (/\S*)$")
 REASON = re.compile(r"(?:\[Errno -?\d+\] |\[SSL: |Tunnel )[^'\")]+|timed out")
-NEEDED = "The course needs about 5 GB, with Torch for CUDA 9 GB, and TMPDIR, or /tmp, 2 GB"
+NEEDED = (
+    "The course needs about 5 GB, with Torch for CUDA 9 GB, and TMPDIR, or /tmp, 2 GB"
+)
 
 say = partial(print, flush=True)
 
@@ -59,9 +77,9 @@ class InstallError(Exception):
 class Installation:
     """What to install where.
 
-    `folder` gets the environment. `lock` has a line `name==version` for each package. `packages`
-    are pip's arguments for all packages but Torch. `torch_index` is the index that is tried first
-    for Torch; empty, it is not.
+    `folder` gets the environment. `lock` has a line `name==version` for each package.
+    `packages` are pip's arguments for all packages but Torch. `torch_index` is the
+    index that is tried first for Torch; empty, it is not.
     """
 
     folder: Path
@@ -74,14 +92,17 @@ class Installation:
         """Do all steps.
 
         Raises:
-            InstallError: a step failed; the next run empties the folder and begins again.
+            InstallError: a step failed; the next run empties the folder and begins
+                again.
         """
         steps: dict[str, Callable[[], None]] = {
             "an environment for Python's packages": self.environment,
             "Torch": self.torch,
             "the other packages": partial(self.pip, *self.packages),
             "a check of all versions": partial(self.call, "-m", "pip", "check"),
-            "bytecode": partial(self.call, *COMPILE, str(self.folder / "lib"), statuses=(0, 1)),
+            "bytecode": partial(
+                self.call, *COMPILE, str(self.folder / "lib"), statuses=(0, 1)
+            ),
         }
         for number, (what, step) in enumerate(steps.items(), start=1):
             place = f"step {number} of {len(steps)}, {what}"
@@ -96,7 +117,9 @@ class Installation:
     def environment(self) -> None:
         """Make an empty environment."""
         if not find_spec("ensurepip"):
-            raise InstallError("this Python has no ensurepip. On Debian: apt install python3-venv")
+            raise InstallError(
+                "this Python has no ensurepip. On Debian: apt install python3-venv"
+            )
         self.empty()
         self.call("-m", "venv", str(self.folder), python=sys.executable)
 
@@ -104,7 +127,9 @@ class Installation:
         """Make the folder, or empty it if this module made it."""
         folder = self.folder
         if ":" in str(folder.absolute()):
-            raise InstallError(f"{folder.absolute()} has a colon, which separates paths; rename it")
+            raise InstallError(
+                f"{folder.absolute()} has a colon, which separates paths; rename it"
+            )
         ours = any((folder / name).is_file() for name in (MARK, DONE))
         free = not folder.exists() or (folder.is_dir() and not any(folder.iterdir()))
         if folder.is_symlink() or not (ours or free):
@@ -126,31 +151,41 @@ class Installation:
         wanted = (version[0] if version else "torch", "-c", str(self.lock))
         if self.torch_index:
             try:
-                return self.pip("--extra-index-url", self.torch_index, "--timeout", "15", *wanted)
+                return self.pip(
+                    "--extra-index-url", self.torch_index, "--timeout", "15", *wanted
+                )
             except InstallError as error:
                 if not str(error).startswith(self.torch_index):
                     raise
-                self.say(f"install  {error}. pip's own index follows, whose Torch can have CUDA")
+                self.say(
+                    f"install  {error}. pip's own index follows, whose Torch can have CUDA"
+                )
         return self.pip(*wanted)
 
     def pip(self, *arguments: str) -> None:
         """Install packages."""
         self.call("-m", "pip", "install", *QUIETLY, *arguments)
 
-    def call(self, *arguments: str, python: str = "", statuses: Sequence[int] = (0,)) -> None:
+    def call(
+        self, *arguments: str, python: str = "", statuses: Sequence[int] = (0,)
+    ) -> None:
         """Run Python, by default that of the environment, and report how far pip is.
 
         Raises:
-            InstallError: its exit status is not in `statuses`, or an index cannot be reached; then
-                the message begins with its address.
+            InstallError: its exit status is not in `statuses`, or an index cannot be
+                reached; then the message begins with its address.
         """
         command = [python or str(self.folder / "bin" / "python"), *arguments]
         given = os.environ.keys() - REDIRECTIONS - {"PYTHONPATH", "PYTHONHOME"}
         variables = {name: os.environ[name] for name in given} | {"PIP_USER": "0"}
         with subprocess.Popen(
-            command, env=variables, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            encoding="utf8", errors="replace",
-        ) as process:  # fmt: skip
+            command,
+            env=variables,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            encoding="utf8",
+            errors="replace",
+        ) as process:
             try:
                 failure = self.follow(process.stdout or ())
             except BaseException:
@@ -200,7 +235,10 @@ def run(installation: Installation) -> int:
         failed, log = isinstance(error, InstallError), installation.folder / LOG
         where = f" pip's log: {log}." if log.is_file() else ""
         again = "Then start the same command again: pip keeps what it downloaded."
-        print(f"{f'FAILED: {error}' if failed else 'Interrupted'}.{where} {again}", file=sys.stderr)
+        print(
+            f"{f'FAILED: {error}' if failed else 'Interrupted'}.{where} {again}",
+            file=sys.stderr,
+        )
         return 1 if failed else 130
 
 
@@ -210,9 +248,13 @@ def main() -> int:
     lock, index = wheel.with_name(CONSTRAINTS), "".join(sys.argv[1:])
     for path in (wheel, lock):
         if not path.is_file():
-            sys.exit(f"{path} is not a file; PYTHONPATH names the wheel beside {CONSTRAINTS}")
+            sys.exit(
+                f"{path} is not a file; PYTHONPATH names the wheel beside {CONSTRAINTS}"
+            )
     if index and not urlsplit(index).scheme:
-        sys.exit(f"{index!r} is not an address, such as https://download.pytorch.org/whl/cpu")
+        sys.exit(
+            f"{index!r} is not an address, such as https://download.pytorch.org/whl/cpu"
+        )
     packages = ("-c", str(lock), str(wheel), "jupyterlab")
     return run(Installation(wheel.with_name(ENVIRONMENT), lock, packages, index))
 

@@ -54,10 +54,11 @@ def open_page(lesson: str, name: str) -> "LessonPage":
     """Start the record of a page, after `gs.init`.
 
     Raises:
-        LookupError: the lesson or the page does not exist; the message lists the choices.
+        LookupError: the lesson or the page does not exist; the message lists the
+            choices.
         ContractError: a variable of the contract is not valid.
-        EngineError: a page is open already, Genesis is not initialised, or it was initialised with
-            another backend, seed or precision.
+        EngineError: a page is open already, Genesis is not initialised, or it was
+            initialised with another backend, seed or precision.
     """
     declared = find_page(lesson, name)
     if _opened:
@@ -95,7 +96,9 @@ class LessonPage:
         self, lesson: str, name: str, contract: session.Contract, engine: session.Engine
     ) -> None:
         self._declared = find_page(lesson, name)
-        self._recorder = Recorder(lesson, name, contract, engine, sources.running_modules(lesson))
+        self._recorder = Recorder(
+            lesson, name, contract, engine, sources.running_modules(lesson)
+        )
         self._lesson, self.log, self.backend = lesson, engine.log, engine.backend
         self.render = contract.render
         self.folder: Path = contract.outputs / lesson / name
@@ -112,9 +115,14 @@ class LessonPage:
         """The experiment with what was measured so far."""
         return Experiment(
             page=self._declared,
-            traces={name: self.traces[name] for name in self._declared.runs if name in self.traces},
+            traces={
+                name: self.traces[name]
+                for name in self._declared.runs
+                if name in self.traces
+            },
             links=self.links,
-            readings=self.readings | ({FUNCTIONS: self._written} if self._written else {}),
+            readings=self.readings
+            | ({FUNCTIONS: self._written} if self._written else {}),
             frames=dict(self.frames),
             rendered=self.render,
             joints=self.joints,
@@ -140,12 +148,13 @@ class LessonPage:
     def show(self, function: Callable[..., Any], *arguments: Any) -> None:
         """Show a measured table, text or figure: a function of the experiment.
 
-        The build calls the function again, on the experiment that it reads from the bundle. So the
-        result must depend on nothing else, and not on runs that are recorded after this call.
+        The build calls the function again, on the experiment that it reads from the
+        bundle. So the result must depend on nothing else, and not on runs that are
+        recorded after this call.
 
         Args:
-            function: at the top level of a module of the lesson or of `core`. Its first argument
-                is the experiment; it returns Markdown or a Matplotlib figure.
+            function: at the top level of a module of the lesson or of `core`. Its first
+                argument is the experiment; it returns Markdown or a Matplotlib figure.
             arguments: its further arguments, JSON values, written out in the call.
 
         Raises:
@@ -155,7 +164,11 @@ class LessonPage:
 
     def _show(self, name: str, arguments: Sequence[Any] = ()) -> None:
         metadata = shown.metadata(name, arguments)
-        display(shown.mime_data(name, self.experiment, arguments), metadata=metadata, raw=True)
+        display(
+            shown.mime_data(name, self.experiment, arguments),
+            metadata=metadata,
+            raw=True,
+        )
 
     def require(self, what: str, **seen: object) -> None:
         """Print that all values are true: what the cells of a page saw, beside its checks.
@@ -176,22 +189,27 @@ class LessonPage:
 
         Raises:
             LookupError: the page does not declare the function.
-            FunctionFailed: naming the call, what it returned, and the line if it raised.
+            FunctionFailed: naming the call, what it returned, and the line if it
+                raised.
         """
         name = function.__name__
         if name not in self._written:
-            raise LookupError(f"{name} is not declared. Functions: {', '.join(self._written)}.")
+            raise LookupError(
+                f"{name} is not declared. Functions: {', '.join(self._written)}."
+            )
         outcome = test(function, *given)
         self._written[name] = int(outcome.passed)
         if not outcome.passed:
-            raise FunctionFailed(f"{name} does not pass its test yet.\n  {outcome.detail}")
+            raise FunctionFailed(
+                f"{name} does not pass its test yet.\n  {outcome.detail}"
+            )
         print(f"{name} passes its test")
 
     def finish(self, scene: Any) -> None:
         """Measure, show the table of checks, write the bundle, and print the verdict.
 
-        The verdict is `PASSED` if all checks passed. Where nothing but functions is missing, it is
-        `INCOMPLETE` and names them.
+        The verdict is `PASSED` if all checks passed. Where nothing but functions is
+        missing, it is `INCOMPLETE` and names them.
 
         Args:
             scene: the scene with the camera; only its renderer is read.
@@ -204,9 +222,13 @@ class LessonPage:
         renderer = cameras.read_renderer(scene) if self.render else None
         folder = self._recorder.write(experiment, renderer)
         files = sum(path.is_file() for path in folder.rglob("*"))
-        print(f"{files} files in {self._recorder.lesson}/{self._recorder.page}/{folder.name}")
+        print(
+            f"{files} files in {self._recorder.lesson}/{self._recorder.page}/{folder.name}"
+        )
         missing = [name for name, passed in self._written.items() if not passed]
-        measured = [c for c in experiment.outcomes() if not missing or c.name != FUNCTIONS]
+        measured = [
+            c for c in experiment.outcomes() if not missing or c.name != FUNCTIONS
+        ]
         verdict = checks.require(self._lesson, measured)
         if count := len(self._written):
             print(f"functions {count - len(missing)} of {count}")
@@ -215,7 +237,9 @@ class LessonPage:
         print(verdict)
 
 
-def curves(drawn: Mapping[str, tuple[Any, Any]], quantity: str, axis: str = "time [s]") -> Figure:
+def curves(
+    drawn: Mapping[str, tuple[Any, Any]], quantity: str, axis: str = "time [s]"
+) -> Figure:
     """Return a figure of one curve or two for the end of a cell; the build does not compare it.
 
     Args:

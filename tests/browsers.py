@@ -42,8 +42,9 @@ def launch(kind: "BrowserType", *arguments: str) -> "Browser":
 def answered(browser: "Browser", ask: Callable, patience: float = PATIENCE) -> tuple:
     """Return a browser and what it answers: the given one, or a new one if that hangs.
 
-    Rarely a page of Chromium waits for itself, and Playwright then waits for ever: its `evaluate`
-    has no time limit. If the new browser hangs as well, the page is the reason, and the test fails.
+    Rarely a page of Chromium waits for itself, and Playwright then waits for ever: its
+    `evaluate` has no time limit. If the new browser hangs as well, the page is the
+    reason, and the test fails.
 
     Args:
         browser: with which to try first; it is killed if it hangs.

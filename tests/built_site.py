@@ -31,7 +31,8 @@ PAGES = tuple(page_files(BOOK))  # Every page of the book in reading order
 
 EXECUTED = {page.docname: (page.lesson, page.page) for page in find_pages(BOOK)}
 LESSON_PAGES = {
-    EXECUTED.get(name) or (Path(name).parent.name.partition("-")[0], Path(name).name): name
+    EXECUTED.get(name)
+    or (Path(name).parent.name.partition("-")[0], Path(name).name): name
     for name in PAGES
     if name.startswith("lessons/")
 }
@@ -40,10 +41,17 @@ LESSON_PAGES = {
 # Lesson and page of each page that leaves a bundle.
 MEASURING_PAGES = [(name, page) for name in LESSONS for page in find_lesson(name).pages]
 
-TEXT = {".html", ".css", ".js", ".json", ".svg", ".txt"}  # The files that a web server compresses
+TEXT = {
+    ".html",
+    ".css",
+    ".js",
+    ".json",
+    ".svg",
+    ".txt",
+}  # The files that a web server compresses
 
-# The environment of the tests. The engine sets switches when a test imports it, and a build with
-# other switches would execute every page again.
+# The environment of the tests. The engine sets switches when a test imports it, and a
+# build with other switches would execute every page again.
 OUTSIDE = dict(os.environ)
 
 
@@ -52,7 +60,9 @@ def executed_pages() -> BuiltPages:
     pages = find_pages(BOOK)
     into = places(pages, CACHE / STORE, ROOT, OUTSIDE)
     results = [stored_result(page, into[page.docname]) for page in pages]
-    absent = [page.docname for page, found in zip(pages, results, strict=True) if not found]
+    absent = [
+        page.docname for page, found in zip(pages, results, strict=True) if not found
+    ]
     assert absent == [], "Not executed with this code. Run: make book"
     return BuiltPages.of(results)
 
@@ -91,7 +101,9 @@ class CompressingHandler(QuietHandler):
 def build_output() -> str:
     command = [sys.executable, str(ROOT / "build_scripts" / "book.py")]
     environment = OUTSIDE | {"RENDER": "1", "SITE_URL": "", "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, env=environment, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -124,7 +136,9 @@ def parsed_pages(site) -> dict[str, BeautifulSoup]:
 @contextmanager
 def served(site: Path, handler: type[QuietHandler] = QuietHandler) -> Iterator[str]:
     """Serve the site in a thread; the value is its address."""
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(site)))
+    server = ThreadingHTTPServer(
+        ("127.0.0.1", 0), partial(handler, directory=str(site))
+    )
     Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}"
     server.shutdown()

@@ -21,21 +21,28 @@ from robo_genesis.sim import session
 from robo_genesis.sim.camera import frames as camera
 from robo_genesis.sim.engine_log import EngineLog
 
-QUADRANTS = project.locked_versions((project.ROOT / "requirements.lock").read_text())["quadrants"]
+QUADRANTS = project.locked_versions((project.ROOT / "requirements.lock").read_text())[
+    "quadrants"
+]
 RUN_ID = "0123456789abcdef" * 2
 RENDERER = camera.Renderer("Mesa", "llvmpipe")
 LOG = (
     ("INFO", "Running on [a CPU] with backend gs.cpu. Device memory: 23.54 GB."),
-    ("INFO", f"🚀 Genesis initialized. 🔖 version: {project.engine_pin()}, 🌱 seed: 0, "
-             "📏 precision: 32, 💬 verbose: INFO"),
+    (
+        "INFO",
+        f"🚀 Genesis initialized. 🔖 version: {project.engine_pin()}, 🌱 seed: 0, "
+        "📏 precision: 32, 💬 verbose: INFO",
+    ),
     ("WARNING", "Approximating tendon."),
     ("INFO", "Software rendering context detected. Shadows not supported."),
-)  # fmt: skip
+)
 
 
 @pytest.fixture(scope="session")
 def backend():
-    return session.Backend("cpu", "cpu", "x64", "cpu", "2.13.0+cpu", None, None, "a CPU")
+    return session.Backend(
+        "cpu", "cpu", "x64", "cpu", "2.13.0+cpu", None, None, "a CPU"
+    )
 
 
 @pytest.fixture(scope="session")
@@ -46,20 +53,29 @@ def engine(backend):
 
 
 # What draws the frames on each backend.
-GRAPHICS = {"cpu": RENDERER, "amdgpu": camera.Renderer("AMD", "AMD Instinct (radeonsi)"),
-            "cuda": camera.Renderer("NVIDIA Corporation", "NVIDIA H100/PCIe/SSE2")}  # fmt: skip
+GRAPHICS = {
+    "cpu": RENDERER,
+    "amdgpu": camera.Renderer("AMD", "AMD Instinct (radeonsi)"),
+    "cuda": camera.Renderer("NVIDIA Corporation", "NVIDIA H100/PCIe/SSE2"),
+}
 
 
 def engine_on(engine: session.Engine, actual: str) -> session.Engine:
     """Return the engine as it would have started on a backend."""
     if actual == "cpu":
         return engine
-    found = session.Backend("auto", actual, actual, "cuda", device_name="a GPU", **TORCH[actual])
+    found = session.Backend(
+        "auto", actual, actual, "cuda", device_name="a GPU", **TORCH[actual]
+    )
     log = EngineLog()
-    said = [text.replace("[a CPU] with backend gs.cpu", f"[a GPU] with backend gs.{actual}")
-            for _, text in engine.log.lines]  # fmt: skip
+    said = [
+        text.replace("[a CPU] with backend gs.cpu", f"[a GPU] with backend gs.{actual}")
+        for _, text in engine.log.lines
+    ]
     levels = [level for level, _ in engine.log.lines]
-    log.lines += [pair for pair in zip(levels, said, strict=True) if "Software" not in pair[1]]
+    log.lines += [
+        pair for pair in zip(levels, said, strict=True) if "Software" not in pair[1]
+    ]
     return replace(engine, backend=found, log=log)
 
 
@@ -107,17 +123,22 @@ def name_code(patch, lesson: str, page: str) -> None:
     patch.setenv("ROBO_GENESIS_PAGE_IMPORTS", " ".join(imports))
 
 
-def written(engine, outputs: Path, lesson: str, page: str, experiment: Experiment) -> Path:
+def written(
+    engine, outputs: Path, lesson: str, page: str, experiment: Experiment
+) -> Path:
     """Write the bundle of a page below a folder without a real engine, and return its folder."""
     with without_engine(engine.backend) as patch:
         return recorder_of(patch, engine, outputs, lesson, page).write(
-            experiment, GRAPHICS[engine.backend.actual] if experiment.page.camera else None
+            experiment,
+            GRAPHICS[engine.backend.actual] if experiment.page.camera else None,
         )
 
 
 @pytest.fixture(scope="session")
 def pristine(tmp_path_factory, engine, experiment) -> Path:
-    return written(engine, tmp_path_factory.mktemp("pristine"), "l04", "lab", experiment)
+    return written(
+        engine, tmp_path_factory.mktemp("pristine"), "l04", "lab", experiment
+    )
 
 
 @pytest.fixture
@@ -129,7 +150,9 @@ def folder(pristine, tmp_path) -> Path:
 @pytest.fixture
 def courses_pages(monkeypatch):
     """Verify bundles of a synthetic book against the pages of the course."""
-    monkeypatch.setattr(evidence_key, "page_code", lambda *of: page_code(*of[:2], project.BOOK))
+    monkeypatch.setattr(
+        evidence_key, "page_code", lambda *of: page_code(*of[:2], project.BOOK)
+    )
 
 
 @pytest.fixture

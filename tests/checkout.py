@@ -37,7 +37,9 @@ def make(work: Path, *words: str, fails: bool = False) -> str:
     return run_in(work, "make", *words, f"PYTHON={sys.executable}", fails=fails)
 
 
-def unit_tests(work: Path, *places: str, marks: str = "not engine and not browser") -> str:
+def unit_tests(
+    work: Path, *places: str, marks: str = "not engine and not browser"
+) -> str:
     """Run tests of a copy."""
     options = ("-q", "-p", "no:cacheprovider", "-m", marks)
     return run_in(work, "python", "-m", "pytest", *options, *places)
@@ -45,5 +47,7 @@ def unit_tests(work: Path, *places: str, marks: str = "not engine and not browse
 
 def import_contracts(work: Path) -> str:
     """Check the import contracts of a copy."""
-    command = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+    command = (
+        "from importlinter.cli import lint_imports_command; lint_imports_command()"
+    )
     return run_in(work, "python", "-c", command, "--no-logo", "--no-cache")

@@ -31,7 +31,8 @@ from robo_genesis.sim.arm.joints import JointMap
 
 pytest_plugins = ("bundles", "built_site")
 
-# Tests send SIGINT to the commands that they start; a shell that starts pytest with & ignores it.
+# Tests send SIGINT to the commands that they start; a shell that starts pytest with &
+# ignores it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The same examples each time, and no time limit: shared machines stall.
@@ -43,17 +44,23 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="run the slow tests as well")
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(
+    config: pytest.Config, items: list[pytest.Item]
+) -> None:
     """Leave slow tests out unless `--slow` asks for them, and put long ones first.
 
-    What runs the engine comes first, because it is the longest scope of one process. The tests that
-    use the engine of this process precede those that start one elsewhere or build. Small tests come
-    last, so that two processes end at about the same time.
+    What runs the engine comes first, because it is the longest scope of one process.
+    The tests that use the engine of this process precede those that start one elsewhere
+    or build. Small tests come last, so that two processes end at about the same time.
     """
     for item in items:
         if uses_engine(item) and not item.get_closest_marker("engine"):
-            raise pytest.UsageError(f"{item.nodeid} starts the engine. Give it the mark `engine`.")
-    left_out = [] if config.option.slow else [i for i in items if i.get_closest_marker("slow")]
+            raise pytest.UsageError(
+                f"{item.nodeid} starts the engine. Give it the mark `engine`."
+            )
+    left_out = (
+        [] if config.option.slow else [i for i in items if i.get_closest_marker("slow")]
+    )
     config.hook.pytest_deselected(items=left_out)
 
     def turn(item: pytest.Item) -> tuple[int, bool]:
@@ -101,7 +108,9 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> LoadScopeSch
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
             if file.endswith("test_sweep.py"):
-                return nodeid.partition("[")[2].partition("-")[0]  # each way to visit all pages
+                return nodeid.partition("[")[2].partition("-")[
+                    0
+                ]  # each way to visit all pages
             return ENGINE if kind(config.rootpath / file) == ENGINE else file
 
     return ByModule(config, log)
@@ -121,7 +130,10 @@ def make_trace() -> Callable[..., Trace]:
             t=np.arange(n + 1) * dt,
             q=np.reshape(q, (-1, 1)),
             target=np.full((n, 1), np.reshape(target, (-1, 1)), float),
-            **{name: np.full((n, 1), np.reshape(v, (-1, 1)), float) for name, v in steps.items()},
+            **{
+                name: np.full((n, 1), np.reshape(v, (-1, 1)), float)
+                for name, v in steps.items()
+            },
             start_control_force=np.zeros(1),
             start_qd=np.zeros(1),
             effort_limit=np.array([effort_limit]),
@@ -140,8 +152,12 @@ def joints() -> JointMap:
         types=l04.EXPECTED_TYPES,
         dofs_idx_local=np.arange(9),
         qs_idx_local=np.arange(9),
-        lower=per_joint(-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0),
-        upper=per_joint(2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04),
+        lower=per_joint(
+            -2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0
+        ),
+        upper=per_joint(
+            2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04
+        ),
     )
 
 
@@ -154,7 +170,11 @@ def traces() -> dict[str, Trace]:
 @pytest.fixture(scope="session")
 def frames() -> dict[str, np.ndarray]:
     """Two different pictures of the course's shape."""
-    initial = np.arange(np.prod(FRAME_SHAPE), dtype=np.uint32).astype(np.uint8).reshape(FRAME_SHAPE)
+    initial = (
+        np.arange(np.prod(FRAME_SHAPE), dtype=np.uint32)
+        .astype(np.uint8)
+        .reshape(FRAME_SHAPE)
+    )
     final = initial.copy()
     final[200:300] += 1
     return {"initial": initial, "final": final}
@@ -164,7 +184,9 @@ def frames() -> dict[str, np.ndarray]:
 def experiment(joints, traces, frames) -> Experiment:
     """A synthetic run of L04's lab that passes every check."""
     readings = {"model": l04.EXPECTED_MODEL, **passed(LAB)}
-    return Experiment(LAB, traces, LINKS, readings, frames, rendered=True, joints=joints)
+    return Experiment(
+        LAB, traces, LINKS, readings, frames, rendered=True, joints=joints
+    )
 
 
 STARTED = pytest.StashKey[ExitStack]()
@@ -174,14 +196,17 @@ STARTED = pytest.StashKey[ExitStack]()
 def real_engine(request, tmp_path_factory) -> Iterator[SimpleNamespace]:
     """Real engine, started once in this process; `pytest_runtest_teardown` ends it.
 
-    It holds the lock of builds, because a build would remove the lock files of the engine as stale.
-    """
+    It holds the lock of builds, because a build would remove the lock files of the
+    engine as stale."""
     contract = session.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
     with ExitStack() as started:
         request.config.stash[STARTED] = started
         started.enter_context(stages.build_lock(project.CACHE))
-        # The engine sets switches, too; with one left, a build would execute every page again.
-        started.enter_context(patch.dict(os.environ, project.engine_cache_environment()))
+        # The engine sets switches, too; with one left, a build would execute every page
+        # again.
+        started.enter_context(
+            patch.dict(os.environ, project.engine_cache_environment())
+        )
         engine = session.start(contract)
         import genesis as gs
 
@@ -194,7 +219,9 @@ def real_engine(request, tmp_path_factory) -> Iterator[SimpleNamespace]:
 def lab(real_engine: SimpleNamespace) -> SimpleNamespace:
     """The scene of the lab of L04, built once."""
     gs = real_engine.gs
-    scene = gs.Scene(sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False)
+    scene = gs.Scene(
+        sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False
+    )
     scene.add_entity(gs.morphs.Plane())
     franka = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
     camera = scene.add_camera(**CAMERA)

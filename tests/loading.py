@@ -19,7 +19,13 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 
 def run_watched(script: str, *words: str, **wishes: str) -> tuple[str, set[str]]:
     """Run a script of build_scripts; return what it printed, and the packages that it loaded."""
-    command = [sys.executable, "-c", WATCHED, str(ROOT / "build_scripts" / script), *words]
+    command = [
+        sys.executable,
+        "-c",
+        WATCHED,
+        str(ROOT / "build_scripts" / script),
+        *words,
+    ]
     given = os.environ | {"PYTHONPATH": str(ROOT)} | wishes
     done = subprocess.run(command, env=given, capture_output=True, text=True)
     said, _, loaded = done.stdout.rpartition("LOADED ")

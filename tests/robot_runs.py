@@ -21,7 +21,9 @@ def answer(position, q_start, iterations) -> IkAnswer:
     from robo_genesis.lessons.l05.spec import ARM_LIMITS, DOWN
 
     target = kinematics.Pose(np.asarray(position), DOWN)
-    q = kinematics.solve(target, q_start[:7], *ARM_LIMITS, iterations=iterations, damping=0.01)
+    q = kinematics.solve(
+        target, q_start[:7], *ARM_LIMITS, iterations=iterations, damping=0.01
+    )
     error = kinematics.pose_error(target, kinematics.hand_pose(q))
     return IkAnswer(np.float32([*q, *q_start[7:]]), np.float32(error))
 
@@ -61,12 +63,16 @@ def driven(case: ControlCase, links: Sequence[str], load: float = 0.0) -> Trace:
 def assembled(case: ControlCase, links: Sequence[str], at, efforts, targets) -> Trace:
     """Return a trace in float32 of positions (n+1, d), with velocity and forces of each."""
     q = np.float32(at)
-    readings = zip(q, *link_poses(q, links, case.model), *zip(*efforts, strict=True), strict=True)
+    readings = zip(
+        q, *link_poses(q, links, case.model), *zip(*efforts, strict=True), strict=True
+    )
     kept = [tuple(map(np.float32, reading)) for reading in readings]
     return assemble(case, kept, targets, np.float32(case.effort_limit))
 
 
-def assigned(case: ControlCase, links: Sequence[str], before: Trace, postures=None) -> Trace:
+def assigned(
+    case: ControlCase, links: Sequence[str], before: Trace, postures=None
+) -> Trace:
     """Return the states of a straight line, as `assign_path` does, or those of postures (n, d).
 
     `before` is the run whose last internal force remains.

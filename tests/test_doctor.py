@@ -48,8 +48,14 @@ def steps_run(monkeypatch):
 
     monkeypatch.setattr(diagnosis, "STEPS", tuple(counted(step) for step in STEPS))
     monkeypatch.setattr(doctor, "reports", doctor.examine)  # in this process
-    monkeypatch.setattr(project, "engine_cache_environment", dict)  # no variable outlives a test
-    for variable in ("ROBO_GENESIS_BACKEND", "ROBO_GENESIS_RENDER", "ROBO_GENESIS_OUTPUTS_DIR"):
+    monkeypatch.setattr(
+        project, "engine_cache_environment", dict
+    )  # no variable outlives a test
+    for variable in (
+        "ROBO_GENESIS_BACKEND",
+        "ROBO_GENESIS_RENDER",
+        "ROBO_GENESIS_OUTPUTS_DIR",
+    ):
         monkeypatch.delenv(variable, raising=False)
     return ran
 
@@ -62,23 +68,44 @@ def assert_broken(steps_run, capsys, step, *words):
     assert steps_run == NAMES[: place + 1]
     assert found["broken"] == step
     states = ["ok"] * place + ["broken"] + ["not run"] * (len(NAMES) - place - 1)
-    assert [(f["step"], f["state"]) for f in found["steps"]] == [*zip(NAMES, states, strict=True)]
+    assert [(f["step"], f["state"]) for f in found["steps"]] == [
+        *zip(NAMES, states, strict=True)
+    ]
     assert [word for word in words if word not in found["steps"][place]["found"]] == []
 
 
 @pytest.mark.parametrize(
     ("step", "change", "spoiled", "words"),
     [
-        ("version", "setattr", (project, "installed_version", lambda package: "0.0.1"),
-         ("genesis-world 0.0.1", "pip install -r")),
-        ("libraries", "setattr", (ctypes, "CDLL", fail), ("libGL.so.1", "apt install libegl1")),
-        ("model_file", "setattr", (franka, "FRANKA_MJCF", "xml/no_robot.xml"),
-         ("no model 'xml/no_robot.xml'", "pip install")),
-        ("backend", "setenv", ("ROBO_GENESIS_BACKEND", "banana"),
-         ("ROBO_GENESIS_BACKEND='banana' is not valid. Choose one of: auto, cpu.",)),
+        (
+            "version",
+            "setattr",
+            (project, "installed_version", lambda package: "0.0.1"),
+            ("genesis-world 0.0.1", "pip install -r"),
+        ),
+        (
+            "libraries",
+            "setattr",
+            (ctypes, "CDLL", fail),
+            ("libGL.so.1", "apt install libegl1"),
+        ),
+        (
+            "model_file",
+            "setattr",
+            (franka, "FRANKA_MJCF", "xml/no_robot.xml"),
+            ("no model 'xml/no_robot.xml'", "pip install"),
+        ),
+        (
+            "backend",
+            "setenv",
+            ("ROBO_GENESIS_BACKEND", "banana"),
+            ("ROBO_GENESIS_BACKEND='banana' is not valid. Choose one of: auto, cpu.",),
+        ),
     ],
-)  # fmt: skip
-def test_a_broken_machine_is_found(steps_run, capsys, monkeypatch, step, change, spoiled, words):
+)
+def test_a_broken_machine_is_found(
+    steps_run, capsys, monkeypatch, step, change, spoiled, words
+):
     if step == "model_file":  # comes after the start of the engine
         monkeypatch.setattr(session, "start", lambda contract: ENGINE)
     getattr(monkeypatch, change)(*spoiled)
@@ -111,7 +138,9 @@ class StandIn:
 def scene(lab, monkeypatch):
     """The lab's scene for steps that start no second engine and build no second scene."""
     scene = StandIn(lab)
-    gs = SimpleNamespace(Scene=lambda **_: scene, options=lab.gs.options, morphs=lab.gs.morphs)
+    gs = SimpleNamespace(
+        Scene=lambda **_: scene, options=lab.gs.options, morphs=lab.gs.morphs
+    )
     monkeypatch.setattr(session, "start", lambda contract: lab.engine)
     monkeypatch.setattr(session, "import_engine", lambda: gs)
     return scene
@@ -128,19 +157,50 @@ NOT_FINITE = (np.full(9, np.nan),) * 6
     [
         ("build", None, "build", fail, ("OSError: no such library", "--json")),
         ("render", None, "camera", BLIND, ("empty picture",)),
-        ("names", franka, "JOINT_NAMES", ("joint1", "elbw"),
-         ("Joint 'elbw'", "Available: joint1")),
-        ("names", franka, "MODEL_COUNTS", franka.MODEL_COUNTS | {"links": 12},
-         ("'links': 11", "'links': 12")),
-        ("target", diagnosis, "BASELINE", replace(BASELINE, q_target=UNREACHABLE),
-         ("q_target[joint4] is 1 rad", "none is clipped")),
-        ("reset", diagnosis, "BASELINE", replace(BASELINE, dt=0.02), ("dt=0.02", "Restart")),
-        ("stamps", joint_control, "read", lambda robot, *of: NOT_FINITE,
-         ("q is not finite", "reset")),
-        ("saturation", diagnosis, "BASELINE", replace(BASELINE, effort_limit=np.full(9, 0.5)),
-         ("120 of 120 samples", "Check limit")),
+        (
+            "names",
+            franka,
+            "JOINT_NAMES",
+            ("joint1", "elbw"),
+            ("Joint 'elbw'", "Available: joint1"),
+        ),
+        (
+            "names",
+            franka,
+            "MODEL_COUNTS",
+            franka.MODEL_COUNTS | {"links": 12},
+            ("'links': 11", "'links': 12"),
+        ),
+        (
+            "target",
+            diagnosis,
+            "BASELINE",
+            replace(BASELINE, q_target=UNREACHABLE),
+            ("q_target[joint4] is 1 rad", "none is clipped"),
+        ),
+        (
+            "reset",
+            diagnosis,
+            "BASELINE",
+            replace(BASELINE, dt=0.02),
+            ("dt=0.02", "Restart"),
+        ),
+        (
+            "stamps",
+            joint_control,
+            "read",
+            lambda robot, *of: NOT_FINITE,
+            ("q is not finite", "reset"),
+        ),
+        (
+            "saturation",
+            diagnosis,
+            "BASELINE",
+            replace(BASELINE, effort_limit=np.full(9, 0.5)),
+            ("120 of 120 samples", "Check limit"),
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_broken_step_is_found(
     steps_run, capsys, monkeypatch, scene, step, module, name, value, words
 ):
@@ -149,7 +209,9 @@ def test_a_broken_step_is_found(
 
 
 @pytest.mark.engine
-def test_without_rendering_the_picture_is_skipped(steps_run, capsys, monkeypatch, scene):
+def test_without_rendering_the_picture_is_skipped(
+    steps_run, capsys, monkeypatch, scene
+):
     monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
     assert main(["--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -180,7 +242,9 @@ def test_the_report_has_stable_fields_and_names_no_user(steps_run, capsys, monke
     assert found["versions"]["genesis-world"] == "0.0.1"
     assert found["environment"]["GS_FOLDER"] == "~/cache"
     main([])
-    assert sys.executable in capsys.readouterr().out  # what is not shared has whole folders
+    assert (
+        sys.executable in capsys.readouterr().out
+    )  # what is not shared has whole folders
 
 
 @pytest.mark.parametrize(
@@ -204,14 +268,19 @@ def test_folders_are_taken_out_and_nothing_else(text, shared, monkeypatch):
 
 
 def rows(*states, found=""):
-    return [{"step": n, "state": s, "found": found} for n, s in zip(NAMES, states, strict=False)]
+    return [
+        {"step": n, "state": s, "found": found}
+        for n, s in zip(NAMES, states, strict=False)
+    ]
 
 
 def test_the_table_is_aligned_fits_80_columns_and_grows():
     lines = table(rows("ok", "broken", "not run", found="word " * 60)).splitlines()
     assert max(map(len, lines)) <= doctor.WIDTH <= 80
     assert all(line[27] == " " != line[28] for line in lines if "word" in line)
-    assert lines[-1] == "DOCTOR: step 2, libraries, is broken; fix it and run this again"
+    assert (
+        lines[-1] == "DOCTOR: step 2, libraries, is broken; fix it and run this again"
+    )
     begun = table(rows("ok", "not run", found="a\nb\x1b[2J"))
     assert begun.endswith("a b\\x1b[2J\n 2/2   libraries   ")
     assert table(rows("ok", "ok", found="a\nb\x1b[2J")).startswith(begun)
@@ -219,13 +288,18 @@ def test_the_table_is_aligned_fits_80_columns_and_grows():
 
 def started(folder, changed=None, python=sys.executable):
     """Start the doctor in a folder, with changed variables of the environment; None unsets one."""
-    paths = ":".join([*(changed or {}).get("PYTHONPATH", "").split(), str(project.ROOT)])
+    paths = ":".join(
+        [*(changed or {}).get("PYTHONPATH", "").split(), str(project.ROOT)]
+    )
     given = os.environ | (changed or {}) | {"PYTHONPATH": paths}
     return subprocess.Popen(
-        [str(python), "-m", "robo_genesis.doctor"], cwd=folder, text=True,
+        [str(python), "-m", "robo_genesis.doctor"],
+        cwd=folder,
+        text=True,
         env={name: value for name, value in given.items() if value is not None},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
 
 
 GENESIS, MINUTES = "genesis.py", "The first start of the engine takes minutes.\n"
@@ -235,22 +309,47 @@ DIES = "import os, signal\nos.kill(os.getpid(), signal.{})".format
 @pytest.mark.parametrize(
     ("changed", "files", "step", "words"),
     [
-        ({"__EGL_VENDOR_LIBRARY_DIRS": "."}, {}, "libraries", "of 0 devices libegl-mesa0 __EGL_"),
-        ({"PYOPENGL_PLATFORM": "osmesa"}, {}, "libraries", "PYOPENGL_PLATFORM='osmesa' unset"),
+        (
+            {"__EGL_VENDOR_LIBRARY_DIRS": "."},
+            {},
+            "libraries",
+            "of 0 devices libegl-mesa0 __EGL_",
+        ),
+        (
+            {"PYOPENGL_PLATFORM": "osmesa"},
+            {},
+            "libraries",
+            "PYOPENGL_PLATFORM='osmesa' unset",
+        ),
         ({"HOME": None}, {}, "backend", "HOME export"),
-        ({"QD_OFFLINE_CACHE_FILE_PATH": "f/x"}, {"f": ""}, "backend", "QD_OFFLINE_CACHE_FILE_PATH"),
+        (
+            {"QD_OFFLINE_CACHE_FILE_PATH": "f/x"},
+            {"f": ""},
+            "backend",
+            "QD_OFFLINE_CACHE_FILE_PATH",
+        ),
         ({"GS_CACHE_FILE_PATH": "f"}, {"f": ""}, "backend", "GS_CACHE_FILE_PATH"),
-        ({"PYTHONIOENCODING": "ascii", "ROBO_GENESIS_BACKEND": "µ"}, {}, "backend", "\\xb5"),
-        ({"PYTHONPATH": "q"},
-         {"q/quadrants-0.9.dist-info/METADATA": "Name: quadrants\nVersion: 0.9"},
-         "version", "quadrants== installed is 0.9"),
+        (
+            {"PYTHONIOENCODING": "ascii", "ROBO_GENESIS_BACKEND": "µ"},
+            {},
+            "backend",
+            "\\xb5",
+        ),
+        (
+            {"PYTHONPATH": "q"},
+            {"q/quadrants-0.9.dist-info/METADATA": "Name: quadrants\nVersion: 0.9"},
+            "version",
+            "quadrants== installed is 0.9",
+        ),
         ({}, {GENESIS: "import genesis\ngenesis.cpu"}, "backend", "genesis.py rename"),
         ({}, {"random.py": "raise SystemExit"}, "version", "random.py rename"),
         ({}, {GENESIS: DIES("SIGKILL")}, "backend", "SIGKILL memory"),
         ({}, {GENESIS: DIES("SIGBUS")}, "backend", "SIGBUS disk kernels"),
     ],
-)  # fmt: skip
-def test_a_machine_with_one_fault_is_named_with_its_step(tmp_path, changed, files, step, words):
+)
+def test_a_machine_with_one_fault_is_named_with_its_step(
+    tmp_path, changed, files, step, words
+):
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
@@ -282,8 +381,12 @@ def test_a_python_without_packages_is_named_with_the_right_one(tmp_path):
     assert error == MINUTES
 
 
-def test_a_machine_or_its_report_is_compared(steps_run, capsys, monkeypatch, pristine, tmp_path):
-    monkeypatch.setattr(project, "require_pinned_engine", fail)  # the engine does not start
+def test_a_machine_or_its_report_is_compared(
+    steps_run, capsys, monkeypatch, pristine, tmp_path
+):
+    monkeypatch.setattr(
+        project, "require_pinned_engine", fail
+    )  # the engine does not start
     recorded = doctor.recorded_machine(str(pristine))
     facts = "engine quadrants torch python system backend device"
     assert list(recorded) == facts.split()
@@ -297,7 +400,10 @@ def test_a_machine_or_its_report_is_compared(steps_run, capsys, monkeypatch, pri
     saved, ran = tmp_path / "report.json", [*steps_run]
     saved.write_text(capsys.readouterr().out, "utf8")
     assert main(["--like", str(pristine), "--report", str(saved)]) == 1
-    assert capsys.readouterr().out.split() == live.replace("this machine", "report").split()
+    assert (
+        capsys.readouterr().out.split()
+        == live.replace("this machine", "report").split()
+    )
     assert steps_run == ran  # a saved report needs no step
 
 
@@ -322,16 +428,40 @@ NEW = f"make a new one with {doctor.MAKE_REPORT}"
 @pytest.mark.parametrize(
     ("report", "arguments", "words"),
     [
-        (None, SAVED, ("'report.json' cannot be read as a report: ", "No such file", NEW)),
+        (
+            None,
+            SAVED,
+            ("'report.json' cannot be read as a report: ", "No such file", NEW),
+        ),
         ("no JSON", SAVED, ("Invalid JSON", NEW)),
         (SOUND | {"format": 3}, SAVED, ("format",)),
-        (SOUND | {"steps": rows("ok")}, SAVED, ("report.steps", "step was done: version, libr")),
-        (SOUND | {"steps": rows("ok", *["not run"] * 10)}, SAVED, ("not every step was done",)),
+        (
+            SOUND | {"steps": rows("ok")},
+            SAVED,
+            ("report.steps", "step was done: version, libr"),
+        ),
+        (
+            SOUND | {"steps": rows("ok", *["not run"] * 10)},
+            SAVED,
+            ("not every step was done",),
+        ),
         (SOUND | {"steps": rows("odd")}, SAVED, ("steps.0.state",)),
         (SOUND | {"machine": {"engine": 1}}, SAVED, ("machine.engine",)),
-        (None, ["--like", "nowhere"], ("'nowhere' is neither a folder nor a zip archive",)),
-        (None, ["--like", ""], ("'' has no manifest.json; expected a run's folder, as out",)),
-        (None, ["--like", "other.zip"], ("'other.zip' has no manifest.json; expected a ", ", or")),
+        (
+            None,
+            ["--like", "nowhere"],
+            ("'nowhere' is neither a folder nor a zip archive",),
+        ),
+        (
+            None,
+            ["--like", ""],
+            ("'' has no manifest.json; expected a run's folder, as out",),
+        ),
+        (
+            None,
+            ["--like", "other.zip"],
+            ("'other.zip' has no manifest.json; expected a ", ", or"),
+        ),
         (None, ["--json", "--like", ""], ("--json is alone: compare",)),
         (None, ["--json", "--report", ""], ("--json is alone",)),
     ],

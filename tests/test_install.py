@@ -53,9 +53,14 @@ def test_only_a_folder_of_its_own_is_emptied(tmp_path, monkeypatch, file, folder
         assert [path.name for path in Path(folder).iterdir()] == [MARK]
 
 
-REFUSED = "Retrying (Retry(total={}, connect=None)) after connection broken by '{}': /{}/six/"
+REFUSED = (
+    "Retrying (Retry(total={}, connect=None)) after connection broken by '{}': /{}/six/"
+)
 NEW = "NewConnectionError(<pip.HTTPSConnection at 0x7>: {})"
-DNS, PROXY = NEW.format("[Errno -2] Name unknown"), f"ProxyError({NEW.format('[Errno 111] No')})"
+DNS, PROXY = (
+    NEW.format("[Errno -2] Name unknown"),
+    f"ProxyError({NEW.format('[Errno 111] No')})",
+)
 LOOKING = f"Looking in indexes: https://mirror.org/simple, {CPU}"
 KILLED = "import os; os.kill(os.getpid(), 9)"
 FULL = "ERROR: Could not install: [Errno 28] No space left on device"
@@ -64,17 +69,39 @@ FULL = "ERROR: Could not install: [Errno 28] No space left on device"
 @pytest.mark.parametrize(
     ("printed", "said"),
     [
-        ([REFUSED.format(0, DNS, "simple")], "https://pypi.org/simple cannot be reached ([Errno -"),
-        ([LOOKING, REFUSED.format(0, DNS, "simple")], "https://mirror.org/simple cannot be"),
-        ([LOOKING, REFUSED.format(0, PROXY, "whl/cpu")], f"{CPU} cannot be reached (the proxy: [E"),
+        (
+            [REFUSED.format(0, DNS, "simple")],
+            "https://pypi.org/simple cannot be reached ([Errno -",
+        ),
+        (
+            [LOOKING, REFUSED.format(0, DNS, "simple")],
+            "https://mirror.org/simple cannot be",
+        ),
+        (
+            [LOOKING, REFUSED.format(0, PROXY, "whl/cpu")],
+            f"{CPU} cannot be reached (the proxy: [E",
+        ),
         ([REFUSED.format(0, "ReadTimeout(read timed out)", "packages")], "(timed out)"),
-        ([REFUSED.format(1, DNS, "simple"), "Collecting six", "last words"], "last words"),
-        (["ERROR: No matching distribution found for six", "more"], "No matching distribution"),
-        (["ERROR: Exception:", "Traceback", "ReadTimeoutError: host='x'"], "ReadTimeoutError: ho"),
+        (
+            [REFUSED.format(1, DNS, "simple"), "Collecting six", "last words"],
+            "last words",
+        ),
+        (
+            ["ERROR: No matching distribution found for six", "more"],
+            "No matching distribution",
+        ),
+        (
+            ["ERROR: Exception:", "Traceback", "ReadTimeoutError: host='x'"],
+            "ReadTimeoutError: ho",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_failed_is_one_line(here, monkeypatch, printed, said):
-    for name in ("PIP_TARGET", "PIP_DRY_RUN", "PYTHONPATH"):  # they would install elsewhere
+    for name in (
+        "PIP_TARGET",
+        "PIP_DRY_RUN",
+        "PYTHONPATH",
+    ):  # they would install elsewhere
         monkeypatch.setenv(name, "other")
     code = "import os; e = os.environ; assert 'other' not in e.values() and e['PIP_USER'] == '0'"
     code += f"; print({chr(10).join(printed)!r}); raise SystemExit(1)"
@@ -110,19 +137,29 @@ def test_an_index_that_refuses_ends_pip_after_its_attempts(here, monkeypatch):
     for name in ("PIP_FIND_LINKS", "PIP_EXTRA_INDEX_URL"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("PIP_INDEX_URL", "http://127.0.0.1:9/simple")
-    with pytest.raises(InstallError, match=r"^http://127.0.0.1:9/simple cannot be reached \(\[E"):
+    with pytest.raises(
+        InstallError, match=r"^http://127.0.0.1:9/simple cannot be reached \(\[E"
+    ):
         here.pip("six", "no-such-package")
 
 
 @pytest.mark.parametrize(
     ("code", "status", "said"),
-    [(f"raise SystemExit({FULL!r})", 1, "Step"), (KILLED, 1, "memory"), ("pass", 0, "")],
+    [
+        (f"raise SystemExit({FULL!r})", 1, "Step"),
+        (KILLED, 1, "memory"),
+        ("pass", 0, ""),
+    ],
 )
-def test_a_failed_step_has_its_number_and_the_advice(here, monkeypatch, capsys, code, status, said):
+def test_a_failed_step_has_its_number_and_the_advice(
+    here, monkeypatch, capsys, code, status, said
+):
     for name in ("environment", "torch", "pip"):
         monkeypatch.setattr(Installation, name, lambda self, *arguments: None)
     call = Installation.call
-    monkeypatch.setattr(Installation, "call", lambda self, *_, **__: call(self, "-c", code))
+    monkeypatch.setattr(
+        Installation, "call", lambda self, *_, **__: call(self, "-c", code)
+    )
     assert install.run(here) == status
     out, err = capsys.readouterr()
     assert out.splitlines()[-1].startswith(f"install  step {5 - status} of 5, ")

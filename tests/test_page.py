@@ -29,7 +29,9 @@ def displayed(monkeypatch):
     """What a page displays: (data, metadata)."""
     kept = []
     monkeypatch.setattr(
-        pages, "display", lambda data, metadata, raw: kept.append((data, metadata["robo_genesis"]))
+        pages,
+        "display",
+        lambda data, metadata, raw: kept.append((data, metadata["robo_genesis"])),
     )
     return kept
 
@@ -51,14 +53,18 @@ def measure(page):
     """Fill a page with a synthetic drop that passes every check."""
     frames = iter((FRAME, FRAME[::-1]))
     camera = SimpleNamespace(render=lambda **_: [next(frames)])
-    page.readings |= {"model": spec.EXPECTED_MODEL, "body": {"mass": spec.BASELINE.mass}}
+    page.readings |= {
+        "model": spec.EXPECTED_MODEL,
+        "body": {"mass": spec.BASELINE.mass},
+    }
     page.capture(camera, "initial")
     page.traces["baseline"] = make_drop(spec.BASELINE)
     page.capture(camera, "final")
 
 
 @pytest.mark.parametrize(
-    ("run_id", "compiled", "lines"), [(None, False, 4), (RUN_ID, False, 0), (None, True, 0)]
+    ("run_id", "compiled", "lines"),
+    [(None, False, 4), (RUN_ID, False, 0), (None, True, 0)],
 )
 def test_a_reader_s_first_start_says_what_the_next_minutes_do(
     page, tmp_path, monkeypatch, capsys, run_id, compiled, lines
@@ -72,7 +78,9 @@ def test_a_reader_s_first_start_says_what_the_next_minutes_do(
         (tmp_path / "one.qdc").touch()
     rg.open_page("l02", "lab")
     said = capsys.readouterr().out.splitlines()
-    assert [line[:13] for line in said[1:]] == [f"Step {n} of 3: "[:13] for n in range(1, lines)]
+    assert [line[:13] for line in said[1:]] == [
+        f"Step {n} of 3: "[:13] for n in range(1, lines)
+    ]
     assert len(said) == lines
 
 
@@ -89,8 +97,14 @@ def test_the_names_are_loaded_without_the_engine_and_only_when_used():
 
 
 def test_a_page_is_opened_once_and_only_by_a_known_name(page):
-    assert (page.render, page.folder.name, list(page.links)) == (True, "lab", [spec.LINK])
-    with pytest.raises(session.EngineError, match=r"l02/lab is open .*Restart the kernel"):
+    assert (page.render, page.folder.name, list(page.links)) == (
+        True,
+        "lab",
+        [spec.LINK],
+    )
+    with pytest.raises(
+        session.EngineError, match=r"l02/lab is open .*Restart the kernel"
+    ):
         rg.open_page("l02", "lecture")
     with pytest.raises(LookupError, match=r"l02/extra .*Choices: l02/lab, l02/lecture"):
         rg.open_page("l02", "extra")
@@ -99,7 +113,9 @@ def test_a_page_is_opened_once_and_only_by_a_known_name(page):
 def test_a_page_without_an_engine_is_refused(monkeypatch, tmp_path):
     monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(tmp_path))
     monkeypatch.setattr(pages, "_opened", [])
-    monkeypatch.setattr(session, "import_engine", lambda: SimpleNamespace(_initialized=False))
+    monkeypatch.setattr(
+        session, "import_engine", lambda: SimpleNamespace(_initialized=False)
+    )
     with pytest.raises(session.EngineError, match="not initialised"):
         rg.open_page("l02", "lab")
     assert pages._opened == []
@@ -110,7 +126,10 @@ def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
     page.show(l02.text.metric_table)
     page.show(l02.plots.height)
     (table, named), (drawing, drawn) = displayed
-    assert named == {"function": "robo_genesis.lessons.l02.text.metric_table", "arguments": []}
+    assert named == {
+        "function": "robo_genesis.lessons.l02.text.metric_table",
+        "arguments": [],
+    }
     assert list(table) == ["text/markdown"]
     assert "distance fallen" in table["text/markdown"]
     assert list(drawing) == ["image/svg+xml"]
@@ -123,7 +142,11 @@ def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
     [
         (lambda run: "", (), "cannot be shown"),
         ("a table", (), r"'a table'. Give a function of a lesson and not its result"),
-        (l02.text.metric_table, (1, {2}), r"arguments \(1, \{2\}\). Valid are JSON values"),
+        (
+            l02.text.metric_table,
+            (1, {2}),
+            r"arguments \(1, \{2\}\). Valid are JSON values",
+        ),
         (l02.text.metric_table, (float("nan"),), "Valid are JSON values"),
     ],
 )
@@ -149,8 +172,12 @@ def test_only_functions_that_return_a_table_or_figure_are_shown(page, name, mess
         shown.mime_data(name, page.experiment, [{}])
 
 
-@pytest.mark.parametrize("colour", [{}, {"color": "red"}, {"color": "C7", "alpha": 0.5}])
-def test_a_figure_has_the_palette_s_colours_and_no_others(page, displayed, monkeypatch, colour):
+@pytest.mark.parametrize(
+    "colour", [{}, {"color": "red"}, {"color": "C7", "alpha": 0.5}]
+)
+def test_a_figure_has_the_palette_s_colours_and_no_others(
+    page, displayed, monkeypatch, colour
+):
     measure(page)
 
     def height(run):
@@ -162,14 +189,18 @@ def test_a_figure_has_the_palette_s_colours_and_no_others(page, displayed, monke
     height.__module__, height.__qualname__ = l02.plots.__name__, "height"
     monkeypatch.setattr(l02.plots, "height", height)
     if colour.get("color") == "red":
-        with pytest.raises(shown.ShownError, match=r"l02.plots.height draws in #ff0000. A page dr"):
+        with pytest.raises(
+            shown.ShownError, match=r"l02.plots.height draws in #ff0000. A page dr"
+        ):
             page.show(height)
     else:
         page.show(height)
         assert list(displayed[0][0]) == ["image/svg+xml"]
 
 
-def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(page, displayed, capsys):
+def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(
+    page, displayed, capsys
+):
     measure(page)
     page._written |= dict.fromkeys(page._written, 1)
     page.finish(None)
@@ -192,7 +223,9 @@ def usable_frame(rgb):
     return rgb["wide"]
 
 
-def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(page, capsys):
+def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(
+    page, capsys
+):
     measure(page)
     page._written |= {"make_scene": 1, "record": 1}
     page.test(l02.exercises.stepped, SOLVED["stepped"])
@@ -201,13 +234,20 @@ def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(page
     first, *_, line = failed.value._render_traceback_()
     assert first == "usable_frame does not pass its test yet."
     assert line.endswith('of its cell: return rgb["wide"]')
-    with pytest.raises(LookupError, match=r"test_\w+ is not declared\. Functions: make_scene"):
+    with pytest.raises(
+        LookupError, match=r"test_\w+ is not declared\. Functions: make_scene"
+    ):
         page.test(l02.exercises.stepped, test_without_a_camera_no_frame_is_taken)
     page.finish(None)
     last = capsys.readouterr().out.splitlines()[-2:]
-    assert last == ["functions 3 of 4", "L02 CHECK: INCOMPLETE, not passed: usable_frame"]
+    assert last == [
+        "functions 3 of 4",
+        "L02 CHECK: INCOMPLETE, not passed: usable_frame",
+    ]
     metrics = json.loads((page.folder / "cpu" / "metrics.json").read_text())
-    assert {name: of["value"] for name, of in metrics["functions"].items()} == page._written
+    assert {
+        name: of["value"] for name, of in metrics["functions"].items()
+    } == page._written
 
 
 def test_without_a_camera_no_frame_is_taken(page, monkeypatch):
@@ -220,6 +260,8 @@ def test_without_a_camera_no_frame_is_taken(page, monkeypatch):
 
 
 def test_the_facts_name_the_backend(page, engine, capsys):
-    assert f"{engine.backend.actual} ({engine.backend.device_name})" in page.facts().data
+    assert (
+        f"{engine.backend.actual} ({engine.backend.device_name})" in page.facts().data
+    )
     page.require("boxes", same=True)
     assert capsys.readouterr().out == "L02 BOXES CHECK: PASSED\n"

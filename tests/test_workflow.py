@@ -32,34 +32,56 @@ def read(path: Path) -> dict[str, Any]:
 FLOWS = {path.stem: read(path) for path in sorted((FOLDER / "workflows").glob("*.yml"))}
 PLAN, RECORD = FLOWS["book"], FLOWS["record"]
 JOBS = PLAN["jobs"]
-EVERY_JOB = {f"{flow}.{name}": job for flow in FLOWS for name, job in FLOWS[flow]["jobs"].items()}
+EVERY_JOB = {
+    f"{flow}.{name}": job for flow in FLOWS for name, job in FLOWS[flow]["jobs"].items()
+}
 STEPS = [step for job in EVERY_JOB.values() for step in job["steps"]]
 STEPS += read(SETUP)["runs"]["steps"]
 
 
 def step(job: dict[str, Any], uses: str, number: int = -1) -> dict[str, Any]:
     """Return the inputs of the step that uses an action, by default the last such step."""
-    return [one for one in job["steps"] if one.get("uses", "").startswith(uses)][number]["with"]
+    return [one for one in job["steps"] if one.get("uses", "").startswith(uses)][
+        number
+    ]["with"]
 
 
 def making(job: dict[str, Any], target: str) -> dict[str, Any]:
-    (found,) = [step for step in job["steps"] if target in MAKE.findall(step.get("run", ""))]
+    (found,) = [
+        step for step in job["steps"] if target in MAKE.findall(step.get("run", ""))
+    ]
     return found
 
 
 def test_every_target_that_a_step_makes_or_a_document_names_is_one():
     targets = set(re.findall(r"^([\w./-]+):", (ROOT / "Makefile").read_text(), re.M))
     made = {name for one in STEPS for name in MAKE.findall(one.get("run", ""))}
-    assert made >= {"lint", "test", "execute", "book", "pages", "repin", "evidence-rocm"}
+    assert made >= {
+        "lint",
+        "test",
+        "execute",
+        "book",
+        "pages",
+        "repin",
+        "evidence-rocm",
+    }
     assert made <= targets
     documents = [*ROOT.glob("*.md"), *FOLDER.rglob("*.md"), *FOLDER.rglob("*.yml")]
     documents += [ROOT / ".devcontainer/devcontainer.json", ROOT / ".rocm/Dockerfile"]
     for document in documents:
         if document.name != "CHANGELOG.md":  # it names targets of the past as well
             # A word of prose after "make" is not in a span or block of code.
-            code = re.findall(r"`make ([^`\n]*)`|^    make (.*)$", document.read_text(), re.M)
-            words = {word for found in code for word in " ".join(found).split("#")[0].split()}
-            named = {word.strip(".,") for word in words if re.fullmatch(r"[a-z-]+[.,]?", word)}
+            code = re.findall(
+                r"`make ([^`\n]*)`|^    make (.*)$", document.read_text(), re.M
+            )
+            words = {
+                word for found in code for word in " ".join(found).split("#")[0].split()
+            }
+            named = {
+                word.strip(".,")
+                for word in words
+                if re.fullmatch(r"[a-z-]+[.,]?", word)
+            }
             assert named <= targets, document.name
 
 
@@ -80,13 +102,17 @@ def run_plan(folder: Path, python: str) -> tuple[int, dict[str, str]]:
     return done.returncode, dict(line.split("=", 1) for line in lines)
 
 
-def test_the_matrix_is_the_pages_of_the_book_and_a_plan_that_fails_stops_the_workflow(tmp_path):
+def test_the_matrix_is_the_pages_of_the_book_and_a_plan_that_fails_stops_the_workflow(
+    tmp_path,
+):
     assert run_plan(tmp_path, "false") == (2, {})
     status, output = run_plan(tmp_path, sys.executable)
     assert status == 0
     assert json.loads(output["pages"]) == [page.docname for page in find_pages(BOOK)]
     assert output["kernels"] == engine_cache_folder().name
-    assert JOBS["lint"]["outputs"] == {n: f"${{{{ steps.plan.outputs.{n} }}}}" for n in output}
+    assert JOBS["lint"]["outputs"] == {
+        n: f"${{{{ steps.plan.outputs.{n} }}}}" for n in output
+    }
     matrix = JOBS["execute"]["strategy"]["matrix"]
     assert matrix["page"] == "${{ fromJSON(needs.lint.outputs.pages) }}"
     assert (matrix["machine"], len(matrix)) == (["first", "second"], 2)
@@ -98,7 +124,9 @@ def test_the_book_is_built_from_pages_that_two_machines_executed():
     sent = step(JOBS["execute"], "actions/upload-artifact", 0)
     assert execute["env"] == {"PAGE": "${{ matrix.page }}", "TO": sent["path"]}
     assert sent["name"] == "executed-${{ matrix.machine }}-${{ strategy.job-index }}"
-    for number, (machine, name) in enumerate({"first": "EXECUTED", "second": "SECOND"}.items()):
+    for number, (machine, name) in enumerate(
+        {"first": "EXECUTED", "second": "SECOND"}.items()
+    ):
         taken = step(JOBS["book"], "actions/download-artifact", number)
         assert taken["pattern"] == f"executed-{machine}-*"
         assert taken["path"] == book["env"][name]
@@ -106,14 +134,20 @@ def test_the_book_is_built_from_pages_that_two_machines_executed():
 
 
 def test_what_is_deployed_has_passed_the_gate_of_releases():
-    builds = [one for job in JOBS.values() for one in job["steps"] if "make book" in str(one)]
+    builds = [
+        one for job in JOBS.values() for one in job["steps"] if "make book" in str(one)
+    ]
     assert builds == [book := making(JOBS["book"], "book")]
     assert "if" not in JOBS["book"]
     assert book["env"]["RELEASE"] == "1"
     released = making(FLOWS["release"]["jobs"]["book"], "book")
     assert released["env"]["RELEASE"] == "1"
-    assert {one["env"]["SOLUTIONS"] for one in (book, released)} == {"${{ vars.SOLUTIONS }}"}
-    assert book["env"]["SITE_URL"] == "${{ vars.SITE_URL || needs.address.outputs.url }}"
+    assert {one["env"]["SOLUTIONS"] for one in (book, released)} == {
+        "${{ vars.SOLUTIONS }}"
+    }
+    assert (
+        book["env"]["SITE_URL"] == "${{ vars.SITE_URL || needs.address.outputs.url }}"
+    )
     events = 'contains(fromJSON(\'["push", "workflow_dispatch"]\'), github.event_name)'
     assert events in JOBS["address"]["steps"][0]["if"]
     deploy = JOBS["deploy"]
@@ -121,9 +155,14 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     assert set(deploy["needs"]) == {"workflows", "test", "book"}
     taken = step(deploy, "actions/download-artifact")
     sent = [step(JOBS["book"], "actions/upload-artifact", n) for n in (0, 1)]
-    assert [one["path"] for one in sent if one["name"] == taken["name"]] == ["book/_build/html"]
+    assert [one["path"] for one in sent if one["name"] == taken["name"]] == [
+        "book/_build/html"
+    ]
     assert step(deploy, "actions/upload-pages-artifact")["path"] == taken["path"]
-    assert step(deploy, "actions/attest@")["subject-checksums"] == f"{taken['path']}/{SUMS}"
+    assert (
+        step(deploy, "actions/attest@")["subject-checksums"]
+        == f"{taken['path']}/{SUMS}"
+    )
 
 
 def test_the_parts_of_the_tests_are_all_of_them():
@@ -141,20 +180,30 @@ def test_the_parts_of_the_tests_are_all_of_them():
 def test_every_environment_gets_torch_for_the_cpu_from_the_address_of_the_book():
     command = ["make", "--always-make", "--dry-run", ".venv/.installed"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    (line,) = [one for one in done.stdout.splitlines() if one.startswith("TORCH_INDEX=")]
+    (line,) = [
+        one for one in done.stdout.splitlines() if one.startswith("TORCH_INDEX=")
+    ]
     value = line.removesuffix(" \\")
-    address = yaml.safe_load((BOOK / "_config.yml").read_text())["sphinx"]["config"]["torch_index"]
+    address = yaml.safe_load((BOOK / "_config.yml").read_text())["sphinx"]["config"][
+        "torch_index"
+    ]
     for given, read in (("", address), ("https://example.org", "https://example.org")):
         script = f'{value}; echo "$TORCH_INDEX"'
         environment = os.environ | {"TORCH_INDEX": given}
-        said = subprocess.check_output(["bash", "-c", script], cwd=ROOT, env=environment, text=True)
+        said = subprocess.check_output(
+            ["bash", "-c", script], cwd=ROOT, env=environment, text=True
+        )
         assert said.strip() == read
     for name, flow in FLOWS.items():
         assert flow["env"]["TORCH_INDEX"] == "${{ vars.TORCH_INDEX }}", name
 
 
 def test_a_scheduled_run_and_one_of_a_tag_restore_nothing():
-    cached = [one for one in STEPS if re.match("actions/cache(/restore)?@", one.get("uses", ""))]
+    cached = [
+        one
+        for one in STEPS
+        if re.match("actions/cache(/restore)?@", one.get("uses", ""))
+    ]
     assert len(cached) == 3
     assert all("github.event_name != 'schedule'" in one["if"] for one in cached)
     of_setup = [one for one in cached if one in read(SETUP)["runs"]["steps"]]
@@ -165,8 +214,14 @@ def test_a_scheduled_run_and_one_of_a_tag_restore_nothing():
 
 
 def test_jobs_can_write_only_what_they_must():
-    assert {str(flow["permissions"]) for flow in FLOWS.values()} == {"{'contents': 'read'}"}
-    more = {name: job["permissions"] for name, job in EVERY_JOB.items() if "permissions" in job}
+    assert {str(flow["permissions"]) for flow in FLOWS.values()} == {
+        "{'contents': 'read'}"
+    }
+    more = {
+        name: job["permissions"]
+        for name, job in EVERY_JOB.items()
+        if "permissions" in job
+    }
     pull_request = {"contents": "write", "pull-requests": "write"}
     signed = {"id-token": "write", "attestations": "write"}
     assert more == {
@@ -177,7 +232,9 @@ def test_jobs_can_write_only_what_they_must():
         "release.release": {"contents": "write"} | signed,
     }
     assert JOBS["deploy"]["if"].startswith("github.ref == 'refs/heads/main'")
-    for name in more:  # what can write runs no code of the course, of its packages or its pages
+    for name in (
+        more
+    ):  # what can write runs no code of the course, of its packages or its pages
         for one in EVERY_JOB[name]["steps"]:
             assert not re.search(rf"{MAKE.pattern}|python", one.get("run", "")), name
             assert not one.get("uses", "").startswith("./"), name
@@ -190,22 +247,35 @@ def test_jobs_can_write_only_what_they_must():
 def test_only_a_person_starts_a_recording():
     """A runner of one's own must never run the code of a pull request."""
     assert list(RECORD["on"]) == ["workflow_dispatch"]
-    own = {n: job["runs-on"] for n, job in EVERY_JOB.items() if "self-hosted" in job["runs-on"]}
+    own = {
+        n: job["runs-on"]
+        for n, job in EVERY_JOB.items()
+        if "self-hosted" in job["runs-on"]
+    }
     assert own == {"record.record": ["self-hosted", "rocm"]}
 
 
 def test_a_recording_is_verified_and_compared_before_it_is_proposed():
     jobs = RECORD["jobs"]
-    assert making(jobs["cpu"], "evidence")["env"] == {"BACKEND": "cpu", "TO": "executed"}
+    assert making(jobs["cpu"], "evidence")["env"] == {
+        "BACKEND": "cpu",
+        "TO": "executed",
+    }
     compare = [MAKE.findall(one.get("run", "")) for one in jobs["compare"]["steps"]]
     assert [name for names in compare for name in names] == ["verify", "compare"]
-    needs = [jobs[name].get("needs") for name in ("cpu", "record", "compare", "propose")]
+    needs = [
+        jobs[name].get("needs") for name in ("cpu", "record", "compare", "propose")
+    ]
     assert needs == [None, "cpu", ["cpu", "record"], "compare"]
 
 
 def test_every_action_is_pinned_by_its_commit_or_digest():
     files = [SETUP, *(FOLDER / "workflows").glob("*.yml")]
-    used = [line.strip().removeprefix("- ") for f in files for line in f.read_text().splitlines()]
+    used = [
+        line.strip().removeprefix("- ")
+        for f in files
+        for line in f.read_text().splitlines()
+    ]
     used = [line for line in used if line.startswith("uses:")]
     assert len(used) > 30
     for line in used:
@@ -226,7 +296,9 @@ def test_input_never_becomes_shell_and_every_job_ends():
 
 def test_jobs_run_in_the_container_of_the_labs():
     """Dependabot updates the digest in the Dockerfile; this test requires it in the workflows."""
-    (image,) = re.findall(r"^FROM (\S+)$", (ROOT / ".devcontainer/Dockerfile").read_text(), re.M)
+    (image,) = re.findall(
+        r"^FROM (\S+)$", (ROOT / ".devcontainer/Dockerfile").read_text(), re.M
+    )
     assert re.search(r"@sha256:[0-9a-f]{64}$", image)
     found = {job["container"] for job in EVERY_JOB.values() if "container" in job}
     assert found == {image, "python:${{ matrix.python }}-bookworm"}

@@ -50,9 +50,17 @@ facts = dict(
 
 LAB_FRONT = "robo_genesis: {lesson: l04, page: lab}\n"
 SETTINGS = (
-    "RENDER", "RELEASE", "JOBS", "SITE_URL", "EXECUTED", "SECOND", "PAGE", "TO", "LESSON",
+    "RENDER",
+    "RELEASE",
+    "JOBS",
+    "SITE_URL",
+    "EXECUTED",
+    "SECOND",
+    "PAGE",
+    "TO",
+    "LESSON",
     "BACKEND",
-)  # fmt: skip
+)
 
 
 def cell(code: str, options: str = "") -> str:
@@ -90,7 +98,9 @@ def accept(folder: Path, run_id: str) -> SimpleNamespace:
 
 
 def refuse(folder: Path, run_id: str) -> SimpleNamespace:
-    raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
+    raise BundleRefused(
+        "metrics", "metrics.json g1.rise_time is not what the arrays say."
+    )
 
 
 def make_book(folder: Path, **pages: str) -> Path:
@@ -111,8 +121,14 @@ def make_book(folder: Path, **pages: str) -> Path:
 def seal(place: Path) -> None:
     """Make the digests of an executed page's record right again."""
     record = json.loads((place / "page.json").read_text())
-    files = [path for path in place.rglob("*") if path.is_file() and path != place / "page.json"]
-    record["files"] = {path.relative_to(place).as_posix(): sha256(path) for path in files}
+    files = [
+        path
+        for path in place.rglob("*")
+        if path.is_file() and path != place / "page.json"
+    ]
+    record["files"] = {
+        path.relative_to(place).as_posix(): sha256(path) for path in files
+    }
     (place / "page.json").write_text(json.dumps(record))
 
 
@@ -147,7 +163,13 @@ def start(
 
     In a process group of its own, it can be sent what a terminal sends on Ctrl-C.
     """
-    arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache"), *more]
+    arguments = [
+        "--book",
+        str(folder / "book"),
+        "--cache",
+        str(folder / "cache"),
+        *more,
+    ]
     kept = {name: value for name, value in os.environ.items() if name not in SETTINGS}
     command = [sys.executable, str(ROOT / "build_scripts" / script), *arguments]
     how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}

@@ -17,9 +17,9 @@ Run = Trace | BodyTrace
 class Channel:
     """One quantity of several runs, with a value at each state.
 
-    `head` is its name in the head of a table and at an axis; `digits` is the number of digits after
-    the point in a readout. `values` by case have shape (n+1,) [unit]; curves show those up to
-    `top`, None for all.
+    `head` is its name in the head of a table and at an axis; `digits` is the number of
+    digits after the point in a readout. `values` by case have shape (n+1,) [unit];
+    curves show those up to `top`, None for all.
     """
 
     name: str
@@ -34,9 +34,9 @@ class Channel:
 class Level:
     """A reference for a channel, such as a target, drawn as lines across its plot.
 
-    `mark` is the mark of the line in the palette, `legend` its sentence in a replay. `values` by
-    case are in the unit of the channel; `texts` by case have the unit. `band` is the half width
-    of an area around each line, 0 for none.
+    `mark` is the mark of the line in the palette, `legend` its sentence in a replay.
+    `values` by case are in the unit of the channel; `texts` by case have the unit.
+    `band` is the half width of an area around each line, 0 for none.
     """
 
     name: str
@@ -117,7 +117,9 @@ class Runs:
             )
         grids = {case: (trace.steps, trace.dt) for case, trace in self.traces.items()}
         if any(not np.array_equal(trace.t, self.t) for trace in self.traces.values()):
-            found = ", ".join(f"{case} {n} × {dt:g} s" for case, (n, dt) in grids.items())
+            found = ", ".join(
+                f"{case} {n} × {dt:g} s" for case, (n, dt) in grids.items()
+            )
             raise ValueError(
                 f"The runs have other times: {found}; pictures and replays take one grid. Record "
                 "the cases with one outer step and one length, and vary the substeps."

@@ -1,7 +1,8 @@
 """Named checks: the values that they find, and the error that names each check that failed.
 
-A check is a function that yields findings. Its name is that of the function, and its docstring is
-its claim: what it requires. Each finding pairs a measured value with a judgement.
+A check is a function that yields findings. Its name is that of the function, and its
+docstring is its claim: what it requires. Each finding pairs a measured value with a
+judgement.
 """
 
 import math
@@ -30,9 +31,10 @@ class CheckFailed(AssertionError):  # noqa: N818 - read aloud: check failed
 class Finding:
     """One value that a check found, and its judgement.
 
-    `expected` describes the allowed values in a message. A finding that is not `recorded` is about
-    the configuration, repeats metrics, or judges arrays by a law: a bundle has these elsewhere.
-    `code` is that of the refusal of a bundle for which the finding does not pass.
+    `expected` describes the allowed values in a message. A finding that is not
+    `recorded` is about the configuration, repeats metrics, or judges arrays by a law: a
+    bundle has these elsewhere. `code` is that of the refusal of a bundle for which the
+    finding does not pass.
     """
 
     label: str
@@ -52,9 +54,9 @@ class Finding:
 class Check:
     """Outcome of one check.
 
-    `detail` names the problems if it failed, else what the check requires. `found` has the recorded
-    values by label; neither `detail` nor the allowed values are in a bundle. `code` is that of the
-    refusal if it failed.
+    `detail` names the problems if it failed, else what the check requires. `found` has
+    the recorded values by label; neither `detail` nor the allowed values are in a
+    bundle. `code` is that of the refusal if it failed.
     """
 
     name: str
@@ -91,7 +93,9 @@ def equal(label: str, found: Any, expected: Any, recorded: bool = True) -> Findi
     return Finding(label, value, value == required, quoted(required), recorded)
 
 
-def within(label: str, found: float | None, expected: float, tolerance: float) -> Finding:
+def within(
+    label: str, found: float | None, expected: float, tolerance: float
+) -> Finding:
     """Require a value that differs from the expected one by no more than the tolerance."""
     passed = found is not None and abs(found - expected) <= tolerance
     return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
@@ -118,19 +122,27 @@ def above(label: str, found: float | None, limit: float) -> Finding:
 
 
 def _limited(
-    label: str, found: float | None, order: Callable[[Any, Any], Any], words: str, limit: float
+    label: str,
+    found: float | None,
+    order: Callable[[Any, Any], Any],
+    words: str,
+    limit: float,
 ) -> Finding:
     passed = found is not None and order(found, limit)
     return Finding(label, found, bool(passed), f"{words} {limit:g}")
 
 
-def model_counts(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[Finding]:
+def model_counts(
+    found: Mapping[str, float], expected: Mapping[str, float]
+) -> Iterator[Finding]:
     """Require the engine's counts of a model."""
     for name in dict.fromkeys([*found, *expected]):
         yield equal(name, found.get(name), expected.get(name))
 
 
-def masses(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[Finding]:
+def masses(
+    found: Mapping[str, float], expected: Mapping[str, float]
+) -> Iterator[Finding]:
     """Require of each body the engine's mass to be density times volume.
 
     Args:
@@ -182,12 +194,16 @@ def conclude(
     problems = [finding.problem for finding in broken]
     labels = [finding.label for finding in findings]
     if repeated := sorted({label for label in labels if labels.count(label) > 1}):
-        problems.append(f"labels are repeated: {', '.join(repeated)}. Give each finding its own")
+        problems.append(
+            f"labels are repeated: {', '.join(repeated)}. Give each finding its own"
+        )
     if error is not None:
         problems.append(f"cannot be evaluated: {error!r}")
     elif not findings:
         problems.append("nothing was found")
-    found = {finding.label: plain(finding.found) for finding in findings if finding.recorded}
+    found = {
+        finding.label: plain(finding.found) for finding in findings if finding.recorded
+    }
     code = next((finding.code for finding in broken if finding.code != FAILED), FAILED)
     return Check(name, not problems, "; ".join(problems) or claim, found, code)
 
@@ -225,5 +241,7 @@ def require(lesson: str, outcomes: Sequence[Check]) -> str:
     """
     failed = [f"[{c.name}] {c.detail}" for c in outcomes if not c.passed]
     if failed or not outcomes:
-        raise CheckFailed(f"{lesson.upper()} CHECK: FAILED " + " ".join(failed or ["no check ran"]))
+        raise CheckFailed(
+            f"{lesson.upper()} CHECK: FAILED " + " ".join(failed or ["no check ran"])
+        )
     return f"{lesson.upper()} CHECK: PASSED"

@@ -14,7 +14,8 @@ from robo_genesis.core.trace import TimeSeries
 
 HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"
 
-SAME_FLOAT = 1e-9  # Relative tolerance of a recorded value against the one that is computed again
+# Relative tolerance of a recorded value against the one that is computed again
+SAME_FLOAT = 1e-9
 
 ROUNDING = 1e-12  # Tolerance of such a value near zero, in its own unit
 
@@ -53,14 +54,17 @@ def order(a: float | None, b: float | None, resolution: float) -> str | None:
 def outcome(numbers: Mapping[str, Any], relation: Relation) -> tuple[str, str]:
     """Return whether one run confirms an ordering, and the two values as text.
 
-    `numbers` has metrics with `value` and `unit` by `case.name`. A difference within the margin
-    confirms nothing, unless the claim is "no later" and the second value is not later at all.
+    `numbers` has metrics with `value` and `unit` by `case.name`. A difference within
+    the margin confirms nothing, unless the claim is "no later" and the second value is
+    not later at all.
     """
     (first, second), metric, claim, margin = relation
     a, b = (numbers.get(f"{case}.{metric}") for case in (first, second))
     if a is None or b is None:
         return WITHIN_MARGIN, f"{first} or {second} is missing"
-    text = f"{first} {six_digits(a.value, a.unit)}, {second} {six_digits(b.value, b.unit)}"
+    text = (
+        f"{first} {six_digits(a.value, a.unit)}, {second} {six_digits(b.value, b.unit)}"
+    )
     resolved, exact = (order(a.value, b.value, room) for room in (margin, 0))
     if claim == "no later" and exact in HELD_BY[claim]:
         return HELD, text
@@ -73,8 +77,8 @@ def outcome(numbers: Mapping[str, Any], relation: Relation) -> tuple[str, str]:
 class Comparison:
     """One metric of two cases; `label` is its name in prose.
 
-    Values are equal if they differ by no more than the `resolution` of the unit or the declared
-    `margin`.
+    Values are equal if they differ by no more than the `resolution` of the unit or the
+    declared `margin`.
     """
 
     label: str
@@ -124,7 +128,10 @@ def agree(recorded: Any, computed: Any) -> bool:
 
 
 def differences(
-    found: Any, expected: Any, same: Callable[[Any, Any], bool] = operator.eq, path: str = ""
+    found: Any,
+    expected: Any,
+    same: Callable[[Any, Any], bool] = operator.eq,
+    path: str = "",
 ) -> Iterator[tuple[str, Any, Any]]:
     """Yield (path, found, expected) where two JSON values differ; `absent` is a missing entry.
 

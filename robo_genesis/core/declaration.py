@@ -38,19 +38,23 @@ class Lesson:
 
     def about_metrics(self, what: str) -> dict[str, Any]:
         """Return `unit`, `label` or `noun` of each of its metrics by name."""
-        return {name: v for of in self.metrics.values() for name, v in of.about(what).items()}
+        return {
+            name: v
+            for of in self.metrics.values()
+            for name, v in of.about(what).items()
+        }
 
 
 def on_demand(package: str, **offered: str) -> Callable[[str], Any]:
     """Return the `__getattr__` of a lesson: what a page uses is imported when it is used.
 
-    A module of the lesson's folder needs no argument. The readers of import statements know the
-    arguments as well, so each is written out.
+    A module of the lesson's folder needs no argument. The readers of import statements
+    know the arguments as well, so each is written out.
 
     Args:
         package: the `__name__` of the lesson.
-        offered: by name, the module that has it, or that it is: `run` of the lesson's folder, or a
-            module of another sub-package by its whole name.
+        offered: by name, the module that has it, or that it is: `run` of the lesson's
+            folder, or a module of another sub-package by its whole name.
     """
 
     def imported(name: str) -> Any:

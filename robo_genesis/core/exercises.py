@@ -62,14 +62,19 @@ class Watched:
             ValueError: it changed an array that it was given.
         """
         before = [np.copy(value) for value in given if isinstance(value, np.ndarray)]
-        words = [*map(brief, given), *(f"{name}={brief(value)}" for name, value in named.items())]
+        words = [
+            *map(brief, given),
+            *(f"{name}={brief(value)}" for name, value in named.items()),
+        ]
         self.call = f"{self.name}({', '.join(words)})"
         result = self.function(*given, **named)
         self.call += f" returned {brief(result)}"
         after = [value for value in given if isinstance(value, np.ndarray)]
         pairs = zip(before, after, strict=True)
         if not all(np.array_equal(*pair, equal_nan=True) for pair in pairs):
-            raise ValueError(f"{self.name} changed an array that it was given. Use a copy.")
+            raise ValueError(
+                f"{self.name} changed an array that it was given. Use a copy."
+            )
         return result
 
     def raised(self, error: Exception) -> str:
@@ -86,7 +91,9 @@ def brief(value: Any) -> str:
         return f"{value:.6g}"
     if value is None or isinstance(value, bool | int | str | np.generic):
         return str(value)[:40]
-    if isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim):
+    if isinstance(value, list | tuple) or (
+        isinstance(value, np.ndarray) and value.ndim
+    ):
         return f"[{', '.join(map(brief, value[:3]))}{', …' * (len(value) > 3)}]"
     return type(value).__name__
 
@@ -100,9 +107,9 @@ def as_test(
 ) -> Callable[Concatenate[Written, Given], Check]:
     """Make a test from a generator of findings about its first argument, a student's function.
 
-    The test ends with the first value that is not allowed, and the outcome names its call. The test
-    raises TypeError if it is called with wrong arguments. Other exceptions are those of the
-    student's function and fail the test.
+    The test ends with the first value that is not allowed, and the outcome names its
+    call. The test raises TypeError if it is called with wrong arguments. Other
+    exceptions are those of the student's function and fail the test.
     """
 
     @wraps(findings)
@@ -121,10 +128,13 @@ def as_test(
     return judge
 
 
-def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Iterator[Finding]:
+def same_array(
+    label: str, found: Any, expected: np.ndarray, tiny: float
+) -> Iterator[Finding]:
     """Require an array of the shape of the expected one, which differs from it by rounding.
 
-    If some differ, the first such number, or the first row of them along the last axis, is named.
+    If some differ, the first such number, or the first row of them along the last axis,
+    is named.
 
     Args:
         label: the beginning of the labels.
@@ -138,7 +148,9 @@ def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Ite
         return
     errors = np.abs(values - expected)
     if not (errors <= tiny).all():
-        row = tuple(np.argwhere(~(errors <= tiny))[0].tolist())[: max(1, values.ndim - 1)]
+        row = tuple(np.argwhere(~(errors <= tiny))[0].tolist())[
+            : max(1, values.ndim - 1)
+        ]
         place = f"{label}{list(row)}, the first that differs,"
         required = f"{row_text(expected[row])} ± {tiny:g}"
         yield Finding(place, row_text(values[row]), False, required)
@@ -152,7 +164,11 @@ def row_text(values: FloatArray) -> str:
 
 
 def compared(
-    run: str, names: Sequence[str], found: Sequence[Any], expected: Sequence[Any], tiny: float
+    run: str,
+    names: Sequence[str],
+    found: Sequence[Any],
+    expected: Sequence[Any],
+    tiny: float,
 ) -> Iterator[Finding]:
     """Require returned values that are None, or differ by rounding, as the expected ones.
 

@@ -17,9 +17,9 @@ from robo_genesis.core.trace import TimeSeries
 class Run:
     """One recorded run of a page.
 
-    `case` holds its settings. `measured` is whether it has metrics. `note` says how its arrays
-    differ from an ordinary run of the engine. `kind` is the class of its trace, None for
-    that of the page.
+    `case` holds its settings. `measured` is whether it has metrics. `note` says how its
+    arrays differ from an ordinary run of the engine. `kind` is the class of its trace,
+    None for that of the page.
     """
 
     case: Any
@@ -28,7 +28,9 @@ class Run:
     kind: type[TimeSeries] | None = None
 
 
-def runs_of(cases: Mapping[str, Any], measured: bool = True, note: str = "") -> dict[str, Run]:
+def runs_of(
+    cases: Mapping[str, Any], measured: bool = True, note: str = ""
+) -> dict[str, Run]:
     """Return a run of each case, by default an ordinary one with metrics."""
     return {name: Run(case, measured, note) for name, case in cases.items()}
 
@@ -67,9 +69,10 @@ def json_value(value: Any) -> Any:
 class Readings:
     """A group of values that the engine reports and that are in no array.
 
-    `units` are by name. Values of kind `exact` are counts, which another run must repeat. Those of
-    kind `performance` are elapsed times and memory, of which only the `limits` are judged: by name,
-    the least and the largest value that is possible. A count is at least 0.
+    `units` are by name. Values of kind `exact` are counts, which another run must
+    repeat. Those of kind `performance` are elapsed times and memory, of which only the
+    `limits` are judged: by name, the least and the largest value that is possible. A
+    count is at least 0.
     """
 
     units: Mapping[str, str]
@@ -78,8 +81,12 @@ class Readings:
 
     def possible(self, name: str, value: float) -> bool:
         """Return whether a value is within its limits, and an integer if it is a count."""
-        least, most = self.limits.get(name, (0 if self.kind == "exact" else -np.inf, np.inf))
-        return least <= value <= most and (self.kind != "exact" or isinstance(value, int))
+        least, most = self.limits.get(
+            name, (0 if self.kind == "exact" else -np.inf, np.inf)
+        )
+        return least <= value <= most and (
+            self.kind != "exact" or isinstance(value, int)
+        )
 
 
 def counts(names: Iterable[str]) -> Readings:
@@ -105,7 +112,8 @@ class MeasuringPage:
     | `camera` | whether it has camera frames where the environment asks for them |
     | `frames` | the names of these frames |
 
-    The code that measures needs no declaration: `sources.measuring_modules` finds it. The `spec` of
+    The code that measures needs no declaration: `sources.measuring_modules` finds it.
+        The `spec` of
     a lesson is not in it, because `parameters` covers it.
     """
 
@@ -152,8 +160,12 @@ class MeasuringPage:
         Raises:
             ValueError, IndexError: the arrays of a run give no metrics.
         """
-        measured = {n: run.case for n, run in self.runs.items() if run.measured and n in traces}
-        return {name: self.measure(traces[name], case) for name, case in measured.items()}
+        measured = {
+            n: run.case for n, run in self.runs.items() if run.measured and n in traces
+        }
+        return {
+            name: self.measure(traces[name], case) for name, case in measured.items()
+        }
 
 
 @dataclass(frozen=True)
@@ -202,7 +214,9 @@ class Experiment:
             }
             for group, of in self.page.groups(self.rendered).items()
         }
-        return of_engine | {case: found.records() for case, found in self.metrics.items()}
+        return of_engine | {
+            case: found.records() for case, found in self.metrics.items()
+        }
 
     def outcomes(self) -> tuple[Check, ...]:
         """Return the outcomes of the named checks."""

@@ -22,7 +22,8 @@ NEXT, OLD = ".next", ".old"
 DIGEST = hashlib.sha256().digest_size
 KEPT = 30 * 24 * 3600  # Seconds until an unused file is removed
 
-# Names of what Python and Jupyter make; the same with hidden files and back-ups of editors.
+# Names of what Python and Jupyter make; the same with hidden files and back-ups of
+# editors.
 MADE_BY_TOOLS = ("__pycache__", ".ipynb_checkpoints")
 NO_SOURCE = ("__pycache__", ".*", "*~", "#*#", "*.bak", "*.orig", "*.rej")
 
@@ -69,8 +70,8 @@ def write_whole(path: Path, content: bytes) -> None:
 def settle(folder: Path) -> None:
     """Repair a folder after a process was killed while it replaced the folder; see `replaced`.
 
-    If the old folder was already moved aside and there is no new one, it is restored. Otherwise
-    the old folder and an unused next one are removed.
+    If the old folder was already moved aside and there is no new one, it is restored.
+    Otherwise the old folder and an unused next one are removed.
 
     Args:
         folder: it need not exist.
@@ -95,7 +96,8 @@ def replaced(folder: Path) -> Iterator[Path]:
     """Replace a folder in one move with one that the caller creates; a failure changes nothing.
 
     Args:
-        folder: moved aside, then removed. `settle` repairs a replacement that was killed.
+        folder: moved aside, then removed. `settle` repairs a replacement that was
+            killed.
 
     Yields:
         The path of the new folder, which the caller makes.
@@ -157,16 +159,21 @@ def files_below(
         left_out: patterns of names of files and folders that are left out anywhere.
 
     Raises:
-        ProjectError: a link leads to a folder that contains it, so there would be no end.
+        ProjectError: a link leads to a folder that contains it, so there would be no
+            end.
     """
     ignored = shutil.ignore_patterns(*left_out)
     for here, folders, files in os.walk(folder, followlinks=True):
         for link in filter(Path.is_symlink, (Path(here, name) for name in folders)):
             if link.parent.resolve().is_relative_to(link.resolve()):
-                raise ProjectError(f"{link} links to a folder that contains it. Remove the link.")
+                raise ProjectError(
+                    f"{link} links to a folder that contains it. Remove the link."
+                )
         top = skip if Path(here) == folder else ()
         gone = ignored(here, [*folders, *files])
-        folders[:] = [name for name in folders if name not in gone and not name.startswith(top)]
+        folders[:] = [
+            name for name in folders if name not in gone and not name.startswith(top)
+        ]
         yield from (Path(here, name) for name in files if name not in gone)
 
 
@@ -179,7 +186,11 @@ def files_digest(base: Path, files: Iterable[Path]) -> str:
     """
     found = hashlib.sha256()
     for path in sorted(files):
-        content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "absent"
+        content = (
+            hashlib.sha256(path.read_bytes()).hexdigest()
+            if path.is_file()
+            else "absent"
+        )
         found.update(os.fsencode(path.relative_to(base)) + f"\0{content}\n".encode())
     return found.hexdigest()
 
@@ -213,8 +224,8 @@ def derived(
 
     Args:
         kind: name of the subfolder.
-        inputs: everything that decides the result, including the source of the code that makes
-            it; lock, Python and installed packages are added.
+        inputs: everything that decides the result, including the source of the code
+            that makes it; lock, Python and installed packages are added.
         make: called if the cache has no such file.
         cache: the cache folder.
     """
@@ -229,7 +240,9 @@ def derived(
     content = _get(file)
     if content is None:
         content = make()
-        with suppress(OSError):  # without a writable cache the result is made again each time
+        with suppress(
+            OSError
+        ):  # without a writable cache the result is made again each time
             write_whole(file, _seal(file, content) + content)
             _forget(file.parent)
     return content
@@ -243,7 +256,8 @@ def _installed() -> str:
 def _get(file: Path) -> bytes | None:
     """Return the content of a file, None if it is missing or is not what was stored under its name.
 
-    The digest covers the name, so that one stored file in the place of another is noticed.
+    The digest covers the name, so that one stored file in the place of another is
+    noticed.
     """
     try:
         os.utime(file)
@@ -258,7 +272,9 @@ def _get(file: Path) -> bytes | None:
 
 
 def _seal(file: Path, content: bytes) -> bytes:
-    return hashlib.sha256(f"{file.parent.name}/{file.name}\0".encode() + content).digest()
+    return hashlib.sha256(
+        f"{file.parent.name}/{file.name}\0".encode() + content
+    ).digest()
 
 
 def _forget(folder: Path) -> None:

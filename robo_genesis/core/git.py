@@ -15,9 +15,12 @@ def git(root: Path, *arguments: str, **variables: str) -> str:
     Of the variables that only git reads, such as GIT_DIR, it gets the given ones alone.
 
     Raises:
-        ProjectError: git is not installed, or it failed; the message contains its output.
+        ProjectError: git is not installed, or it failed; the message contains its
+            output.
     """
-    others = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    others = {
+        name: value for name, value in os.environ.items() if not name.startswith("GIT_")
+    }
     command = ["git", "--no-optional-locks", "-C", str(root), *arguments]
     try:
         done = subprocess.run(
@@ -29,7 +32,9 @@ def git(root: Path, *arguments: str, **variables: str) -> str:
             check=False,
         )
     except OSError as error:
-        raise ProjectError("Git is not installed. Install it: apt install git.") from error
+        raise ProjectError(
+            "Git is not installed. Install it: apt install git."
+        ) from error
     if done.returncode:
         output = done.stderr.strip() or f"exit status {done.returncode}"
         raise ProjectError(f"git {arguments[0]} failed in {root}: {output}")
@@ -59,7 +64,9 @@ def require_history(root: Path) -> None:
             ) from None
 
 
-def unclean(root: Path, reason: str = "A release is built from one commit") -> list[str]:
+def unclean(
+    root: Path, reason: str = "A release is built from one commit"
+) -> list[str]:
     """Return why a checkout differs from its commit, nothing if it does not.
 
     Args:
@@ -67,7 +74,9 @@ def unclean(root: Path, reason: str = "A release is built from one commit") -> l
         reason: why it must not differ, as the messages say it.
     """
     try:
-        changed = git(root, "status", "--porcelain", "--untracked-files=all").splitlines()
+        changed = git(
+            root, "status", "--porcelain", "--untracked-files=all"
+        ).splitlines()
     except ProjectError as error:
         return [
             f"{root} is not a git checkout: {error} {reason}: clone the repository; run it there."

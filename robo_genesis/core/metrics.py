@@ -1,25 +1,30 @@
 """Arrays and metrics as dataclass fields: names, units, labels, and the sources of a metric.
 
-A record in `metrics.json` has value, unit, class and source. A value that was not observed is None.
+A record in `metrics.json` has value, unit, class and source. A value that was not
+observed is None.
 """
 
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from typing import Any, Literal, NamedTuple
 
-# What another run must do with a value: agree within a tolerance, repeat it, or nothing.
+# What another run must do with a value: agree within a tolerance, repeat it, or
+# nothing.
 Kind = Literal["value", "exact", "performance"]
 
 Record = dict[str, Any]
 
-ENGINE = ["engine"]  # The source of a value that the engine reported and that is in no array
+ENGINE = [
+    "engine"
+]  # The source of a value that the engine reported and that is in no array
 
 
 class Stored(NamedTuple):
     """How one array of a run is stored: the name ends with the unit.
 
-    `dims` are `state` (n+1), `step` (n), `env`, `dof`, `link`, `axis` (x, y, z),
-    `wxyz` and `finger`. `unit` is None if each DOF has its own. The engine computes in float32.
+    `dims` are `state` (n+1), `step` (n), `env`, `dof`, `link`, `axis` (x, y, z), `wxyz`
+    and `finger`. `unit` is None if each DOF has its own. The engine computes in
+    float32.
     """
 
     name: str
@@ -29,9 +34,13 @@ class Stored(NamedTuple):
     dtype: str = "float32"
 
 
-def array(name: str, dims: str, unit: str | None, long_name: str, dtype: str = "float32") -> Any:
+def array(
+    name: str, dims: str, unit: str | None, long_name: str, dtype: str = "float32"
+) -> Any:
     """Return a dataclass field for one array; see `Stored`. Spaces separate the `dims`."""
-    return field(metadata={"stored": Stored(name, tuple(dims.split()), unit, long_name, dtype)})
+    return field(
+        metadata={"stored": Stored(name, tuple(dims.split()), unit, long_name, dtype)}
+    )
 
 
 def metric(unit: str, label: str, *sources: str, noun: str = "") -> Any:
@@ -60,17 +69,24 @@ class CaseMetrics:
 
     def items(self) -> list[tuple[str, float | None, str]]:
         """Return (name, value, unit) in the order of the table."""
-        return [(name, getattr(self, name), unit) for name, unit in self.about("unit").items()]
+        return [
+            (name, getattr(self, name), unit)
+            for name, unit in self.about("unit").items()
+        ]
 
     def records(self) -> dict[str, Record]:
         """Return the record of each metric by its name."""
         sources = self.about("sources")
         return {
-            name: record(value, unit, "exact" if unit == "1" else "value", sources[name])
+            name: record(
+                value, unit, "exact" if unit == "1" else "value", sources[name]
+            )
             for name, value, unit in self.items()
         }
 
 
-def record(value: float | None, unit: str, kind: Kind, sources: Sequence[str]) -> Record:
+def record(
+    value: float | None, unit: str, kind: Kind, sources: Sequence[str]
+) -> Record:
     """Return a value as JSON values for `metrics.json`."""
     return {"value": value, "unit": unit, "class": kind, "from": list(sources)}

@@ -1,8 +1,8 @@
 """Colour and line of each mark: of cases, targets and limits, in plots and on pages.
 
-The hues follow the palette of Okabe and Ito, darkened or lightened until each is readable as text.
-Lines of measured data are solid, with names beside them or in a legend; targets and limits have
-dashes.
+The hues follow the palette of Okabe and Ito, darkened or lightened until each is
+readable as text. Lines of measured data are solid, with names beside them or in a
+legend; targets and limits have dashes.
 """
 
 import re
@@ -24,8 +24,8 @@ class Mark:
     dashes: tuple[float, ...] = ()
 
 
-# `other` is compared with a case: a mistake, another getter, another engine. `further` is any
-# additional run, such as a point of a grid.
+# `other` is compared with a case: a mistake, another getter, another engine. `further`
+# is any additional run, such as a point of a grid.
 MARKS = {
     "baseline": Mark("#4d4d4d", "#b8c0cc"),
     "first": Mark("#0072b2", "#6cb8ff"),
@@ -37,9 +37,9 @@ MARKS = {
     "further": Mark("#6f6200", "#d6c65a"),
 }
 
-# What a figure has besides its marks. `line`: axes, and thin lines at zero or at a target. `band`:
-# the area around a target. No two colours of the light theme are equal, here and in `MARKS`: a page
-# finds by them what each element of a drawing is.
+# What a figure has besides its marks. `line`: axes, and thin lines at zero or at a
+# target. `band`: the area around a target. No two colours of the light theme are equal,
+# here and in `MARKS`: a page finds by them what each element of a drawing is.
 PARTS = {
     "text": Mark("#1b1f24", "#e6e9ed"),
     "line": Mark("#7a7a7a", "#8c96a3"),
@@ -50,8 +50,11 @@ PARTS = {
 
 # The marks that cases take, with their classes in style sheets.
 CASE_CLASSES = {
-    "baseline": "case-baseline", "first": "case-g1", "second": "case-g2", "third": "case-g3",
-}  # fmt: skip
+    "baseline": "case-baseline",
+    "first": "case-g1",
+    "second": "case-g2",
+    "third": "case-g3",
+}
 
 
 def marks_of(cases: Sequence[str], declared: Mapping[str, str]) -> dict[str, str]:
@@ -76,7 +79,9 @@ def marks_of(cases: Sequence[str], declared: Mapping[str, str]) -> dict[str, str
 
 
 COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
-NAMED = re.compile(r'\b(?:fill|stroke)(?:: ?|=")(?!none|url|inherit|currentColor)([a-zA-Z]+)')
+NAMED = re.compile(
+    r'\b(?:fill|stroke)(?:: ?|=")(?!none|url|inherit|currentColor)([a-zA-Z]+)'
+)
 VALID_COLOURS = (
     "A page draws in the light colours of core/palette.py, which follow the reader's theme: "
     f"{', '.join(f'{name} {mark.light}' for name, mark in (MARKS | PARTS).items())}. Take one by "
@@ -90,7 +95,8 @@ def outside_the_palette(drawing: str) -> list[str]:
         return []
     known = {mark.light for mark in (MARKS | PARTS).values()}
     return sorted(
-        {each[2] for each in COLOUR.finditer(drawing)} - known | {*NAMED.findall(drawing)}
+        {each[2] for each in COLOUR.finditer(drawing)} - known
+        | {*NAMED.findall(drawing)}
     )
 
 

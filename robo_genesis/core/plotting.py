@@ -1,8 +1,8 @@
 """Figures of the course. Functions draw on axes and return them; none computes or shows.
 
-Each figure has the width `WIDTH` and letters of one size, so that it can be read on a phone. Panels
-lie one below another. Colours are those of the light theme; pages replace them by the reader's
-theme, so a figure has no colours but the palette's.
+Each figure has the width `WIDTH` and letters of one size, so that it can be read on a
+phone. Panels lie one below another. Colours are those of the light theme; pages replace
+them by the reader's theme, so a figure has no colours but the palette's.
 """
 
 import sys
@@ -33,7 +33,8 @@ CYCLE = ("first", "second", "third", "other", "further", "baseline")
 
 BAND = PARTS["band"].light
 
-# Smallest distance of the labels beside the ends of lines, as a share of the axes' height.
+# Smallest distance of the labels beside the ends of lines, as a share of the axes'
+# height.
 LABELS_APART = 0.09
 
 
@@ -51,7 +52,11 @@ def axes(height: float) -> tuple[Figure, Axes]:
 def look(name: str, **more: Any) -> dict[str, Any]:
     """Return the line style of a mark of the palette in the light theme."""
     mark = MARKS[name]
-    return {"color": mark.light, "linestyle": (0, mark.dashes) if mark.dashes else "-", **more}
+    return {
+        "color": mark.light,
+        "linestyle": (0, mark.dashes) if mark.dashes else "-",
+        **more,
+    }
 
 
 TARGET = look("target", linewidth=1.4)
@@ -126,7 +131,9 @@ def channel(
         levels: of this channel; equal ones of several cases are drawn once.
     """
     for level in levels:
-        values = dict.fromkeys(value for case in level.values.values() for value in case)
+        values = dict.fromkeys(
+            value for case in level.values.values() for value in case
+        )
         for number, value in enumerate(values):
             if level.band:
                 label = "" if number else f"band ±{level.band:g} {drawn.unit}"
@@ -138,7 +145,9 @@ def channel(
         ax.plot(t, drawn.values[case], label=case, **look(mark))
     ax.margins(x=0.01)
     ax.set_ylim(top=drawn.top)
-    return finish(ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]")
+    return finish(
+        ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]"
+    )
 
 
 def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], quantity: str) -> Axes:
@@ -152,7 +161,9 @@ def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], quantity: str) -> A
 def stacked(pictures: Mapping[str, np.ndarray]) -> Figure:
     """Show camera frames one below the other, each with its name on a ground of its own."""
     plate = {"facecolor": "black", "alpha": 0.7, "linewidth": 0}
-    height = 1.02 * sum(picture.shape[0] / picture.shape[1] for picture in pictures.values())
+    height = 1.02 * sum(
+        picture.shape[0] / picture.shape[1] for picture in pictures.values()
+    )
     drawn = Figure(figsize=(WIDTH, height * WIDTH), facecolor="none")
     drawn.set_layout_engine("none")
     places = {"left": 0, "right": 1, "bottom": 0, "top": 1, "hspace": 0.04}
@@ -160,12 +171,21 @@ def stacked(pictures: Mapping[str, np.ndarray]) -> Figure:
     for ax, (name, picture) in zip(axes, pictures.items(), strict=True):
         ax.imshow(picture)
         ax.set_axis_off()
-        ax.text(0.03, 0.94, f"Camera frame, {name}", transform=ax.transAxes, va="top",
-                color="white", bbox=plate)  # fmt: skip
+        ax.text(
+            0.03,
+            0.94,
+            f"Camera frame, {name}",
+            transform=ax.transAxes,
+            va="top",
+            color="white",
+            bbox=plate,
+        )
     return drawn
 
 
-def ends(frames: Mapping[str, np.ndarray], height: float, draw: Callable[[Axes], object]) -> Figure:
+def ends(
+    frames: Mapping[str, np.ndarray], height: float, draw: Callable[[Axes], object]
+) -> Figure:
     """Show the camera frames of both ends of a run, or what is drawn without frames.
 
     Args:
@@ -180,7 +200,9 @@ def ends(frames: Mapping[str, np.ndarray], height: float, draw: Callable[[Axes],
     return drawn
 
 
-def robot_ends(frames: Mapping[str, np.ndarray], trace: Trace, parents: Sequence[int]) -> Figure:
+def robot_ends(
+    frames: Mapping[str, np.ndarray], trace: Trace, parents: Sequence[int]
+) -> Figure:
     """Show both ends of a run of a robot, without frames its link origins as `schematic` does."""
     return ends(frames, 5, lambda ax: schematic(ax, trace, parents))
 
@@ -216,7 +238,9 @@ def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) 
     """
     corners = size / 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
     ends = {"start": 0, "end": -1}
-    squares = {label: [trace.link_pos[k, 0, [0, 2]] + corners] for label, k in ends.items()}
+    squares = {
+        label: [trace.link_pos[k, 0, [0, 2]] + corners] for label, k in ends.items()
+    }
     ax.axhline(floor, **LINE)
     return _from_the_side(ax, "positions", squares)
 
@@ -250,8 +274,14 @@ def legend_above(ax: Axes, title: str) -> None:
     """Put the legend above the axes, in two columns, and the title above it."""
     rows = -(-len(ax.get_legend_handles_labels()[1]) // 2)
     ax.set_title(title, pad=8 + 15.5 * rows)
-    ax.legend(loc="lower left", bbox_to_anchor=(-0.02, 0.99), borderaxespad=0, labelspacing=0.2,
-              columnspacing=1.2, ncols=2)  # fmt: skip
+    ax.legend(
+        loc="lower left",
+        bbox_to_anchor=(-0.02, 0.99),
+        borderaxespad=0,
+        labelspacing=0.2,
+        columnspacing=1.2,
+        ncols=2,
+    )
 
 
 def log_axis(ax: Axes, ticks: Iterable[float], label: str) -> None:
@@ -270,7 +300,9 @@ def label_ends(ax: Axes, title: str) -> None:
     """
     ax.set_title(title)
     ax.set_ylim(ax.get_ylim())
-    lines = [line for line in ax.get_lines() if not str(line.get_label()).startswith("_")]
+    lines = [
+        line for line in ax.get_lines() if not str(line.get_label()).startswith("_")
+    ]
     places = ax.transData + ax.transAxes.inverted()
     ends = [places.transform(line.get_xydata()[-1])[1] for line in lines]  # type: ignore[index]
     order = np.argsort(ends, kind="stable")
@@ -279,5 +311,11 @@ def label_ends(ax: Axes, title: str) -> None:
     heights += np.mean(ends) - np.mean(heights)
     heights += np.clip(0.0, 0.04 - heights[0], 0.96 - heights[-1])
     for k, height in zip(order, heights, strict=True):
-        ax.annotate(str(lines[k].get_label()), (1.01, height), xycoords="axes fraction",
-                    va="center", color=lines[k].get_color(), annotation_clip=False)  # fmt: skip
+        ax.annotate(
+            str(lines[k].get_label()),
+            (1.01, height),
+            xycoords="axes fraction",
+            va="center",
+            color=lines[k].get_color(),
+            annotation_clip=False,
+        )

@@ -16,15 +16,18 @@ from pathlib import Path
 MEASURES = False
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = sysconfig.get_path("purelib")  # Asked once: each answer reads Python's configuration
+PACKAGES = sysconfig.get_path(
+    "purelib"
+)  # Asked once: each answer reads Python's configuration
 BOOK = ROOT / "book"
 PUBLISHED = "_build"  # The folder of a book that holds its published site
 
 CACHE = ROOT / ".cache"
 STORE, COMPILED, RECORDING, LOGS = "pages", "engine", "recording", "logs"
-# Below the cache folder: executed pages, what the engine compiles, the lab that is being recorded,
-# what each page wrote when it was last executed; what Sphinx keeps for the next build, and how the
-# names of the folders begin in which builds make their sites.
+# Below the cache folder: executed pages, what the engine compiles, the lab that is
+# being recorded, what each page wrote when it was last executed; what Sphinx keeps for
+# the next build, and how the names of the folders begin in which builds make their
+# sites.
 KEPT, STAGING = "render", "staging"
 
 ENGINE = "genesis-world"
@@ -38,23 +41,39 @@ BUILD_BACKEND = "cpu"  # What every page of the site is executed on
 BACKEND, RENDER = "ROBO_GENESIS_BACKEND", "ROBO_GENESIS_RENDER"
 OUTPUTS_DIR = "ROBO_GENESIS_OUTPUTS_DIR"
 
-# What a command gives a page: the id of the run, the command, the digest of the page's code, and
-# the modules of the course that the page imports.
+# What a command gives a page: the id of the run, the command, the digest of the page's
+# code, and the modules of the course that the page imports.
 RUN_ID, COMMAND = "ROBO_GENESIS_RUN_ID", "ROBO_GENESIS_COMMAND"
 PAGE_SHA256, PAGE_IMPORTS = "ROBO_GENESIS_PAGE_SHA256", "ROBO_GENESIS_PAGE_IMPORTS"
 
-# What a build tells Sphinx: the file that lists the executed pages, see `build.built_pages`.
+# What a build tells Sphinx: the file that lists the executed pages, see
+# `build.built_pages`.
 EXECUTED_PAGES = "ROBO_GENESIS_EXECUTED_PAGES"
 
-SOLUTIONS = "SOLUTIONS"  # 0: the site has no solutions and answers, see `site.solutions`
+SOLUTIONS = (
+    "SOLUTIONS"  # 0: the site has no solutions and answers, see `site.solutions`
+)
 
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = (
-    "GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "ROCM_", "HSA_", "CUDA_",
+    "GS_",
+    "QD_",
+    "LIBGL_",
+    "MESA_",
+    "EGL_",
+    "HIP_",
+    "ROCR_",
+    "ROCM_",
+    "HSA_",
+    "CUDA_",
     "NVIDIA_TF32_",
-)  # fmt: skip
+)
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
-KERNELS, GEOMETRY, NUMBA = "QD_OFFLINE_CACHE_FILE_PATH", "GS_CACHE_FILE_PATH", "NUMBA_CACHE_DIR"
+KERNELS, GEOMETRY, NUMBA = (
+    "QD_OFFLINE_CACHE_FILE_PATH",
+    "GS_CACHE_FILE_PATH",
+    "NUMBA_CACHE_DIR",
+)
 CACHE_FOLDERS = {
     KERNELS: "kernels",
     GEOMETRY: "geometry",  # by default below the user's home, for all versions
@@ -90,10 +109,12 @@ def engine_pin(root: Path = ROOT) -> str:
         The version X of the dependency `genesis-world==X`.
 
     Raises:
-        ProjectError: the dependencies cannot be read, the engine is missing, or its version is
-            not exact.
+        ProjectError: the dependencies cannot be read, the engine is missing, or its
+            version is not exact.
     """
-    from packaging.requirements import Requirement  # the doctor starts where it is missing
+    from packaging.requirements import (
+        Requirement,
+    )  # the doctor starts where it is missing
 
     file, fix = str(root / "pyproject.toml"), "Fix the line in project.dependencies"
     if from_metadata := root == ROOT and not in_checkout():
@@ -102,9 +123,13 @@ def engine_pin(root: Path = ROOT) -> str:
     try:
         text = "" if from_metadata else Path(file).read_text("utf8")
         declared = (
-            requires(COURSE) if from_metadata else tomllib.loads(text)["project"]["dependencies"]
+            requires(COURSE)
+            if from_metadata
+            else tomllib.loads(text)["project"]["dependencies"]
         )
-        engines = [line for line in map(Requirement, declared or []) if line.name == ENGINE]
+        engines = [
+            line for line in map(Requirement, declared or []) if line.name == ENGINE
+        ]
     except (KeyError, ValueError, PackageNotFoundError) as error:
         raise ProjectError(
             f'{file} cannot be read: {error}\nValid dependencies are like "numpy>=2.0". {fix}.'
@@ -143,7 +168,11 @@ def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
 
 def install_command(what: str = "") -> str:
     """Return the command that installs packages into this Python, by default all of the course."""
-    here = "-r requirements.lock" if in_checkout() else f"-c constraints.txt ./{WHEEL}-*.whl"
+    here = (
+        "-r requirements.lock"
+        if in_checkout()
+        else f"-c constraints.txt ./{WHEEL}-*.whl"
+    )
     return f"{shlex.quote(sys.executable)} -m pip install {what or here}"
 
 
@@ -161,7 +190,9 @@ def hidden_modules() -> list[str]:
     here = Path.cwd()
     others = [folder for folder in sys.path if Path(folder).resolve() != here]
     own = [*here.glob("*.py"), *(path.parent for path in here.glob("*/__init__.py"))]
-    hidden = (p.name for p in own if p.stem != WHEEL and PathFinder.find_spec(p.stem, others))
+    hidden = (
+        p.name for p in own if p.stem != WHEEL and PathFinder.find_spec(p.stem, others)
+    )
     return sorted(hidden)
 
 
@@ -169,7 +200,9 @@ def unmet_requirements() -> list[str]:
     """Return which packages the engine requires in another version."""
     from packaging.requirements import Requirement
 
-    needed = [Requirement(line) for line in requires(ENGINE) or () if "extra ==" not in line]
+    needed = [
+        Requirement(line) for line in requires(ENGINE) or () if "extra ==" not in line
+    ]
     found = {line: installed_version(line.name) for line in needed}
     return [
         f"{line.name}{line.specifier} is required, installed is {version}"
@@ -200,7 +233,11 @@ def lock_digest(root: Path = ROOT) -> str:
 
 def locked_versions(lock: str) -> dict[str, str]:
     """Return package to version of a lock's text."""
-    return dict(line.split("==") for line in lock.splitlines() if "==" in line and line[0] != "#")
+    return dict(
+        line.split("==")
+        for line in lock.splitlines()
+        if "==" in line and line[0] != "#"
+    )
 
 
 def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
@@ -209,7 +246,9 @@ def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
     return cache / COMPILED / f"{engine_pin(root)}-{lock_digest(root)[:12]}"
 
 
-def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> dict[str, str]:
+def engine_cache_environment(
+    root: Path = ROOT, cache: Path | None = None
+) -> dict[str, str]:
     """Return the variables that make the engine keep its compiled code in the cache folder.
 
     Args:
@@ -243,8 +282,8 @@ def nothing_compiled(environment: Mapping[str, str]) -> bool:
 def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
     """Remove lock files of killed engine processes from the kernel caches.
 
-    A lock file does not name its process, so a stale one looks like a live one. Call this only at
-    the start of a build, while the build lock excludes other builds.
+    A lock file does not name its process, so a stale one looks like a live one. Call
+    this only at the start of a build, while the build lock excludes other builds.
 
     Returns:
         The removed files.
@@ -255,15 +294,18 @@ def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
     return stale
 
 
-def environment_contract(environment: Mapping[str, str] | None = None) -> dict[str, str]:
+def environment_contract(
+    environment: Mapping[str, str] | None = None,
+) -> dict[str, str]:
     """Return the variables that decide what a page measures.
 
     Args:
         environment: variables, by default those of this process.
 
     Returns:
-        Backend and render, with defaults if they are not set, and of the engine's switches and the
-        folders of libraries those that are set; the folders of compiled code are not included.
+        Backend and render, with defaults if they are not set, and of the engine's
+        switches and the folders of libraries those that are set; the folders of
+        compiled code are not included.
     """
     given = os.environ if environment is None else environment
     # Not a switch in a manifest: the engine appends to LD_LIBRARY_PATH.
@@ -278,8 +320,9 @@ def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
     They are the same before and after the import of the engine.
     """
     switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)}
-    # Genesis itself sets the last one at its import; it decides how messages print. A build sets it
-    # to 0. With 1, as in a reader's Jupyter, each call of a kernel prints a text and takes longer.
+    # Genesis itself sets the last one at its import; it decides how messages print. A
+    # build sets it to 0. With 1, as in a reader's Jupyter, each call of a kernel prints
+    # a text and takes longer.
     switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | {"QD_ENABLE_PYBUF"}
     return {name: environment[name] for name in sorted(switches)}
 

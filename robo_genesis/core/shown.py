@@ -1,8 +1,8 @@
 """Measured outputs of a page: named functions of the experiment, and their results as MIME data.
 
-A page shows such an output with `page.show`. The build calls the same function on the experiment
-that it reads from the page's bundle, and refuses a page with another result. Any other output of a
-cell is only compared with the copy in the bundle.
+A page shows such an output with `page.show`. The build calls the same function on the
+experiment that it reads from the page's bundle, and refuses a page with another result.
+Any other output of a cell is only compared with the copy in the bundle.
 """
 
 import io
@@ -25,7 +25,8 @@ METADATA = "robo_genesis"
 
 TEXT, DRAWING = "text/markdown", "image/svg+xml"
 
-CHECKS = "robo_genesis.core.tables.checks_of_run"  # The function whose table `page.finish` shows
+# The function whose table `page.finish` shows
+CHECKS = "robo_genesis.core.tables.checks_of_run"
 
 
 class ShownError(ValueError):
@@ -53,11 +54,14 @@ def find(name: str) -> Callable[..., Any]:
     """Return the function of a name.
 
     Raises:
-        ShownError: it is not a function at the top level of a module of lessons or core.
+        ShownError: it is not a function at the top level of a module of lessons or
+            core.
     """
     place, _, last = name.rpartition(".")
     found = None
-    if place.startswith(PLACES) and all(part.isidentifier() for part in name.split(".")):
+    if place.startswith(PLACES) and all(
+        part.isidentifier() for part in name.split(".")
+    ):
         try:
             found = vars(import_module(place)).get(last)
         except ImportError:
@@ -91,8 +95,8 @@ def metadata(name: str, arguments: Sequence[Any]) -> dict[str, Any]:
 def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str, str]:
     """Call a function on an experiment and return its result as MIME data.
 
-    A text is Markdown. A figure is drawn as SVG in the course's style; equal figures give equal
-    bytes.
+    A text is Markdown. A figure is drawn as SVG in the course's style; equal figures
+    give equal bytes.
 
     Args:
         name: of the function.
@@ -114,7 +118,9 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
         if isinstance(result, Figure):
             drawn = svg(result)
             if colours := outside_the_palette(drawn):
-                raise ShownError(f"{name} draws in {', '.join(colours)}. {VALID_COLOURS}")
+                raise ShownError(
+                    f"{name} draws in {', '.join(colours)}. {VALID_COLOURS}"
+                )
             return {DRAWING: drawn}
     raise ShownError(
         f"{name} returned {type(result).__name__}. Return Markdown, as `tables.markdown` does, or "

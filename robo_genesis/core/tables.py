@@ -49,13 +49,16 @@ def as_table(
     return table
 
 
-def number_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]) -> str:
+def number_table(
+    first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]
+) -> str:
     """Return a table of numbers beside a column of words, which all differ.
 
     Args:
         first: the head of the words.
         heads: by head of another column, the digits of its numbers after the point.
-        rows: by word, a number for each of these columns, or a text that stays as it is.
+        rows: by word, a number for each of these columns, or a text that stays as it
+            is.
     """
     return markdown(
         [
@@ -69,18 +72,25 @@ def number_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterab
     )
 
 
-def timed_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]) -> str:
+def timed_table(
+    first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]
+) -> str:
     """Return a `number_table` of times, which nothing recomputes, and say so below it."""
-    return number_table(first, heads, rows) + "\nReported by this run, not recomputed.\n"
+    return (
+        number_table(first, heads, rows) + "\nReported by this run, not recomputed.\n"
+    )
 
 
 def six_digits(metrics: Mapping[str, CaseMetrics]) -> str:
     """Return metrics as rows and cases as columns, each value with six digits and its unit."""
-    return metric_table(metrics, lambda *value: text.six_digits(*value).replace("-", "−"))
+    return metric_table(
+        metrics, lambda *value: text.six_digits(*value).replace("-", "−")
+    )
 
 
 def metric_table(
-    metrics: Mapping[str, CaseMetrics], write: Callable[[float | None, str], str] = format_value
+    metrics: Mapping[str, CaseMetrics],
+    write: Callable[[float | None, str], str] = format_value,
 ) -> str:
     """Return metrics as rows and cases as columns, each value with its unit.
 
@@ -89,7 +99,10 @@ def metric_table(
         write: returns the text of a value and its unit.
     """
     labels = next(iter(metrics.values())).about("label")
-    found = {case: {n: write(v, unit) for n, v, unit in m.items()} for case, m in metrics.items()}
+    found = {
+        case: {n: write(v, unit) for n, v, unit in m.items()}
+        for case, m in metrics.items()
+    }
     return markdown(
         [
             {"metric": label} | {case: values[name] for case, values in found.items()}
@@ -109,7 +122,9 @@ def checks_of_run(run: Experiment) -> Iterable[Mapping[str, Any]]:
 def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
     """Return a sentence that compares one metric of two cases."""
     label, unit = comparison.label, comparison.unit
-    first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
+    first, second = (
+        format_value(v, unit) for v in (comparison.first, comparison.second)
+    )
     values = f"{names[0]} {first}, {names[1]} {second}"
     if comparison.order is None:
         return f"The {label} was not observed in either case, so this window cannot rank them."
@@ -122,11 +137,17 @@ def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
     if comparison.order == "equal" and comparison.margin and first != second:
         margin = f"{comparison.margin:g} {'samples' if unit == '1' else unit}"
         return f"The {label} is too close to call: {values}, within the margin of {margin}."
-    verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
+    verb = {
+        "lower": "goes down",
+        "higher": "goes up",
+        "equal": "does not change measurably",
+    }
     return f"The {label} {verb[comparison.order]} ({values})."
 
 
-def sentence_of(check: Check, sentence: str, values: Mapping[str, Any], advice: str) -> str:
+def sentence_of(
+    check: Check, sentence: str, values: Mapping[str, Any], advice: str
+) -> str:
     """Return the sentence on a check that passed, else why it failed, with advice."""
     if check.passed:
         return sentence.format(**values)

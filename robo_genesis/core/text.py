@@ -10,7 +10,8 @@ MEASURES = False
 NOT_OBSERVED = "not observed"
 LONGEST_SHOWN = 160
 
-# Characters of one line of the engine's log, and of one warning. Most have less than 400.
+# Characters of one line of the engine's log, and of one warning. Most have less than
+# 400.
 LINE_LIMIT = 2**14
 
 # Characters of a message that are not printable by themselves.
@@ -18,19 +19,45 @@ BLANK = "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}"
 
 # Digits after the point by unit, in texts for readers.
 DIGITS = {
-    "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
-    "pixel": 2, "iterations": 0, "pixels": 0, "points": 0, "poses": 0, "postures": 0, "steps": 0,
-}  # fmt: skip
+    "s": 2,
+    "rad": 4,
+    "m": 4,
+    "rad/s": 3,
+    "m/s": 3,
+    "N·m": 2,
+    "N": 2,
+    "kg": 3,
+    "J": 4,
+    "%": 1,
+    "pixel": 2,
+    "iterations": 0,
+    "pixels": 0,
+    "points": 0,
+    "poses": 0,
+    "postures": 0,
+    "steps": 0,
+}
 
 # The thousandth of a unit, in which small values are easier to read.
-SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s", "J": "mJ"}
+SCALED = {
+    "m": "mm",
+    "s": "ms",
+    "rad": "mrad",
+    "m/s": "mm/s",
+    "rad/s": "mrad/s",
+    "J": "mJ",
+}
 
 
 # A smaller unit still, and the hundredth of a share.
 MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "J": "µJ", "1": "%"}
 
 # By unit of a text, the factor from the unit in which a value is kept.
-SCALES = dict.fromkeys(SCALED.values(), 1e3) | dict.fromkeys(MICRO.values(), 1e6) | {"%": 100.0}
+SCALES = (
+    dict.fromkeys(SCALED.values(), 1e3)
+    | dict.fromkeys(MICRO.values(), 1e6)
+    | {"%": 100.0}
+)
 
 
 def ended(status: int, compiled: str = ".cache/engine") -> str:
@@ -44,7 +71,9 @@ def ended(status: int, compiled: str = ".cache/engine") -> str:
         return f"exit status {status}"
     cause = f"the disk is full or compiled code is damaged: free space, or delete {compiled}"
     if -status == signal.SIGKILL:
-        cause = "the memory was full: close programs. A build needs less memory with JOBS=1"
+        cause = (
+            "the memory was full: close programs. A build needs less memory with JOBS=1"
+        )
     name = f"{signal.Signals(-status).name} ({signal.strsignal(-status)})"
     return f"{name}. If nobody stopped it, {cause}"
 
@@ -53,14 +82,19 @@ def scaled_value(value: float, unit: str) -> str:
     """Return a value in another unit with three significant digits: `4.47 mm`, `1.2 %`.
 
     Raises:
-        LookupError: the unit is not one of `SCALES` and `DIGITS`; the message lists them.
+        LookupError: the unit is not one of `SCALES` and `DIGITS`; the message lists
+            them.
     """
     if unit not in SCALES | DIGITS:
-        raise LookupError(f"No text has the unit {unit!r}. Valid: {', '.join(SCALES | DIGITS)}.")
+        raise LookupError(
+            f"No text has the unit {unit!r}. Valid: {', '.join(SCALES | DIGITS)}."
+        )
     scaled = SCALES.get(unit, 1.0) * value
     text = f"{scaled:#.3g}".removesuffix(".")
     if "e" in text:  # three digits of a large number, or more places of a small one
-        text = f"{Decimal(text):f}".rstrip("0" if abs(scaled) < 1 else "").removesuffix(".")
+        text = f"{Decimal(text):f}".rstrip("0" if abs(scaled) < 1 else "").removesuffix(
+            "."
+        )
     return f"{text} {unit}"
 
 
@@ -134,8 +168,8 @@ def time_digits(dt: float) -> int:
 def printable(text: str) -> str:
     r"""Return text as one line that a terminal shows and does not obey.
 
-    Line breaks, control characters, reversed directions and other invisible characters become
-    escapes such as `\x1b`.
+    Line breaks, control characters, reversed directions and other invisible characters
+    become escapes such as `\x1b`.
     """
     odd = (c for c in {*text} if not c.isprintable())
     return text.translate({ord(c): c.encode("unicode_escape").decode() for c in odd})
@@ -144,6 +178,7 @@ def printable(text: str) -> str:
 def clean_message(text: str, limit: int) -> str:
     """Return a message of several lines without control characters, shortened to a length."""
     plain = "".join(
-        c if c.isprintable() or c in BLANK else "\N{REPLACEMENT CHARACTER}" for c in text
+        c if c.isprintable() or c in BLANK else "\N{REPLACEMENT CHARACTER}"
+        for c in text
     )
     return plain if len(plain) <= limit else f"{plain[: limit - 1]}…"

@@ -16,7 +16,8 @@ class TraceError(ValueError):
 class TimeSeries:
     """The states of one run at t[k] = k · dt; t[0] is the state before the first step.
 
-    A value that `scene.step()` produces has the time at which the step ends. `t`: (n+1,) [s].
+    A value that `scene.step()` produces has the time at which the step ends. `t`:
+    (n+1,) [s].
     """
 
     t: FloatArray = array(
@@ -36,7 +37,9 @@ class TimeSeries:
             if not np.isfinite(values).all():
                 where = np.argwhere(~np.isfinite(values))[0].tolist()
                 raise TraceError(f"{name} is not finite at index {where}.")
-            if values.ndim == len(dims):  # the first array with DOFs or links says how many
+            if values.ndim == len(
+                dims
+            ):  # the first array with DOFs or links says how many
                 lengths = dict(zip(dims, values.shape, strict=True)) | lengths
             expected = tuple(lengths.get(dim, 0) for dim in dims)
             if values.shape != expected or states < 2:
@@ -54,7 +57,9 @@ class TimeSeries:
         expected = np.arange(len(self.t)) * self.t[1]
         if self.t[1] <= 0 or not np.allclose(self.t, expected, rtol=0, atol=1e-9):
             k = int(np.argmax(np.abs(self.t - expected)))
-            raise TraceError(f"t[{k}] is {self.t[k]} s, expected {expected[k]} s: k · dt.")
+            raise TraceError(
+                f"t[{k}] is {self.t[k]} s, expected {expected[k]} s: k · dt."
+            )
 
     @property
     def dt(self) -> float:
@@ -91,18 +96,26 @@ class Trace(TimeSeries):
     """
 
     q: FloatArray = array("q_rad_or_m", "state dof", None, "position")
-    qd: FloatArray = array("qd_rad_s_or_m_s", "step dof", None, "velocity after each step")
+    qd: FloatArray = array(
+        "qd_rad_s_or_m_s", "step dof", None, "velocity after each step"
+    )
     target: FloatArray = array(
         "target_rad_or_m", "step dof", None, "position command of each step", "float64"
     )
     control_force: FloatArray = array(
-        "control_force_Nm_or_N", "step dof", None, "get_dofs_control_force after each step"
+        "control_force_Nm_or_N",
+        "step dof",
+        None,
+        "get_dofs_control_force after each step",
     )
     internal_force: FloatArray = array(
         "internal_force_Nm_or_N", "step dof", None, "get_dofs_force after each step"
     )
     start_control_force: FloatArray = array(
-        "start_control_force_Nm_or_N", "dof", None, "control force before the first step"
+        "start_control_force_Nm_or_N",
+        "dof",
+        None,
+        "control force before the first step",
     )
     start_qd: FloatArray = array(
         "start_qd_rad_s_or_m_s", "dof", None, "velocity before the first step"
@@ -132,7 +145,9 @@ class BodyTrace(TimeSeries):
     link_vel: FloatArray = array(
         "link_vel_m_s", "state link axis", "m/s", "velocity of the link's origin"
     )
-    link_ang: FloatArray = array("link_ang_rad_s", "state link axis", "rad/s", "angular velocity")
+    link_ang: FloatArray = array(
+        "link_ang_rad_s", "state link axis", "rad/s", "angular velocity"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,14 +159,18 @@ class ContactTrace(BodyTrace):
     | `contacts` | (n+1, l) | number of contact points with the surface |
     | `penetration` | (n+1, l) | depth of the deepest contact [m], 0 without contact |
 
-    The engine detects contacts at the beginning of a solver step. The contacts after `scene.step()`
-    are those of the beginning of its last solver step: one solver step older than the positions.
+    The engine detects contacts at the beginning of a solver step. The contacts after
+    `scene.step()` are those of the beginning of its last solver step: one solver step
+    older than the positions.
     """
 
     contacts: np.ndarray = array(
-        "contacts", "state link", "1",
-        "contact points with the surface at the beginning of the last solver step", "int32",
-    )  # fmt: skip
+        "contacts",
+        "state link",
+        "1",
+        "contact points with the surface at the beginning of the last solver step",
+        "int32",
+    )
     penetration: FloatArray = array(
         "penetration_m", "state link", "m", "depth of the deepest of them"
     )
@@ -172,12 +191,16 @@ class Episodes(TimeSeries):
     | `touches` | (n+1, e) | whether any part of the robot touches the object, 1 or 0 |
     """
 
-    phase: np.ndarray = array("phase", "state env", "1", "phase of the last command", "int8")
+    phase: np.ndarray = array(
+        "phase", "state env", "1", "phase of the last command", "int8"
+    )
     q: FloatArray = array("q_rad_or_m", "state env dof", None, "position")
     object_pos: FloatArray = array(
         "object_pos_m", "state env axis", "m", "place of the object in the world"
     )
-    object_quat: FloatArray = array("object_quat_wxyz", "state env wxyz", "1", "its orientation")
+    object_quat: FloatArray = array(
+        "object_quat_wxyz", "state env wxyz", "1", "its orientation"
+    )
     force: FloatArray = array(
         "force_N", "state env finger", "N", "normal force of each finger on the object"
     )
@@ -190,11 +213,15 @@ class Episodes(TimeSeries):
 class Demonstrations(Episodes):
     """Episodes with what a policy would learn from them.
 
-    `target`: (n, e, d), the last position command before each sample but the first [rad or m].
+    `target`: (n, e, d), the last position command before each sample but the first [rad
+        or m].
     """
 
     target: FloatArray = array(
-        "target_rad_or_m", "step env dof", None, "last position command before the next sample"
+        "target_rad_or_m",
+        "step env dof",
+        None,
+        "last position command before the next sample",
     )
 
 

@@ -10,7 +10,8 @@ EDITED = (
     "the course {}: use one copy for both."
 )
 
-# Advice by the code of a refusal; other codes mean damage, for which the message is enough.
+# Advice by the code of a refusal; other codes mean damage, for which the message is
+# enough.
 BY_CODE = {
     "older-schema": (
         "The bundle was recorded with an older state of this course. "
@@ -43,7 +44,9 @@ BY_CHANGE = {
 }
 
 
-def advice(code: str, changes: tuple[str, ...], predicate: Predicate | None) -> list[str]:
+def advice(
+    code: str, changes: tuple[str, ...], predicate: Predicate | None
+) -> list[str]:
     """Return sentences that say what a refusal means and what to do; none for a damaged bundle.
 
     Args:

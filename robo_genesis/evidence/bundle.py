@@ -144,7 +144,9 @@ class Manifest(fields.Strict):
 
     type_: Literal["https://in-toto.io/Statement/v1"] = Field(alias="_type")
     subject: list[Subject]
-    predicate_type: Literal["urn:robo-genesis:evidence:v2"] = Field(alias="predicateType")
+    predicate_type: Literal["urn:robo-genesis:evidence:v2"] = Field(
+        alias="predicateType"
+    )
     predicate: Predicate
 
 
@@ -203,11 +205,13 @@ def sha256(path: Path) -> str:
 def evidence_key(predicate: dict[str, Any]) -> str:
     """Return the SHA-256 of what decides the results of a bundle, as canonical JSON (RFC 8785).
 
-    It covers schema, lesson and page, the code that computes, engine versions, parameters, seed
-    and precision. It does not cover commit, time, host, driver or prose.
+    It covers schema, lesson and page, the code that computes, engine versions,
+    parameters, seed and precision. It does not cover commit, time, host, driver or
+    prose.
 
     Raises:
-        rfc8785.CanonicalizationError: JSON cannot hold a value, which `read_json` never returns.
+        rfc8785.CanonicalizationError: JSON cannot hold a value, which `read_json` never
+            returns.
     """
     engine = {name: predicate["engine"][name] for name in KEYED_OF_ENGINE}
     keyed = {name: predicate[name] for name in KEYED} | {"engine": engine}
@@ -226,9 +230,9 @@ def read_manifest(folder: Path) -> Manifest:
     """Return the manifest of a bundle; only its form is checked.
 
     Raises:
-        BundleRefused: `older-schema` for a version that this form replaced, `schema` for any other
-            version; both are raised first, because the fields of another version are unknown.
-            `missing-file`, `bad-json` or `bad-schema` otherwise.
+        BundleRefused: `older-schema` for a version that this form replaced, `schema`
+            for any other version; both are raised first, because the fields of another
+            version are unknown. `missing-file`, `bad-json` or `bad-schema` otherwise.
     """
     found = read_json(folder, "manifest.json")
     _check_version(found)
@@ -247,19 +251,35 @@ def _check_version(found: Any) -> None:
     valid = all(version in range(SCHEMA_VERSION + 1) for version in versions)
     for version in versions:
         if not valid:
-            expect("schema", "manifest.json", "version of its form", version, SCHEMA_VERSION)
-        expect("older-schema", "manifest.json", "version of its form", version, SCHEMA_VERSION)
+            expect(
+                "schema",
+                "manifest.json",
+                "version of its form",
+                version,
+                SCHEMA_VERSION,
+            )
+        expect(
+            "older-schema",
+            "manifest.json",
+            "version of its form",
+            version,
+            SCHEMA_VERSION,
+        )
 
 
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
     content = read_json(folder, "metrics.json")
-    return _validated(dict[fields.Line, dict[fields.Line, Metric]], content, "metrics.json")
+    return _validated(
+        dict[fields.Line, dict[fields.Line, Metric]], content, "metrics.json"
+    )
 
 
 def by_full_name(metrics: Mapping[str, Mapping[str, Value]]) -> dict[str, Value]:
     """Return metrics by `group.name`."""
-    return {f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()}
+    return {
+        f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()
+    }
 
 
 def read_arrays(folder: Path) -> Arrays:
@@ -269,7 +289,9 @@ def read_arrays(folder: Path) -> Arrays:
 
 def read_printed(folder: Path) -> list[list[dict[str, Any]]]:
     """Return what each code cell of the page put out."""
-    return _validated(list[list[dict[fields.Line, Any]]], read_json(folder, PRINTED), PRINTED)
+    return _validated(
+        list[list[dict[fields.Line, Any]]], read_json(folder, PRINTED), PRINTED
+    )
 
 
 _adapter = cache(TypeAdapter[Any])
@@ -281,4 +303,6 @@ def _validated(form: Any, value: Any, file: str) -> Any:
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, (file, *first["loc"])))[:LONGEST_SHOWN]
-        raise BundleRefused("bad-schema", f"{place}: {first['msg']}. {AGAIN}") from error
+        raise BundleRefused(
+            "bad-schema", f"{place}: {first['msg']}. {AGAIN}"
+        ) from error

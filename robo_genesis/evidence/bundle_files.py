@@ -18,7 +18,9 @@ OTHER_LIMIT = 16 * MIB
 
 ENTRIES_LIMIT = 200
 REQUIRED = {"metrics.json", "arrays.json", "log.txt"}
-KNOWN = re.compile(r"(metrics|arrays|printed)\.json|log\.txt|arrays/\w+\.npz|frames/\w+\.png")
+KNOWN = re.compile(
+    r"(metrics|arrays|printed)\.json|log\.txt|arrays/\w+\.npz|frames/\w+\.png"
+)
 
 
 def scan(folder: Path) -> set[str]:
@@ -45,7 +47,9 @@ def scan(folder: Path) -> set[str]:
         if not stat.S_ISREG(found.st_mode):
             raise unexpected("path", name, "it", "a link or device", "a file")
         if found.st_size > limit:
-            raise unexpected("too-big", name, "number of bytes", found.st_size, f"at most {limit}")
+            raise unexpected(
+                "too-big", name, "number of bytes", found.st_size, f"at most {limit}"
+            )
         names.add(name)
     return names
 
@@ -53,7 +57,10 @@ def scan(folder: Path) -> set[str]:
 def list_files(folder: Path) -> list[dict[str, Any]]:
     """Return the list in a manifest: each other file of a bundle with its digest."""
     return [
-        {"name": path.relative_to(folder).as_posix(), "digest": {"sha256": sha256(path)}}
+        {
+            "name": path.relative_to(folder).as_posix(),
+            "digest": {"sha256": sha256(path)},
+        }
         for path in sorted(folder.rglob("*"))
         if path.is_file() and path.name != MANIFEST
     ]

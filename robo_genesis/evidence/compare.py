@@ -21,8 +21,8 @@ NO_PERFORMANCE = "No performance is recorded yet."
 class BundleComparison:
     """The result of a comparison.
 
-    `axis` names what differs, or is `repeat`. `obstacles` are the reasons why the two cannot be
-    compared; there are no sections then. Sections are sorted, worst first.
+    `axis` names what differs, or is `repeat`. `obstacles` are the reasons why the two
+    cannot be compared; there are no sections then. Sections are sorted, worst first.
     """
 
     old: Predicate
@@ -43,7 +43,9 @@ class BundleComparison:
         """The verdict: equal, within tolerance, inconclusive, differs or not comparable."""
         if self.obstacles:
             return rows.NOT_COMPARABLE
-        return worst([f.state for s in self.sections for f in s.rows if f.state != rows.SHOWN])
+        return worst(
+            [f.state for s in self.sections for f in s.rows if f.state != rows.SHOWN]
+        )
 
 
 def specification(lesson: str, page: str) -> PageSpecification:
@@ -58,19 +60,21 @@ def specification(lesson: str, page: str) -> PageSpecification:
         raise BundleRefused("lesson", str(error)) from error
     cases = [case for case in found.spec.CASES if case in run.runs]
     metrics = {case: tuple(found.metrics[case].about("unit")) for case in cases}
-    relations = tuple(claim for claim in found.spec.RELATIONS if {*claim[0]} <= {*cases})
+    relations = tuple(
+        claim for claim in found.spec.RELATIONS if {*claim[0]} <= {*cases}
+    )
     return PageSpecification(metrics, found.spec.TOLERANCES, relations)
 
 
 def compare(old: Path, new: Path) -> BundleComparison:
     """Compare two bundles by what this checkout declares about the page of the new one.
 
-    Nothing is recomputed, because the code and the engine of an old bundle are not installed.
-    The digests of both must be right.
+    Nothing is recomputed, because the code and the engine of an old bundle are not
+    installed. The digests of both must be right.
 
     Raises:
-        BundleRefused: a bundle cannot be read, its lesson or page does not exist, or the two are
-            of different pages.
+        BundleRefused: a bundle cannot be read, its lesson or page does not exist, or
+            the two are of different pages.
     """
     a, b = read_side(old), read_side(new)
     was, now = a.manifest.predicate, b.manifest.predicate
@@ -82,7 +86,9 @@ def compare(old: Path, new: Path) -> BundleComparison:
             "Give two bundles of the same page.",
         )
     obstacles = tuple(_obstacles(was, now))
-    repeat = "repeat" if was.source == now.source else "same engine and backend, other code"
+    repeat = (
+        "repeat" if was.source == now.source else "same engine and backend, other code"
+    )
     axis = " and ".join(axes(was, now)) or repeat
     parts = () if obstacles else _sections(a, b, spec)
     return BundleComparison(
@@ -94,11 +100,21 @@ def _sections(old: Side, new: Side, spec: PageSpecification) -> tuple[Section, .
     every = (
         rows.section("Coverage", rows.coverage(old, new, spec), SAME),
         rows.section("Invariants", rows.invariants(old, new)),
-        rows.section("Relations", rows.relations(old, new, spec), "The lesson claims no ordering."),
-        rows.section("Exact counts", rows.values(old, new, spec, "exact"), "There are no counts."),
-        rows.section("Values", rows.values(old, new, spec, "value"), "There are no values."),
+        rows.section(
+            "Relations",
+            rows.relations(old, new, spec),
+            "The lesson claims no ordering.",
+        ),
+        rows.section(
+            "Exact counts", rows.values(old, new, spec, "exact"), "There are no counts."
+        ),
+        rows.section(
+            "Values", rows.values(old, new, spec, "value"), "There are no values."
+        ),
         rows.section("Arrays", rows.arrays(old, new, spec), "There are no arrays."),
-        rows.section("Performance", rows.values(old, new, spec, "performance"), NO_PERFORMANCE),
+        rows.section(
+            "Performance", rows.values(old, new, spec, "performance"), NO_PERFORMANCE
+        ),
     )
     return tuple(sorted(every, key=lambda s: -rows.SEVERITY.index(s.state)))
 
@@ -107,8 +123,8 @@ def read_side(folder: Path) -> Side:
     """Read one bundle strictly, with the verifier's own bounds and digests.
 
     Raises:
-        BundleRefused: a file is too large, missing, damaged, or differs from the listed one; the
-            message begins with the folder.
+        BundleRefused: a file is too large, missing, damaged, or differs from the listed
+            one; the message begins with the folder.
     """
     try:
         present = bundle_files.scan(folder)
@@ -123,7 +139,10 @@ def read_side(folder: Path) -> Side:
 
 def axes(old: Predicate, new: Predicate) -> list[str]:
     """Return each axis in which two bundles differ, with both values."""
-    engines = [f"{p.engine.version} (quadrants {p.engine.quadrants_version})" for p in (old, new)]
+    engines = [
+        f"{p.engine.version} (quadrants {p.engine.quadrants_version})"
+        for p in (old, new)
+    ]
     backends = [p.backend.actual for p in (old, new)]
     named = (("engine version", engines), ("backend", backends))
     return [f"{axis} {was} → {now}" for axis, (was, now) in named if was != now]
@@ -131,7 +150,11 @@ def axes(old: Predicate, new: Predicate) -> list[str]:
 
 def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
     was_asked, is_asked = (
-        {"The seed": p.seed, "The precision": p.engine.precision, "parameters": p.parameters}
+        {
+            "The seed": p.seed,
+            "The precision": p.engine.precision,
+            "parameters": p.parameters,
+        }
         for p in (old, new)
     )
     for path, was, now in differences(was_asked, is_asked):
@@ -154,11 +177,15 @@ def _notes(old: Predicate, new: Predicate) -> Iterator[str]:
     for word, side in (("old", old), ("new", new)):
         if side.git is None or side.git.dirty:
             yield f"The {word} bundle was not recorded from a clean checkout."
-    if old.backend.device_name != new.backend.device_name or old.host.cpu != new.host.cpu:
+    if (
+        old.backend.device_name != new.backend.device_name
+        or old.host.cpu != new.host.cpu
+    ):
         yield "The devices differ."
     if old.environment != new.environment:
         was, now = (
-            ", ".join(f"{name}={value}" for name, value in p.environment.items()) or "none"
+            ", ".join(f"{name}={value}" for name, value in p.environment.items())
+            or "none"
             for p in (old, new)
         )
         yield f"The switches of the engine differ: {was}; {now}."

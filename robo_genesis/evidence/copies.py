@@ -20,13 +20,14 @@ def require_own_run(folder: Path, cpu_runs: Sequence[Path]) -> None:
 
     Args:
         folder: the verified bundle.
-        cpu_runs: bundles of the same page; those of another page, another engine or another
-            backend than the CPU are ignored, and so are absent and damaged ones.
+        cpu_runs: bundles of the same page; those of another page, another engine or
+            another backend than the CPU are ignored, and so are absent and damaged
+            ones.
 
     Raises:
-        BundleRefused: `copy` if run id or all arrays of a case are those of a CPU run, or if a time
-            is equal, or two times have the same ratio to those of the CPU; `log` if the model
-            importer gave a warning there that is missing here.
+        BundleRefused: `copy` if run id or all arrays of a case are those of a CPU run,
+            or if a time is equal, or two times have the same ratio to those of the CPU;
+            `log` if the model importer gave a warning there that is missing here.
     """
     if not cpu_runs:
         return
@@ -63,19 +64,37 @@ def _compare(own: Side, other: Side) -> None:
         its = f"all its arrays of {', '.join(equal)}, expected others: an accelerator rounds"
         raise BundleRefused("copy", f"{what} {its} differently. {MEASURE}")
     if same_times(_times(own), _times(other)):
-        raise BundleRefused("copy", f"{what} the same times, or a multiple of some. {MEASURE}")
-    imported = [text for text in dict.fromkeys(there.warnings) if text.startswith(IMPORTER)]
+        raise BundleRefused(
+            "copy", f"{what} the same times, or a multiple of some. {MEASURE}"
+        )
+    imported = [
+        text for text in dict.fromkeys(there.warnings) if text.startswith(IMPORTER)
+    ]
     missing = [text for text in imported if text not in here.warnings]
-    expect("log", "log.txt", "list of missing warnings of the model importer", missing, [], MEASURE)
+    expect(
+        "log",
+        "log.txt",
+        "list of missing warnings of the model importer",
+        missing,
+        [],
+        MEASURE,
+    )
 
 
 def _times(side: Side) -> dict[str, float]:
     """Return the elapsed times that are not zero, by name [s]."""
     found = side.numbers.items()
-    return {n: m.value for n, m in found if m.kind == "performance" and m.unit == "s" and m.value}
+    return {
+        n: m.value
+        for n, m in found
+        if m.kind == "performance" and m.unit == "s" and m.value
+    }
 
 
 def same_times(times: Mapping[str, float], others: Mapping[str, float]) -> bool:
     """Return whether a time is equal in both, or two times have the same ratio."""
-    ratios = [1.0, *(times[name] / others[name] for name in times.keys() & others.keys())]
+    ratios = [
+        1.0,
+        *(times[name] / others[name] for name in times.keys() & others.keys()),
+    ]
     return len({f"{ratio:.9g}" for ratio in ratios}) < len(ratios)

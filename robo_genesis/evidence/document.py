@@ -1,6 +1,7 @@
 """A report as a Markdown page.
 
-Text of a bundle is escaped: it cannot control a terminal, begin a line or become markup.
+Text of a bundle is escaped: it cannot control a terminal, begin a line or become
+    markup.
 """
 
 from collections.abc import Sequence
@@ -18,8 +19,8 @@ Cells = tuple[str, ...]
 class Part:
     """A heading with remarks and a table, whose first row is its head.
 
-    `state` is that of the worst row, empty for a table without states. `empty` is the text in the
-    place of a table that has only a head.
+    `state` is that of the worst row, empty for a table without states. `empty` is the
+    text in the place of a table that has only a head.
     """
 
     heading: str
@@ -44,8 +45,13 @@ class Document:
         blocks = [f"# {_plain(self.title)}", f"**{self.verdict}**", remarks]
         for part in self.parts:
             state = f": {part.state}" if part.state else ""
-            blocks += [f"## {_plain(part.heading)}{state}", bullets(map(_plain, part.remarks))]
-            blocks.append(_markdown_table(part.rows) if len(part.rows) > 1 else part.empty)
+            blocks += [
+                f"## {_plain(part.heading)}{state}",
+                bullets(map(_plain, part.remarks)),
+            ]
+            blocks.append(
+                _markdown_table(part.rows) if len(part.rows) > 1 else part.empty
+            )
         return "\n\n".join(block for block in blocks if block) + "\n"
 
     def write(self, folder: Path) -> Path:

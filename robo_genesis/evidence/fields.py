@@ -10,7 +10,9 @@ from robo_genesis.core.text import BLANK, LINE_LIMIT
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
 Index = Annotated[int, Field(ge=0, lt=2**31)]
-Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z$")]
+Timestamp = Annotated[
+    str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z$")
+]
 
 
 def _plain(limit: int, other: str = "") -> AfterValidator:
@@ -24,7 +26,9 @@ def _plain(limit: int, other: str = "") -> AfterValidator:
             return text
         odd = next((c for c in text if not c.isprintable() and c not in other), None)
         if odd is not None:
-            raise ValueError(f"expected one line without control characters, found {odd!r}")
+            raise ValueError(
+                f"expected one line without control characters, found {odd!r}"
+            )
         return text
 
     return AfterValidator(check)
@@ -43,4 +47,6 @@ Found = bool | int | float | LongLine | None  # A value that a check found
 class Strict(BaseModel):
     """A frozen record that refuses unknown fields and converts no types."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, strict=True, allow_inf_nan=False
+    )

@@ -1,8 +1,9 @@
 """The npz archive of one run: written in one exact form, and read in no other.
 
-The form is a zip with one unpacked npy file for each array. Reading writes the arrays again and
-compares every byte, so that nothing can be hidden before, between, in or after the members. Nothing
-is compressed: the bytes do not depend on the machine's version of zlib.
+The form is a zip with one unpacked npy file for each array. Reading writes the arrays
+again and compares every byte, so that nothing can be hidden before, between, in or
+after the members. Nothing is compressed: the bytes do not depend on the machine's
+version of zlib.
 """
 
 import io
@@ -26,13 +27,16 @@ def write_archive(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
     path.write_bytes(_archive(arrays))
 
 
-def read_archive(path: Path, where: str, dtypes: Mapping[str, str]) -> dict[str, np.ndarray]:
+def read_archive(
+    path: Path, where: str, dtypes: Mapping[str, str]
+) -> dict[str, np.ndarray]:
     """Return the arrays of an archive.
 
     Args:
         path: the file, whose size was checked.
         where: its name in the bundle, for messages.
-        dtypes: the type of each array that it must contain, in their order; no others are allowed.
+        dtypes: the type of each array that it must contain, in their order; no others
+            are allowed.
 
     Raises:
         BundleRefused: `too-big` before anything is unpacked, `bad-array` otherwise.
@@ -56,9 +60,13 @@ def read_archive(path: Path, where: str, dtypes: Mapping[str, str]) -> dict[str,
             raise ValueError("the same arrays, written again, give other bytes")
     except BundleRefused:
         raise
-    except Exception as error:  # zipfile and NumPy have no exception of their own for damage
+    except (
+        Exception
+    ) as error:  # zipfile and NumPy have no exception of their own for damage
         expected = f"expected the recorder's archive of the arrays {dict(dtypes)}"
-        raise BundleRefused("bad-array", f"{where}: {error}, {expected}. {AGAIN}") from error
+        raise BundleRefused(
+            "bad-array", f"{where}: {error}, {expected}. {AGAIN}"
+        ) from error
     return arrays
 
 
@@ -69,6 +77,8 @@ def _archive(arrays: Mapping[str, np.ndarray]) -> bytes:
         for name, array in arrays.items():
             entry, file = zipfile.ZipInfo(f"{name}.npy"), io.BytesIO()
             entry.create_system = UNIX
-            npy.write_array(file, np.ascontiguousarray(array), version=(1, 0), allow_pickle=False)
+            npy.write_array(
+                file, np.ascontiguousarray(array), version=(1, 0), allow_pickle=False
+            )
             archive.writestr(entry, file.getvalue())
     return stream.getvalue()

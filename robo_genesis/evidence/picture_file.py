@@ -1,7 +1,7 @@
 """The PNG file of one camera frame: written in one form, and read in no other.
 
-Reading writes the frame again and compares every byte. Only the packed pixels are taken as they
-are, because versions of zlib pack differently; what they unpack to is compared.
+Reading writes the frame again and compares every byte. Only the packed pixels are taken
+as they are, because versions of zlib pack differently; what they unpack to is compared.
 """
 
 import struct
@@ -14,7 +14,8 @@ from robo_genesis.sim.camera.frames import require_frame
 
 KEY = b"run_id\0"
 
-# The filter of every row: each pixel is stored as its difference from the one on its left.
+# The filter of every row: each pixel is stored as its difference from the one on its
+# left.
 LEFT = 1
 
 TEXT_PLACE = 33  # Where the chunk of text begins, after the signature and the header
@@ -35,8 +36,9 @@ def read_picture(path: Path, size: tuple[int, int]) -> tuple[str, np.ndarray]:
         size: the required width and height [pixel].
 
     Raises:
-        ValueError: the file is damaged, is not a usable frame of this size, or has anything in it
-            that the recorder does not write: other chunks, text, animation, bytes after the end.
+        ValueError: the file is damaged, is not a usable frame of this size, or has
+            anything in it that the recorder does not write: other chunks, text,
+            animation, bytes after the end.
     """
     data, (width, height) = path.read_bytes(), size
     text = _content(data, TEXT_PLACE)
@@ -73,7 +75,9 @@ def _png(size: tuple[int, int], text: bytes, packed: bytes) -> bytes:
 
 def _chunk(kind: bytes, content: bytes) -> bytes:
     checksum = zlib.crc32(kind + content)
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", checksum)
+    return (
+        struct.pack(">I", len(content)) + kind + content + struct.pack(">I", checksum)
+    )
 
 
 def _content(data: bytes, place: int) -> bytes:

@@ -8,7 +8,13 @@ import numpy as np
 from robo_genesis.core.experiment import Experiment, MeasuringPage
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence import trace_files
-from robo_genesis.evidence.bundle import Arrays, Manifest, Metric, Predicate, read_arrays
+from robo_genesis.evidence.bundle import (
+    Arrays,
+    Manifest,
+    Metric,
+    Predicate,
+    read_arrays,
+)
 from robo_genesis.evidence.picture_file import read_picture
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
 from robo_genesis.lessons import find_page
@@ -19,21 +25,26 @@ def from_bundle(
 ) -> Experiment:
     """Return the experiment whose arrays, readings and frames are in a bundle.
 
-    Of its `metrics`, as `bundle.read_metrics` returns them, only the readings of the engine are
-    part of it: the experiment computes its own metrics and checks.
+    Of its `metrics`, as `bundle.read_metrics` returns them, only the readings of the
+    engine are part of it: the experiment computes its own metrics and checks.
 
     Raises:
         BundleRefused: `cases`, `labels`, `metrics`, `frames`, or as `read_run`.
     """
     predicate = manifest.predicate
-    page, rendered = find_page(predicate.lesson, predicate.page), predicate.render.mode == "camera"
+    page, rendered = (
+        find_page(predicate.lesson, predicate.page),
+        predicate.render.mode == "camera",
+    )
     arrays = read_arrays(folder)
     check_cases(folder, arrays, page)
     check_labels(arrays, page)
     kinds = {name: run.kind or page.kind for name, run in page.runs.items()}
     return Experiment(
         page=page,
-        traces={n: trace_files.read_run(folder, arrays, n, of) for n, of in kinds.items()},
+        traces={
+            n: trace_files.read_run(folder, arrays, n, of) for n, of in kinds.items()
+        },
         links=arrays.coords["link"],
         frames=read_frames(folder, predicate, page.frames),
         rendered=rendered,
@@ -64,7 +75,13 @@ def check_labels(arrays: Arrays, page: MeasuringPage) -> None:
     found = dict(arrays.coords)
     if not page.links:
         links = found.get("link", [])
-        expect("labels", "arrays.json", "number of different links", len(set(links)), len(links))
+        expect(
+            "labels",
+            "arrays.json",
+            "number of different links",
+            len(set(links)),
+            len(links),
+        )
     labels = {"link": list(page.links) or found.get("link")}
     if page.joints:
         labels["dof"] = list(page.joints)
@@ -77,22 +94,34 @@ def readings(
     """Return the values that the engine reported, by group and name; no array contains them.
 
     Raises:
-        BundleRefused: `metrics` if a group lacks a value or has another one, or if a value is
-            beyond its limits or a count that is not an integer.
+        BundleRefused: `metrics` if a group lacks a value or has another one, or if a
+            value is beyond its limits or a count that is not an integer.
     """
     found = {}
     for group, declared in page.groups(rendered).items():
         recorded = metrics.get(group, {}).items()
-        values = {name: metric.value for name, metric in recorded if metric.value is not None}
+        values = {
+            name: metric.value for name, metric in recorded if metric.value is not None
+        }
         what = f"list of values in {group}"
         expect("metrics", "metrics.json", what, sorted(values), sorted(declared.units))
-        wrong = [name for name, value in values.items() if not declared.possible(name, value)]
-        expect("metrics", "metrics.json", f"list of impossible values in {group}", wrong, [])
+        wrong = [
+            name for name, value in values.items() if not declared.possible(name, value)
+        ]
+        expect(
+            "metrics",
+            "metrics.json",
+            f"list of impossible values in {group}",
+            wrong,
+            [],
+        )
         found[group] = values
     return found
 
 
-def read_frames(folder: Path, predicate: Predicate, names: Iterable[str]) -> dict[str, np.ndarray]:
+def read_frames(
+    folder: Path, predicate: Predicate, names: Iterable[str]
+) -> dict[str, np.ndarray]:
     """Return the camera frames by name, each of this run.
 
     Args:
@@ -114,7 +143,9 @@ def read_frames(folder: Path, predicate: Predicate, names: Iterable[str]) -> dic
         try:
             run_id, pixels = read_picture(folder / file, CAMERA_RES)
         except ValueError as error:
-            message = f"{file}: expected a camera frame of size {CAMERA_RES}. {error} {AGAIN}"
+            message = (
+                f"{file}: expected a camera frame of size {CAMERA_RES}. {error} {AGAIN}"
+            )
             raise BundleRefused("frames", message) from error
         expect("frames", file, "its run_id", run_id, predicate.run_id)
         frames[Path(name).stem] = pixels

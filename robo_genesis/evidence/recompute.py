@@ -13,30 +13,38 @@ from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_
 def recompute(folder: Path, manifest: Manifest) -> bytes:
     """Compute metrics and checks again from the arrays of a bundle, and accept what is recorded.
 
-    Arrays that break a law are refused first: only those of a possible run have metrics.
+    Arrays that break a law are refused first: only those of a possible run have
+        metrics.
 
     Raises:
-        BundleRefused: with the code of a broken law; as the functions below and `from_bundle`.
+        BundleRefused: with the code of a broken law; as the functions below and
+            `from_bundle`.
     """
     metrics = read_metrics(folder)
     experiment = from_bundle(folder, manifest, metrics)
     outcomes = experiment.outcomes()
     for check in outcomes:
         if check.code != FAILED:
-            raise BundleRefused(check.code, f"arrays: [{check.name}] {check.detail}. {AGAIN}")
+            raise BundleRefused(
+                check.code, f"arrays: [{check.name}] {check.detail}. {AGAIN}"
+            )
     check_metrics(metrics, experiment)
     check_outcomes(manifest, outcomes)
     return b"accepted"
 
 
-def check_metrics(recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment) -> None:
+def check_metrics(
+    recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment
+) -> None:
     """Require that metrics.json has the values, units, classes and sources of the runs.
 
     Raises:
         BundleRefused: `bad-trace` if the arrays of a run give no metrics; `metrics`.
     """
     found = {
-        group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
+        group: {
+            name: metric.model_dump(by_alias=True) for name, metric in metrics.items()
+        }
         for group, metrics in recorded.items()
     }
     try:
@@ -52,7 +60,8 @@ def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
     The recorded verdicts are not used, so a changed tolerance leaves a bundle current.
 
     Raises:
-        BundleRefused: `checks` if names or found values differ; `failed` if a check fails.
+        BundleRefused: `checks` if names or found values differ; `failed` if a check
+            fails.
     """
     recorded, file = manifest.predicate.checks, "manifest.json"
     names = [check.name for check in outcomes]
@@ -60,7 +69,9 @@ def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
     for check, computed in zip(recorded, outcomes, strict=True):
         what = f"{{}}, found by check {check.name},"
         expect_equal("checks", file, what, dict(check.found), dict(computed.found))
-    failed = [f"[{check.name}] {check.detail}" for check in outcomes if not check.passed]
+    failed = [
+        f"[{check.name}] {check.detail}" for check in outcomes if not check.passed
+    ]
     if failed:
         raise BundleRefused(
             FAILED,

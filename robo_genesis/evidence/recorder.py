@@ -56,18 +56,30 @@ class Recorder:
         engine: session.Engine,
         modules: Mapping[str, str],
     ) -> None:
-        self.lesson, self.page, self.contract, self.engine = lesson, page, contract, engine
+        self.lesson, self.page, self.contract, self.engine = (
+            lesson,
+            page,
+            contract,
+            engine,
+        )
         self.started = _now()
         self.run_id = os.environ.get(project.RUN_ID) or uuid.uuid4().hex
-        self._source = {"page": os.environ.get(project.PAGE_SHA256), "modules": dict(modules)}
-        reader = ThreadPoolExecutor(1)  # the engine has many files; the page continues meanwhile
+        self._source = {
+            "page": os.environ.get(project.PAGE_SHA256),
+            "modules": dict(modules),
+        }
+        reader = ThreadPoolExecutor(
+            1
+        )  # the engine has many files; the page continues meanwhile
         self._match = reader.submit(files_match_wheel, ENGINE, COMPILER)
         reader.shutdown(wait=False)
 
     @property
     def folder(self) -> Path:
         """The folder of the bundle."""
-        return self.contract.outputs / self.lesson / self.page / self.engine.backend.actual
+        return (
+            self.contract.outputs / self.lesson / self.page / self.engine.backend.actual
+        )
 
     def facts(self) -> list[dict[str, str]]:
         """Return engine, backend, rendering and folder of the run as rows of a table."""
@@ -76,7 +88,9 @@ class Recorder:
             "Genesis": engine.version,
             "requested backend": backend.requested,
             "actual backend": f"{backend.actual} ({backend.device_name})",
-            "rendering": "camera" if self.contract.render else f"SKIP ({project.RENDER}=0)",
+            "rendering": "camera"
+            if self.contract.render
+            else f"SKIP ({project.RENDER}=0)",
             "precision": f"float{engine.precision}",
             "seed": str(engine.seed),
             "run": self.run_id[:8],
@@ -88,8 +102,8 @@ class Recorder:
         """Write the bundle to a temporary folder, then move it to its place in one step.
 
         Raises:
-            RecordError: the experiment has other runs than the page declares, or values that are
-                not finite. An earlier bundle is unchanged.
+            RecordError: the experiment has other runs than the page declares, or values
+                that are not finite. An earlier bundle is unchanged.
 
         Returns:
             Its folder. An earlier bundle of the same page and backend is replaced.
@@ -100,7 +114,9 @@ class Recorder:
             self._write_files(following, experiment, renderer)
         return self.folder
 
-    def _write_files(self, folder: Path, run: Experiment, renderer: Renderer | None) -> None:
+    def _write_files(
+        self, folder: Path, run: Experiment, renderer: Renderer | None
+    ) -> None:
         notes = {name: declared.note for name, declared in run.page.runs.items()}
         arrays = write_traces(folder, run.traces, run.joints, list(run.links), notes)
         write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
@@ -128,15 +144,20 @@ class Recorder:
             "started": self.started,
             "ended": _now(),
             "command": os.environ.get(project.COMMAND, "notebook run by hand"),
-            "engine": {name: getattr(self.engine, name) for name in bundle.KEYED_OF_ENGINE}
+            "engine": {
+                name: getattr(self.engine, name) for name in bundle.KEYED_OF_ENGINE
+            }
             | {"files_match_wheel": self._match.result()},
             "backend": asdict(backend)
             | {"actual_at_end": session.probe(backend.requested).actual}
             | {"driver": driver_version(backend.actual)},
             "render": bundle.render_record(renderer),
-            "host": host_record(backend.device_name if backend.actual == "cpu" else None),
+            "host": host_record(
+                backend.device_name if backend.actual == "cpu" else None
+            ),
             "environment": {
-                name: project.without_home(value) for name, value in self.engine.switches.items()
+                name: project.without_home(value)
+                for name, value in self.engine.switches.items()
             },
             "parameters": run.page.parameters(),
             "seed": self.engine.seed,
@@ -156,11 +177,15 @@ def require_complete(run: Experiment) -> None:
             f"The page has the runs {', '.join(found) or 'none'}; its declaration names "
             f"{', '.join(declared)}. Run each declared case, or correct the declaration."
         )
-    values = {name: of["value"] for name, of in bundle.by_full_name(run.records()).items()}
+    values = {
+        name: of["value"] for name, of in bundle.by_full_name(run.records()).items()
+    }
     odd = [name for name, value in values.items() if not math.isfinite(value or 0)]
     for group, of in run.page.groups(run.rendered).items():
         given = run.readings[group].items()
-        odd += [f"{group}.{name}" for name, value in given if not of.possible(name, value)]
+        odd += [
+            f"{group}.{name}" for name, value in given if not of.possible(name, value)
+        ]
     if odd:
         raise RecordError(
             f"Not finite or beyond limits: {', '.join(dict.fromkeys(odd))}. A bundle needs others. "
@@ -175,7 +200,9 @@ def files_match_wheel(*distributions: str) -> bool:
     """
     for name in distributions:
         files = [f for f in importlib.metadata.distribution(name).files or [] if f.hash]
-        if not any(f.suffix == ".py" for f in files) or not all(map(_is_unchanged, files)):
+        if not any(f.suffix == ".py" for f in files) or not all(
+            map(_is_unchanged, files)
+        ):
             return False
     return True
 
@@ -190,7 +217,9 @@ def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
 
 def host_record(cpu: str | None) -> dict[str, Any]:
     """Describe the machine and every installed package."""
-    found = [*importlib.metadata.distributions()]  # of two of one name, Python imports the first
+    found = [
+        *importlib.metadata.distributions()
+    ]  # of two of one name, Python imports the first
     packages = {d.metadata["Name"]: d.version for d in reversed(found)}
     return {
         "os": platform.platform(),
@@ -208,7 +237,14 @@ def git_record() -> dict[str, Any] | None:
     No page reads recorded bundles, so those that were not committed yet do not count.
     """
     commit = git_or_none(PACKAGE.parent, "rev-parse", "HEAD")
-    asked = ("status", "--porcelain", "--untracked-files=normal", "--", ".", NOT_RECORDED)
+    asked = (
+        "status",
+        "--porcelain",
+        "--untracked-files=normal",
+        "--",
+        ".",
+        NOT_RECORDED,
+    )
     status = git_or_none(PACKAGE.parent, *asked)
     if commit is None or status is None:
         return None

@@ -10,7 +10,8 @@ AGAIN = "Record the bundle again."
 class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
     """A bundle is not valid evidence. `code` is stable; the message says what to do.
 
-    The message may quote the bundle: its control characters and line breaks are escaped.
+    The message may quote the bundle: its control characters and line breaks are
+        escaped.
     """
 
     def __init__(self, code: str, message: str) -> None:
@@ -19,7 +20,12 @@ class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepte
 
 
 def expect(
-    code: str, file: str, what: str, found: object, expected: object, remedy: str = AGAIN
+    code: str,
+    file: str,
+    what: str,
+    found: object,
+    expected: object,
+    remedy: str = AGAIN,
 ) -> None:
     """Raise BundleRefused with `code` unless `found` equals `expected`.
 
@@ -38,7 +44,8 @@ def expect(
 def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> None:
     """Raise BundleRefused with `code` at the first difference of two JSON values.
 
-    Floats may differ by rounding, because another processor computes the last digits otherwise.
+    Floats may differ by rounding, because another processor computes the last digits
+    otherwise.
 
     Args:
         code: stable name of the refusal.
@@ -47,14 +54,22 @@ def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> 
         found: the value in the bundle.
         expected: the valid value.
     """
-    from robo_genesis.core.comparison import agree, differences  # not in a build without work
+    from robo_genesis.core.comparison import (
+        agree,
+        differences,
+    )  # not in a build without work
 
     for path, here, there in differences(found, expected, agree):
         raise unexpected(code, file, what.format(path), here, there)
 
 
 def unexpected(
-    code: str, file: str, what: str, found: object, expected: object, remedy: str = AGAIN
+    code: str,
+    file: str,
+    what: str,
+    found: object,
+    expected: object,
+    remedy: str = AGAIN,
 ) -> BundleRefused:
     """Return the refusal of a value; see `expect`."""
     here, there = quoted(found), quoted(expected)

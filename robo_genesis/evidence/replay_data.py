@@ -20,7 +20,8 @@ def read_runs(folder: Path, replay: Replay) -> Runs:
 
     Raises:
         BundleRefused: the bundle cannot be read.
-        ValueError: it has no such joint, link or axis, or the runs differ in their times.
+        ValueError: it has no such joint, link or axis, or the runs differ in their
+            times.
     """
     arrays = bundle.read_arrays(folder)
     links = arrays.coords["link"]
@@ -31,6 +32,9 @@ def read_runs(folder: Path, replay: Replay) -> Runs:
         runs = body_channels.runs(traces, links, replay)
     metrics, moves = bundle.read_metrics(folder), {}
     for case, move in runs.moves.items():
-        values = {name: format_value(m.value, m.unit) for name, m in metrics.get(case, {}).items()}
+        values = {
+            name: format_value(m.value, m.unit)
+            for name, m in metrics.get(case, {}).items()
+        }
         moves[case] = f"{move} {replay.quality.format(**values)}".rstrip()
     return replace(runs, moves=moves)

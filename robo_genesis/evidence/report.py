@@ -24,7 +24,9 @@ def verdict(comparison: BundleComparison) -> str:
     if comparison.obstacles:
         return "Not comparable."
     rows = Counter(f.state for s in comparison.sections for f in s.rows)
-    counts = ", ".join(f"{rows[state]} {state}" for state in reversed(SEVERITY) if state in rows)
+    counts = ", ".join(
+        f"{rows[state]} {state}" for state in reversed(SEVERITY) if state in rows
+    )
     return f"{comparison.state.capitalize()}. Rows: {counts}."
 
 
@@ -52,7 +54,12 @@ def words(row: Row) -> str:
 def document(comparison: BundleComparison) -> Document:
     """Return the whole report."""
     parts = [
-        Part(part.title, _table(part.rows), part.empty, state=part.state if part.rows else "")
+        Part(
+            part.title,
+            _table(part.rows),
+            part.empty,
+            state=part.state if part.rows else "",
+        )
         for part in comparison.sections
     ]
     parts.append(Part("The two bundles", _origin(comparison)))
@@ -74,7 +81,10 @@ def _table(rows: Sequence[Row]) -> list[Cells]:
 
 def _origin(comparison: BundleComparison) -> list[Cells]:
     old, new = _facts(comparison.old), _facts(comparison.new)
-    rows = [("folder", *comparison.folders), *((what, old[what], new[what]) for what in old)]
+    rows = [
+        ("folder", *comparison.folders),
+        *((what, old[what], new[what]) for what in old),
+    ]
     return [("", "old", "new"), *rows]
 
 

@@ -5,15 +5,33 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.comparison import BROKEN, HELD, WITHIN_MARGIN, Relation, allowed, outcome
+from robo_genesis.core.comparison import (
+    BROKEN,
+    HELD,
+    WITHIN_MARGIN,
+    Relation,
+    allowed,
+    outcome,
+)
 from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
-from robo_genesis.evidence.bundle import Arrays, JointRecord, Manifest, Metric, by_full_name
+from robo_genesis.evidence.bundle import (
+    Arrays,
+    JointRecord,
+    Manifest,
+    Metric,
+    by_full_name,
+)
 
 # States from best to worst. A row that is only shown does not affect the verdict.
 EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
-    "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
-)  # fmt: skip
+    "equal",
+    "shown",
+    "within tolerance",
+    "inconclusive",
+    "differs",
+    "not comparable",
+)
 
 MISSING = "missing"
 
@@ -26,7 +44,10 @@ VERDICTS = {
     frozenset({HELD, WITHIN_MARGIN}): (INCONCLUSIVE, "inconclusive"),
     frozenset({BROKEN}): (DIFFERS, "broken in both"),
     frozenset({HELD, BROKEN}): (DIFFERS, "flipped"),
-    frozenset({BROKEN, WITHIN_MARGIN}): (DIFFERS, "broken in one, undecided in the other"),
+    frozenset({BROKEN, WITHIN_MARGIN}): (
+        DIFFERS,
+        "broken in one, undecided in the other",
+    ),
 }
 
 
@@ -34,8 +55,8 @@ VERDICTS = {
 class PageSpecification:
     """What a lesson declares about the runs of one of its pages.
 
-    `metrics` gives the required metrics of each case; `tolerances` is unit, metric, group of
-    metrics, case or array → (atol, rtol).
+    `metrics` gives the required metrics of each case; `tolerances` is unit, metric,
+    group of metrics, case or array → (atol, rtol).
     """
 
     metrics: Mapping[str, tuple[str, ...]]
@@ -106,7 +127,11 @@ def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Both sides have the same cases, metrics, checks, labels and joints."""
     here, there = _content(old), _content(new)
     declared = {f"case {case}" for case in spec.metrics}
-    declared |= {f"metric {case}.{name}" for case, names in spec.metrics.items() for name in names}
+    declared |= {
+        f"metric {case}.{name}"
+        for case, names in spec.metrics.items()
+        for name in names
+    }
     for name in sorted({*here, *there, *declared}):
         both = here.get(name, MISSING), there.get(name, MISSING)
         if both[0] != both[1] or MISSING in both:
@@ -119,7 +144,10 @@ def _content(side: Side) -> dict[str, str]:
         {f"case {name}": "present" for name in side.traces}
         | {f"metric {name}": f"{m.unit}, {m.kind}" for name, m in side.numbers.items()}
         | {f"check {name}": "present" for name in side.checks}
-        | {f"axis {name}": ", ".join(labels) for name, labels in side.arrays.coords.items()}
+        | {
+            f"axis {name}": ", ".join(labels)
+            for name, labels in side.arrays.coords.items()
+        }
         | {f"joint {joint.name}": _joint_text(joint) for joint in side.arrays.joints}
     )
 
@@ -148,7 +176,11 @@ def relations(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
         (first, second), metric, claim, margin = relation
         outcomes = [outcome(side.numbers, relation) for side in (old, new)]
         state, verdict = VERDICTS[frozenset(held for held, _ in outcomes)]
-        units = [m.unit for side in (old, new) if (m := side.numbers.get(f"{first}.{metric}"))]
+        units = [
+            m.unit
+            for side in (old, new)
+            if (m := side.numbers.get(f"{first}.{metric}"))
+        ]
         what = f"{metric}: {second} {claim} than {first}, {verdict}"
         here, there = (f"{held}: {text}" for held, text in outcomes)
         limit = f"margin {six_digits(margin, units[0] if units else '1')}"
@@ -179,12 +211,15 @@ def values(old: Side, new: Side, spec: PageSpecification, kind: str) -> Iterator
 def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Arrays have the same shape, and their values agree within atol + rtol · the larger magnitude.
 
-    A tolerance is declared by the name of a case or an array or, except for counts, by a unit;
-    without one, values must be equal. The row names the value that exceeds its tolerance most.
+    A tolerance is declared by the name of a case or an array or, except for counts, by
+    a unit; without one, values must be equal. The row names the value that exceeds its
+    tolerance most.
     """
     for case in [name for name in old.traces if name in new.traces]:
         for field, (name, *_) in old.traces[case].arrays().items():
-            a, b = (getattr(side.traces[case], field, np.empty(0)) for side in (old, new))
+            a, b = (
+                getattr(side.traces[case], field, np.empty(0)) for side in (old, new)
+            )
             what, unit = f"{case} {name}", old.arrays.cases[case].variables[name].unit
             if a.shape != b.shape or a.dtype != b.dtype:
                 here, there = (f"{of.dtype}, shape {of.shape}" for of in (a, b))
@@ -207,8 +242,8 @@ def _largest(
 
     Args:
         what: the text of the row; the place in an array is added.
-        names: of the metric and its group, or of the case and the array. The first with a tolerance
-            of its own decides, else the unit.
+        names: of the metric and its group, or of the case and the array. The first with
+            a tolerance of its own decides, else the unit.
         a: those of the old side.
         b: those of the new side, of the same shape.
         unit: a list if the last axis has DOFs.
@@ -222,7 +257,9 @@ def _largest(
     here, there = a.astype(np.float64), b.astype(np.float64)
     delta, room = there - here, allowed(here, there, limits[..., 0], limits[..., 1])
     with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.where(delta == 0, 0.0, np.abs(delta) / room)  # infinite without a tolerance
+        shares = np.where(
+            delta == 0, 0.0, np.abs(delta) / room
+        )  # infinite without a tolerance
     unbound = np.isinf(shares)
     rank = np.where(unbound, np.abs(delta), 0) if unbound.any() else shares
     at = np.unravel_index(np.argmax(rank if rank.any() else np.abs(delta)), a.shape)

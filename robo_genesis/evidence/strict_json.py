@@ -1,6 +1,7 @@
 """The JSON files of a bundle: written in one exact form, and read in no other.
 
-Reading writes the value again and compares every byte: a key that is repeated, another spelling of
+Reading writes the value again and compares every byte: a key that is repeated, another
+    spelling of
 a number or a byte order mark is refused.
 """
 
@@ -42,7 +43,8 @@ def read_json(folder: Path, name: str) -> Any:
             raise ValueError("the same value, written again, gives other bytes")
     except (ValueError, RecursionError) as error:
         raise BundleRefused(
-            "bad-json", f"{name}: {error}, expected the recorder's JSON in UTF-8. {AGAIN}"
+            "bad-json",
+            f"{name}: {error}, expected the recorder's JSON in UTF-8. {AGAIN}",
         ) from error
     return value
 

@@ -1,7 +1,7 @@
 """Write traces and joints to npz files and `arrays.json`, and read them back.
 
-The names of stored arrays end with their unit. A bundle holds runs of joints, or, if it has no
-joints, of free bodies.
+The names of stored arrays end with their unit. A bundle holds runs of joints, or, if it
+has no joints, of free bodies.
 """
 
 from collections.abc import Mapping, Sequence
@@ -51,20 +51,27 @@ def write_traces(
         traces: by case.
         joints: of the DOFs, None for free bodies.
         links: the labels of the axis of links.
-        notes: by case, how its arrays differ from their long names; most cases need none.
+        notes: by case, how its arrays differ from their long names; most cases need
+            none.
     """
     (folder / "arrays").mkdir()
     types, cases = joints.types if joints else (), {}
     for case, trace in traces.items():
-        cases[case] = described = _description(case, trace, types, (notes or {}).get(case, ""))
-        values = {of.name: getattr(trace, field) for field, of in trace.arrays().items()}
+        cases[case] = described = _description(
+            case, trace, types, (notes or {}).get(case, "")
+        )
+        values = {
+            of.name: getattr(trace, field) for field, of in trace.arrays().items()
+        }
         write_archive(folder / described.file, values)
     coords = {"dof": list(joints.names)} if joints else {}
     records = joint_records(joints) if joints else []
     return Arrays(coords=coords | {"link": links}, joints=records, cases=cases)
 
 
-def _description(case: str, trace: TimeSeries, types: Sequence[str], note: str) -> CaseArrays:
+def _description(
+    case: str, trace: TimeSeries, types: Sequence[str], note: str
+) -> CaseArrays:
     """Return the entry of `arrays.json` of one run, whose joints have these types."""
     variables = {}
     for field, of in trace.arrays().items():
@@ -106,10 +113,18 @@ def read_joints(arrays: Arrays) -> JointMap:
         BundleRefused: `labels` if names, types or units contradict each other.
     """
     joints, file = arrays.joints, "arrays.json joints"
-    expect("labels", file, "list of names", [j.name for j in joints], arrays.coords.get("dof", []))
+    expect(
+        "labels",
+        file,
+        "list of names",
+        [j.name for j in joints],
+        arrays.coords.get("dof", []),
+    )
     for joint in joints:
         unit = POSITION_UNIT.get(joint.type_, "that of another type")
-        expect("labels", file, f"unit of {joint.name}, {joint.type_},", joint.unit, unit)
+        expect(
+            "labels", file, f"unit of {joint.name}, {joint.type_},", joint.unit, unit
+        )
     return JointMap(
         names=tuple(joint.name for joint in joints),
         types=tuple(joint.type_ for joint in joints),
@@ -123,11 +138,15 @@ def read_joints(arrays: Arrays) -> JointMap:
 def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Any:
     """Return one run of the kind that a bundle describes; see `read_run`.
 
-    Verification does not use it, because a bundle must not choose the kind of its own runs.
+    Verification does not use it, because a bundle must not choose the kind of its own
+    runs.
     """
     names = {*arrays.cases[case].variables}
     kinds = (Demonstrations, Episodes, Trace, ContactTrace, BodyTrace)
-    kind = next((of for of in kinds if {one.name for one in of.arrays().values()} <= names), Trace)
+    kind = next(
+        (of for of in kinds if {one.name for one in of.arrays().values()} <= names),
+        Trace,
+    )
     return read_run(folder, arrays, case, kind)
 
 
@@ -141,23 +160,29 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
         kind: a class of `core/trace.py`.
 
     Raises:
-        BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the arrays do not
-            form one run.
+        BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the
+            arrays do not form one run.
     """
     described, fields, place = arrays.cases[case], kind.arrays(), f"arrays.json {case}"
     expect("path", place, "file", described.file, f"arrays/{case}.npz")
     types = read_joints(arrays).types if arrays.joints else ()
     dtypes = {of.name: of.dtype for of in fields.values()}
-    expect("labels", place, "list of arrays", sorted(described.variables), sorted(dtypes))
+    expect(
+        "labels", place, "list of arrays", sorted(described.variables), sorted(dtypes)
+    )
     values = read_archive(folder / described.file, described.file, dtypes)
     try:
         trace = kind(**{field: values[of.name] for field, of in fields.items()})
     except TraceError as error:
-        raise BundleRefused("bad-trace", f"{described.file}: {error} {AGAIN}") from error
+        raise BundleRefused(
+            "bad-trace", f"{described.file}: {error} {AGAIN}"
+        ) from error
     expected = _description(case, trace, types, described.note)
     axes = [zip(of.dims, of.shape, strict=True) for of in expected.variables.values()]
     lengths = {dim: n for pairs in axes for dim, n in pairs if dim in ("dof", "link")}
-    labels = {axis: len(names) for axis, names in arrays.coords.items() if axis in lengths}
+    labels = {
+        axis: len(names) for axis, names in arrays.coords.items() if axis in lengths
+    }
     expect("labels", place, "number of labels", labels, lengths)
     expect_equal("labels", place, "{}", described.model_dump(), expected.model_dump())
     return trace

@@ -9,7 +9,9 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage
 
 # The names of all lessons, in the order of the course.
-LESSONS = tuple(sorted(of.parent.name for of in Path(__file__).parent.glob("*/__init__.py")))
+LESSONS = tuple(
+    sorted(of.parent.name for of in Path(__file__).parent.glob("*/__init__.py"))
+)
 
 
 @cache
@@ -46,7 +48,9 @@ def find_lesson(name: str) -> Lesson:
             "it off PYTHONPATH."
         )
     if name not in LESSONS:
-        raise LookupError(f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}.")
+        raise LookupError(
+            f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}."
+        )
     lesson = getattr(import_module(f"{__name__}.{name}"), "LESSON", None)
     if not isinstance(lesson, Lesson):
         raise TypeError(
@@ -74,10 +78,13 @@ def find_page(lesson: str, page: str) -> MeasuringPage:
     """Return a page that measures.
 
     Raises:
-        LookupError: it does not exist; the message lists the measuring pages of the lesson.
+        LookupError: it does not exist; the message lists the measuring pages of the
+            lesson.
     """
     pages = find_lesson(lesson).pages
     if page not in pages:
         known = ", ".join(f"{lesson}/{name}" for name in pages)
-        raise LookupError(f"{lesson}/{page} does not measure anything. Choices: {known}.")
+        raise LookupError(
+            f"{lesson}/{page} does not measure anything. Choices: {known}."
+        )
     return pages[page]

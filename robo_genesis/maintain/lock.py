@@ -1,9 +1,10 @@
 """requirements.lock: the exact version of every package that the course installs.
 
-pip resolves the project with all extras as if nothing were installed; with `keep`, every installed
-version stays that still fits, so a new pin changes only what it forces to change. Versions are
-written without their local part (`2.13.0`, not `2.13.0+cpu`), and the parts of Torch's CUDA build
-are left out: so the same lock installs with PyPI's Torch and with a build for the CPU alone.
+pip resolves the project with all extras as if nothing were installed; with `keep`,
+every installed version stays that still fits, so a new pin changes only what it forces
+to change. Versions are written without their local part (`2.13.0`, not `2.13.0+cpu`),
+and the parts of Torch's CUDA build are left out: so the same lock installs with PyPI's
+Torch and with a build for the CPU alone.
 """
 
 import json
@@ -36,7 +37,8 @@ def write_lock(constraints: Sequence[str], keep: bool = False) -> str:
     """Resolve and write the lock in one step; return a line about it.
 
     Args:
-        constraints: further requirements. Torch keeps its locked version unless one names another.
+        constraints: further requirements. Torch keeps its locked version unless one
+            names another.
         keep: start from the installed packages.
 
     Raises:
@@ -46,8 +48,13 @@ def write_lock(constraints: Sequence[str], keep: bool = False) -> str:
     if not any(canonicalize_name(one).startswith("torch=") for one in constraints):
         constraints = [*constraints, *re.findall("^torch==.*$", old, re.MULTILINE)]
     packages = resolve(constraints, keep)
-    versions = {packages[n]["name"]: packages[n]["version"].split("+")[0] for n in needed(packages)}
-    text = HEADER + "".join(f"{n}=={versions[n]}\n" for n in sorted(versions, key=str.lower))
+    versions = {
+        packages[n]["name"]: packages[n]["version"].split("+")[0]
+        for n in needed(packages)
+    }
+    text = HEADER + "".join(
+        f"{n}=={versions[n]}\n" for n in sorted(versions, key=str.lower)
+    )
     if text != old:  # a new date alone would rebuild .venv
         write_whole(LOCK, text.encode())
     return f"{LOCK.name}: {len(versions)} packages, {ENGINE} {versions[ENGINE]}"
@@ -64,12 +71,23 @@ def resolve(constraints: Sequence[str], keep: bool = False) -> dict[str, Any]:
         report = Path(folder) / "report.json"
         command = [sys.executable, "-m", "pip", "install", "--dry-run"]
         command += [] if keep else ["--ignore-installed"]
-        command += ["-qq", "--report", str(report), f"{ROOT}[{','.join(EXTRAS)}]", *constraints]
+        command += [
+            "-qq",
+            "--report",
+            str(report),
+            f"{ROOT}[{','.join(EXTRAS)}]",
+            *constraints,
+        ]
         if subprocess.run(command, check=False).returncode:
-            raise ProjectError("pip cannot resolve pyproject.toml; its reason is above.")
+            raise ProjectError(
+                "pip cannot resolve pyproject.toml; its reason is above."
+            )
         found = [item["metadata"] for item in json.loads(report.read_text())["install"]]
     installed = [package.metadata.json for package in distributions()] if keep else []
-    return {canonicalize_name(metadata["name"]): metadata for metadata in [*installed, *found]}
+    return {
+        canonicalize_name(metadata["name"]): metadata
+        for metadata in [*installed, *found]
+    }
 
 
 def needed(packages: Mapping[str, Any]) -> set[str]:
@@ -84,7 +102,9 @@ def needed(packages: Mapping[str, Any]) -> set[str]:
         for requirement in map(Requirement, packages[name].get("requires_dist", [])):
             below = canonicalize_name(requirement.name)
             part_of_build = name == "torch" and CUDA_PART.match(below)
-            applies = not requirement.marker or requirement.marker.evaluate({"extra": extra})
+            applies = not requirement.marker or requirement.marker.evaluate(
+                {"extra": extra}
+            )
             if applies and not part_of_build:
                 waiting += [(below, extra) for extra in ("", *requirement.extras)]
     return {name for name, _ in found} - {COURSE}

@@ -1,6 +1,7 @@
 """Add a lesson: files made from the template, and its lines in `_toc.yml` and `course_map.yml`.
 
-The files below `template/` hold `$lesson` and `$LESSON` in the place of the name, `l07` and `L07`.
+The files below `template/` hold `$lesson` and `$LESSON` in the place of the name, `l07`
+and `L07`.
 """
 
 import re
@@ -27,7 +28,8 @@ def add_lesson(root: Path, lesson: str) -> list[str]:
         Lines for the user: what was written, and what to do next.
 
     Raises:
-        ProjectError: the name is not valid, the lesson exists, or a list has another form.
+        ProjectError: the name is not valid, the lesson exists, or a list has another
+            form.
         OSError: a file cannot be written. A next call names the folders that were made.
     """
     require_new(root, lesson)
@@ -38,7 +40,11 @@ def add_lesson(root: Path, lesson: str) -> list[str]:
     for path, text in files.items():
         write_whole(path, text.encode())
     written = [f"  {path.relative_to(root)}" for path in files]
-    return [f"Lesson {lesson} was added:", *written, "Next: edit these files, then `make book`."]
+    return [
+        f"Lesson {lesson} was added:",
+        *written,
+        "Next: edit these files, then `make book`.",
+    ]
 
 
 def require_new(root: Path, lesson: str) -> None:
@@ -48,10 +54,14 @@ def require_new(root: Path, lesson: str) -> None:
         ProjectError: the message says what is valid.
     """
     if not re.fullmatch(r"l\d\d", lesson):
-        raise ProjectError(f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07.")
+        raise ProjectError(
+            f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07."
+        )
     if used := sorted(root.glob(f"*/lessons/{lesson}*")):
         names = ", ".join(path.relative_to(root).as_posix() for path in used)
-        raise ProjectError(f"Lesson {lesson} exists: {names}. Give another number, or remove it.")
+        raise ProjectError(
+            f"Lesson {lesson} exists: {names}. Give another number, or remove it."
+        )
 
 
 def lesson_files(root: Path, lesson: str) -> dict[Path, str]:
@@ -63,7 +73,9 @@ def lesson_files(root: Path, lesson: str) -> dict[Path, str]:
         "tests": root / "tests" / "lessons" / lesson,
     }
     return {
-        target / path.name.removesuffix(SUFFIX): Template(path.read_text("utf8")).substitute(words)
+        target / path.name.removesuffix(SUFFIX): Template(
+            path.read_text("utf8")
+        ).substitute(words)
         for part, target in targets.items()
         for path in sorted((TEMPLATE / part).glob(f"*{SUFFIX}"))
     }
@@ -76,9 +88,13 @@ def with_chapter(toc: str, lesson: str) -> str:
         ProjectError: it names no lesson.
     """
     head, *chapters = re.split(f"(?m)^(?={CHAPTER})", f"{toc.rstrip()}\n")
-    lessons = [k for k, text in enumerate(chapters) if text.startswith(f"{CHAPTER}lessons/")]
+    lessons = [
+        k for k, text in enumerate(chapters) if text.startswith(f"{CHAPTER}lessons/")
+    ]
     if not lessons:
-        raise ProjectError(f"book/_toc.yml has no line `{CHAPTER}lessons/...`. Add one there.")
+        raise ProjectError(
+            f"book/_toc.yml has no line `{CHAPTER}lessons/...`. Add one there."
+        )
     later = [k for k in lessons if chapters[k] > f"{CHAPTER}lessons/{lesson}"]
     folder = f"lessons/{lesson}-new-lesson"
     pages = [f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes")]
@@ -100,7 +116,9 @@ def with_entry(course_map: str, lesson: str) -> str:
         at = sum(other < name for other in names)
         entries.insert(at, f"{ENTRY}{name}\n  title: A robot turns one joint\n{new}")
     elif "\n  page:" in entries[names.index(name)]:
-        raise ProjectError(f"book/course_map.yml names a page of {name}. Remove that line.")
+        raise ProjectError(
+            f"book/course_map.yml names a page of {name}. Remove that line."
+        )
     else:
         entries[names.index(name)] += new
     return "".join([head, *entries])

@@ -28,7 +28,9 @@ from robo_genesis.pipeline.pages.kernels import wait_or_kill
 FILES = ("pyproject.toml", "requirements.lock")
 
 # The line of `make book` for a page that failed or whose bundle is refused, and why.
-FAILED = re.compile(r"^\[ *[\d.]+ s\] \w+ +(.+?)  (failed|refused)\b.*?: (.+)\n", re.MULTILINE)
+FAILED = re.compile(
+    r"^\[ *[\d.]+ s\] \w+ +(.+?)  (failed|refused)\b.*?: (.+)\n", re.MULTILINE
+)
 
 LINES = 50  # How many last lines of a log an error and the report show
 
@@ -48,7 +50,8 @@ def run_repin(
         say: prints a line.
 
     Returns:
-        The last lines for the user: what was changed, where the report is and what to do next.
+        The last lines for the user: what was changed, where the report is and what to
+            do next.
 
     Raises:
         ProjectError, BundleRefused: nothing was changed.
@@ -76,10 +79,10 @@ def run_repin(
     return [
         f"Pinned: {ENGINE} {old} → {new}, in {' and '.join(FILES)}. Nothing is committed.",
         f"Report: {report}",
-        "Review both; describe the changes in CHANGELOG.md under \"Evidence changed\". The next "
+        'Review both; describe the changes in CHANGELOG.md under "Evidence changed". The next '
         "make book sets up .venv anew (with PYTHON=…, install the lock there first).",
         f"git restore {' '.join(FILES)} restores the old pin.",
-    ]  # fmt: skip
+    ]
 
 
 def wanted_version(given: str, pin: str) -> str:
@@ -96,9 +99,13 @@ def wanted_version(given: str, pin: str) -> str:
         version = Version(given)
     except InvalidVersion:
         valid = f"Usage: make repin GENESIS=1.2.3 (the pin is {pin})."
-        raise project.ProjectError(f"GENESIS={given!r} is not a version. {valid}") from None
+        raise project.ProjectError(
+            f"GENESIS={given!r} is not a version. {valid}"
+        ) from None
     if version == Version(pin):
-        raise project.ProjectError(f"GENESIS={given} is the pin already. Give another version.")
+        raise project.ProjectError(
+            f"GENESIS={given} is the pin already. Give another version."
+        )
     return str(version)
 
 
@@ -107,10 +114,14 @@ def require_locked_packages(root: Path) -> None:
 
     The new lock keeps the installed versions, so they must be those of the old one.
     """
-    installed = {canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()}
+    installed = {
+        canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()
+    }
     unlike = [
         f"{name} {found} instead of {version}"
-        for name, version in locked_versions((root / FILES[1]).read_text("utf8")).items()
+        for name, version in locked_versions(
+            (root / FILES[1]).read_text("utf8")
+        ).items()
         if (found := installed.get(canonicalize_name(name), "(none)")) != version
     ]
     if unlike:
@@ -151,8 +162,8 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 class Trial:
     """The steps in the checkout, each with its log.
 
-    `before` is what the old version built, `failed` what the current step has found: the name of
-    each page that is not accepted → `failed` or `refused`, and why.
+    `before` is what the old version built, `failed` what the current step has found:
+    the name of each page that is not accepted → `failed` or `refused`, and why.
     """
 
     cache: Path
@@ -168,13 +179,20 @@ class Trial:
         set_pin(self.work, self.old, self.new)
         lock = str(self.work / "build_scripts" / "lock.py")
         self.command("resolve", f"{ENGINE} {self.new}", sys.executable, lock, "--keep")
-        asked, locked = self.new, locked_versions((self.work / FILES[1]).read_text("utf8"))
+        asked, locked = (
+            self.new,
+            locked_versions((self.work / FILES[1]).read_text("utf8")),
+        )
         self.new = locked[ENGINE]  # as the index spells it
         set_pin(self.work, asked, self.new)
         new = texts(self.work)
         git(self.work, "checkout", "--", *FILES)
-        self.command("book", f"with {self.old}", "make", "book", f"PYTHON={sys.executable}")
-        site = (self.work / "book" / PUBLISHED).rename(self.work / ".cache" / "old") / "html"
+        self.command(
+            "book", f"with {self.old}", "make", "book", f"PYTHON={sys.executable}"
+        )
+        site = (self.work / "book" / PUBLISHED).rename(
+            self.work / ".cache" / "old"
+        ) / "html"
         self.before = refresh.read_build(self.work, self.old, site)
         write(self.work, new)
         python = f"BASE_PYTHON={sys.executable}"
@@ -202,13 +220,20 @@ class Trial:
                 f"so that it passes with {self.new} too, and commit; then run make repin again. It "
                 "reuses what is compiled and executed, and begins with the pages that failed."
             )
-            places = [f"Log: {log}", f"Report: {self.write_report(head, remedy, *lines)}"]
-            raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
+            places = [
+                f"Log: {log}",
+                f"Report: {self.write_report(head, remedy, *lines)}",
+            ]
+            raise project.ProjectError(
+                "\n".join([*lines, *places, "", f"{head}. {remedy}"])
+            )
 
     def name_failed(self, stage: str, log: Path) -> None:
         """Print each page of a build that failed or was refused since the last call."""
         for page, state, why in FAILED.findall(log.read_text("utf8", errors="replace")):
-            if stage == "book" and page not in self.failed:  # tests print builds of their own
+            if (
+                stage == "book" and page not in self.failed
+            ):  # tests print builds of their own
                 self.failed[page] = state, why
                 self.progress(stage, page, f"{state}: {why}")
 
@@ -217,7 +242,9 @@ class Trial:
         found = refresh.Refresh((self.old, self.new))
         if self.before:
             site = self.work / "book" / PUBLISHED / "html"
-            absent = [page for page, (state, _) in self.failed.items() if state == "failed"]
+            absent = [
+                page for page, (state, _) in self.failed.items() if state == "failed"
+            ]
             after = refresh.read_build(self.work, self.new, site, absent)
             found = refresh.compare_builds(self.before, after)
         found = replace(found, failed=failed, pages=self.failed)
@@ -234,7 +261,10 @@ def last_words(log: Path) -> list[str]:
 
 
 def run_logged(
-    command: Sequence[str], folder: Path, log: Path, meanwhile: Callable[[], None] = lambda: None
+    command: Sequence[str],
+    folder: Path,
+    log: Path,
+    meanwhile: Callable[[], None] = lambda: None,
 ) -> int:
     """Run a command in a checkout with its output in a log, and return its exit status.
 
@@ -253,7 +283,8 @@ def run_logged(
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,
-            start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
+            # a Ctrl-C of the terminal reaches this process alone
+            start_new_session=True,
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
         return wait_or_kill(process, meanwhile)

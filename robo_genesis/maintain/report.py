@@ -17,7 +17,11 @@ from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.document import Document, Part
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import SEVERITY, worst
-from robo_genesis.pipeline.bundles.status import Status, recorded_folders, recorded_status
+from robo_genesis.pipeline.bundles.status import (
+    Status,
+    recorded_folders,
+    recorded_status,
+)
 from robo_genesis.pipeline.pages.book import code_digest, find_pages
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, read_record
 from robo_genesis.pipeline.pages.results import find_bundle
@@ -25,12 +29,14 @@ from robo_genesis.pipeline.pages.store import folders
 
 Pair = tuple[str, str]
 
-# Text that differs between any two runs of one version: run ids, digests and dates with times.
+# Text that differs between any two runs of one version: run ids, digests and dates with
+# times.
 VOLATILE = re.compile(
     r"\brun[ |]+[0-9a-f]{8}\b(?!\.\d)|\b[0-9a-f]{32,64}\b"
     r"|\b\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d[\d:.]*Z?)?"
 )
-# The beginning of a log line of the engine or its compiler; bundles supply the warnings.
+# The beginning of a log line of the engine or its compiler; bundles supply the
+# warnings.
 LOG = re.compile(r"\[(Genesis\b|[TDIWEC] \d\d/\d\d/)")
 END = re.compile(r"(?<=[.!?])\s+(?=[^\s\d])")
 BLOCKS = "p, li, tr, figcaption, caption, dt, dd, pre, h1, h2, h3, h4"
@@ -58,8 +64,8 @@ class EngineBuild:
     """What one engine version made of a checkout.
 
     `bundles` is lesson/page/backend → folder of each page that was executed, `recorded`
-    lesson/backend → state of each recorded bundle under the pin. `site` is the folder of the HTML,
-    which a refused build lacks.
+    lesson/backend → state of each recorded bundle under the pin. `site` is the folder
+    of the HTML, which a refused build lacks.
     """
 
     version: str
@@ -73,11 +79,12 @@ class EngineBuild:
 class Refresh:
     """The comparison of two builds of one checkout, each with its engine version.
 
-    `packages` is name → versions in both locks, "" for none; `missing` is lesson/page/backend → why
-    its bundles were not compared; `recorded` is lesson/backend → state under both pins; `changed`
-    holds (page, old, new) of each changed sentence, see `changed_sentences`. `failed` says what
-    failed, what to do, and the last lines of the log; what was not reached is empty then. `pages`
-    is the name of each page that is not accepted → `failed` or `refused`, and why.
+    `packages` is name → versions in both locks, "" for none; `missing` is
+    lesson/page/backend → why its bundles were not compared; `recorded` is
+    lesson/backend → state under both pins; `changed` holds (page, old, new) of each
+    changed sentence, see `changed_sentences`. `failed` says what failed, what to do,
+    and the last lines of the log; what was not reached is empty then. `pages` is the
+    name of each page that is not accepted → `failed` or `refused`, and why.
     """
 
     versions: Pair
@@ -102,7 +109,9 @@ class Refresh:
         return [name for name, (was, now) in both if now.state == "stale" != was.state]
 
 
-def read_build(root: Path, version: str, site: Path, failed: Collection[str] = ()) -> EngineBuild:
+def read_build(
+    root: Path, version: str, site: Path, failed: Collection[str] = ()
+) -> EngineBuild:
     """Return what an engine version has built in a checkout that pins it, refused or not.
 
     Args:
@@ -116,7 +125,9 @@ def read_build(root: Path, version: str, site: Path, failed: Collection[str] = (
         if page.docname in failed:
             continue
         for folder in folders(root / ".cache" / STORE, page):
-            with suppress(PageRefused):  # of an older form, or damaged: no build of today
+            with suppress(
+                PageRefused
+            ):  # of an older form, or damaged: no build of today
                 record = read_record(folder)
                 bundle = find_bundle(folder / OUTPUTS, record.run_id)
                 current = record.engine == version and record.code == code_digest(page)
@@ -145,7 +156,9 @@ def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
         tuple(comparisons),
         missing,
         {name: (old.recorded[name], new.recorded[name]) for name in old.recorded},
-        tuple(changed_sentences(old.site, new.site, versions)) if new.site.is_dir() else (),
+        tuple(changed_sentences(old.site, new.site, versions))
+        if new.site.is_dir()
+        else (),
     )
 
 
@@ -160,23 +173,33 @@ def changed_packages(old: str, new: str) -> dict[str, Pair]:
     """Return name → (old, new) version of each package that differs between two locks."""
     was, now = locked_versions(old), locked_versions(new)
     names = sorted(was | now)
-    return {n: (was.get(n, ""), now.get(n, "")) for n in names if was.get(n) != now.get(n)}
+    return {
+        n: (was.get(n, ""), now.get(n, "")) for n in names if was.get(n) != now.get(n)
+    }
 
 
-def changed_sentences(old: Path, new: Path, versions: Pair) -> Iterator[tuple[str, str, str]]:
+def changed_sentences(
+    old: Path, new: Path, versions: Pair
+) -> Iterator[tuple[str, str, str]]:
     """Yield (page, old, new) of each sentence that changed between two builds' folders of HTML.
 
-    One of the texts is empty if the other has no counterpart. The pages' sources are the same, so a
-    changed sentence contains a measured or computed value. A sentence in which only the engine's
-    version differs is left out.
+    One of the texts is empty if the other has no counterpart. The pages' sources are
+    the same, so a changed sentence contains a measured or computed value. A sentence in
+    which only the engine's version differs is left out.
     """
     own = "|".join(map(re.escape, versions))
     volatile = re.compile(rf"{VOLATILE.pattern}|(?<![\d.])(?:{own})(?![\d.]*\d)")
-    names = {page.relative_to(site) for site in (old, new) for page in site.rglob("*.html")}
+    names = {
+        page.relative_to(site) for site in (old, new) for page in site.rglob("*.html")
+    }
     for name in sorted(names - LEFT_OUT):
         was, now = (list(sentences(site / name)) for site in (old, new))
-        before, after = ([volatile.sub("…", text) for text in page] for page in (was, now))
-        for tag, a, b, c, d in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
+        before, after = (
+            [volatile.sub("…", text) for text in page] for page in (was, now)
+        )
+        for tag, a, b, c, d in SequenceMatcher(
+            None, before, after, autojunk=False
+        ).get_opcodes():
             if tag != "equal":
                 for pair in zip_longest(was[a:b], now[c:d], fillvalue=""):
                     yield name.with_suffix("").as_posix(), *pair
@@ -187,7 +210,9 @@ def sentences(page: Path) -> Iterator[str]:
 
     A table row counts as one sentence, as does a line of printed output.
     """
-    soup = BeautifulSoup(page.read_text("utf8") if page.is_file() else "", "html.parser")
+    soup = BeautifulSoup(
+        page.read_text("utf8") if page.is_file() else "", "html.parser"
+    )
     article = soup.select_one("article") or soup
     for hidden in article.select(HIDDEN):
         hidden.decompose()
@@ -222,29 +247,38 @@ def document(refresh: Refresh) -> Document:
 
 def _advice(state: str, why: str) -> str:
     """Return how to decide whether the engine or a rule of ours must change."""
-    return JUDGED if state == "refused" or why.startswith(CheckFailed.__name__) else RAISED
+    return (
+        JUDGED if state == "refused" or why.startswith(CheckFailed.__name__) else RAISED
+    )
 
 
 def _parts(refresh: Refresh) -> Iterator[Part]:
     """Yield the parts of the report.
 
-    The part of the pages has one row for each. Rows that are equal are counted there and left out
-    below: most of several thousand rows are.
+    The part of the pages has one row for each. Rows that are equal are counted there
+    and left out below: most of several thousand rows are.
     """
     old, new = refresh.versions
     both = refresh.comparisons
     if refresh.failed:
         what, remedy, *lines = refresh.failed
         named = [("page", "result", "reason", "rule or engine?")]
-        named += [(page, *found, _advice(*found)) for page, found in refresh.pages.items()]
+        named += [
+            (page, *found, _advice(*found)) for page, found in refresh.pages.items()
+        ]
         yield Part(what, named, remarks=[remedy])
         yield Part("Last lines of the log", [()], remarks=lines)
-    rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
+    rows = [
+        (f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one))
+        for one in both
+    ]
     rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]
     yield Part("Pages", [("page", "result", "rows"), *rows], NOTHING)
     packages = [(name, *versions) for name, versions in refresh.packages.items()]
     yield Part("Packages", [("package", "old", "new"), *packages], NOTHING)
-    states = [(name, a.state, b.state, b.reason) for name, (a, b) in refresh.recorded.items()]
+    states = [
+        (name, a.state, b.state, b.reason) for name, (a, b) in refresh.recorded.items()
+    ]
     head = ("bundle", f"under {old}", f"under {new}", "reason")
     yield Part("Recorded bundles", [head, *states], NOTHING)
     for one in both:
@@ -252,6 +286,8 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
         if one.remarks or len(table) > 1:
             yield Part(report.title(one), table, remarks=one.remarks)
     for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
-        yield Part(f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)])
+        yield Part(
+            f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)]
+        )
     if not refresh.changed:
         yield Part("Sentences", [("", "")], NOTHING)

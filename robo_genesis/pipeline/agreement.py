@@ -1,7 +1,8 @@
 """Whether two executions of the same pages agree.
 
-On equal processors they must leave equal arrays. Another processor may round differently: then both
-bundles must pass verification, and their values agree within the tolerances of the lesson.
+On equal processors they must leave equal arrays. Another processor may round
+differently: then both bundles must pass verification, and their values agree within the
+tolerances of the lesson.
 """
 
 from collections.abc import Mapping
@@ -20,7 +21,8 @@ from robo_genesis.pipeline.pages.folder import OUTPUTS, Record, plain_files, rea
 from robo_genesis.pipeline.pages.results import find_bundle
 from robo_genesis.pipeline.pages.store import Verify, exported_folders
 
-ARRAYS = ".npz"  # Ends the name of an archive of arrays. Its bytes depend on the arrays alone.
+# Ends the name of an archive of arrays. Its bytes depend on the arrays alone.
+ARRAYS = ".npz"
 OF_BUNDLE = "/arrays/"  # In the name of an archive whose arrays have tolerances
 NAMELESS = "a processor without a name"
 
@@ -29,8 +31,8 @@ NAMELESS = "a processor without a name"
 class Execution:
     """One execution of a page.
 
-    `bundle` is None if it left none; `archives` has the digest of each archive of arrays, computed
-    from the file. `processor` is the name in the manifest.
+    `bundle` is None if it left none; `archives` has the digest of each archive of
+    arrays, computed from the file. `processor` is the name in the manifest.
     """
 
     record: Record
@@ -39,13 +41,16 @@ class Execution:
     processor: str
 
 
-def agree(first: Path | None, second: Path | None, verify: Verify = verify_bundle) -> list[str]:
+def agree(
+    first: Path | None, second: Path | None, verify: Verify = verify_bundle
+) -> list[str]:
     """Require that two executions of the same pages agree.
 
     Outputs, frames and logs are not compared: they contain times and names of machines.
 
     Args:
-        first: holds the folders that `make execute` exported on one machine, at any depth.
+        first: holds the folders that `make execute` exported on one machine, at any
+            depth.
         second: those of another machine.
         verify: verifies a bundle whose arrays differ from those of the other processor.
 
@@ -53,7 +58,8 @@ def agree(first: Path | None, second: Path | None, verify: Verify = verify_bundl
         Sentences about processors and arrays, for the user and the site.
 
     Raises:
-        ProjectError: a page or an archive is missing in one of them, or the two do not agree.
+        ProjectError: a page or an archive is missing in one of them, or the two do not
+            agree.
         PageRefused: a folder is not an executed page.
     """
     one, other = _executions("FIRST", first), _executions("SECOND", second)
@@ -61,7 +67,9 @@ def agree(first: Path | None, second: Path | None, verify: Verify = verify_bundl
     for page in sorted({*one, *other}):
         if page not in one or page not in other:
             absent = first if page not in one else second
-            problems.append(f"{page} is not in {absent}. Execute it: make execute PAGE={page}")
+            problems.append(
+                f"{page} is not in {absent}. Execute it: make execute PAGE={page}"
+            )
             continue
         try:
             if row := _difference(one[page], other[page], verify):
@@ -70,9 +78,13 @@ def agree(first: Path | None, second: Path | None, verify: Verify = verify_bundl
             problems.append(f"{page}: {error}")
     measured = [page for page, execution in one.items() if execution.archives]
     if not measured:
-        problems.append(f"FIRST={first} has no arrays ({ARRAYS}). Execute the measuring pages.")
+        problems.append(
+            f"FIRST={first} has no arrays ({ARRAYS}). Execute the measuring pages."
+        )
     if problems:
-        raise ProjectError("\n".join([f"{first} and {second} do not agree.", *problems]))
+        raise ProjectError(
+            "\n".join([f"{first} and {second} do not agree.", *problems])
+        )
     found = {pages[page].processor for pages in (one, other) for page in measured}
     lines = [
         f"Each page was executed twice, on {listed(sorted(found))}.",
@@ -100,7 +112,9 @@ def _executions(name: str, folder: Path | None) -> dict[str, Execution]:
     for place in exported_folders(folder):
         record = read_record(place)
         if record.docname in found:
-            raise ProjectError(f"{name}={folder} has {record.docname} twice. Remove one.")
+            raise ProjectError(
+                f"{name}={folder} has {record.docname} twice. Remove one."
+            )
         archives = (file for file in plain_files(place) if file.endswith(ARRAYS))
         bundle = find_bundle(place / OUTPUTS, record.run_id)
         processor = read_manifest(bundle).predicate.host.cpu if bundle else NAMELESS
@@ -113,20 +127,24 @@ def _difference(one: Execution, other: Execution, verify: Verify) -> Row | None:
     """Return the difference that is the largest share of its tolerance, None if arrays are equal.
 
     Raises:
-        ProjectError: arrays differ on equal processors, a difference exceeds its tolerance, or a
-            check or an ordering changed.
+        ProjectError: arrays differ on equal processors, a difference exceeds its
+            tolerance, or a check or an ordering changed.
         BundleRefused: a bundle is not valid.
     """
     here, there = one.record, other.record
     if here.run_id == there.run_id:
-        raise ProjectError(f"both are run {here.run_id[:8]}, expected two. Execute it once more.")
+        raise ProjectError(
+            f"both are run {here.run_id[:8]}, expected two. Execute it once more."
+        )
     if here.fingerprint != there.fingerprint:
         raise ProjectError(
             f"their fingerprints are {here.fingerprint[:8]} and {there.fingerprint[:8]}, expected "
             "equal ones: commit, lock, packages, Python or switches differ. Execute it again."
         )
     files = sorted({*one.archives, *other.archives})
-    apart = [name for name in files if one.archives.get(name) != other.archives.get(name)]
+    apart = [
+        name for name in files if one.archives.get(name) != other.archives.get(name)
+    ]
     processors = sorted({one.processor, other.processor})
     may_round = len(processors) == 2 and NAMELESS not in processors
     exact = [name for name in apart if not may_round or OF_BUNDLE not in name]

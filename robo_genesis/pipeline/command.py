@@ -14,13 +14,22 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import BACKEND, BOOK, BUILD_BACKEND, CACHE, RENDER, ProjectError
+from robo_genesis.core.project import (
+    BACKEND,
+    BOOK,
+    BUILD_BACKEND,
+    CACHE,
+    RENDER,
+    ProjectError,
+)
 from robo_genesis.core.text import ended
 from robo_genesis.evidence.refusals import BundleRefused
 
 TIMEOUT = 1500  # Seconds for one cell; a page's front matter may set another
 
-PR_SET_PDEATHSIG = 1  # The request of <linux/prctl.h> for a signal at the end of the parent
+PR_SET_PDEATHSIG = (
+    1  # The request of <linux/prctl.h> for a signal at the end of the parent
+)
 ANSI = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")  # A colour, or another code of a terminal
 
 say = partial(print, flush=True)
@@ -41,8 +50,8 @@ class Progress:
 def collect_rarely() -> None:
     """Let Python collect cyclic garbage a thousand times less often than usual.
 
-    Parsed pages are millions of objects that stay, and scanning them repeatedly takes a quarter of
-    a render. Rare collection costs memory: some 100 MB for ten pages.
+    Parsed pages are millions of objects that stay, and scanning them repeatedly takes a
+    quarter of a render. Rare collection costs memory: some 100 MB for ten pages.
     """
     gc.set_threshold(1_000_000, 20, 100)
 
@@ -50,7 +59,8 @@ def collect_rarely() -> None:
 def run(task: Callable[[], Sequence[str] | int], done: str) -> int:
     """Run a task, print the last lines that it returns, and return the exit status.
 
-    A cancelled CI job sends SIGTERM, which ends the task as Ctrl-C does, so that no kernel is left.
+    A cancelled CI job sends SIGTERM, which ends the task as Ctrl-C does, so that no
+    kernel is left.
 
     Args:
         task: does the work and returns the last lines for the user, or the exit status.
@@ -80,11 +90,12 @@ def run(task: Callable[[], Sequence[str] | int], done: str) -> int:
 def end_with_parent(sent: signal.Signals = signal.SIGKILL) -> Callable[[], None]:
     """Return a `preexec_fn` of subprocess: Linux signals the child when its parent ends.
 
-    This also holds for a parent that is killed by SIGKILL, as by the kernel when memory is short.
-    The parent is the thread that starts the child.
+    This also holds for a parent that is killed by SIGKILL, as by the kernel when memory
+    is short. The parent is the thread that starts the child.
 
     Args:
-        sent: the signal for the child. SIGTERM is for children that pass it on, as `make` does.
+        sent: the signal for the child. SIGTERM is for children that pass it on, as
+            `make` does.
     """
     parent, prctl = os.getpid(), ctypes.CDLL(None).prctl  # loaded before the fork
 
@@ -110,7 +121,9 @@ def output_of(command: Sequence[str], refusal: str, **options: Any) -> str:
     options |= {"capture_output": True, "text": True, "preexec_fn": end_with_parent()}
     done = subprocess.run(command, check=False, **options)
     if done.returncode:
-        raise ProjectError(f"{refusal}, {ended(done.returncode)}:\n{done.stdout}{done.stderr}")
+        raise ProjectError(
+            f"{refusal}, {ended(done.returncode)}:\n{done.stdout}{done.stderr}"
+        )
     return done.stdout
 
 
@@ -125,7 +138,9 @@ def choice(name: str, default: str, choices: tuple[str, ...], reason: str = "") 
     """
     value = os.environ.get(name) or default
     if value not in choices:
-        sys.exit(f"{name}={value!r} is not valid{reason}. Choices: {', '.join(choices)}.")
+        sys.exit(
+            f"{name}={value!r} is not valid{reason}. Choices: {', '.join(choices)}."
+        )
     return value
 
 
@@ -133,7 +148,9 @@ def port() -> int:
     """Return PORT, by default 8000; exit with 1 if it is not the number of a port."""
     value = os.environ.get("PORT") or "8000"
     if not value.isdecimal() or int(value) > 65535:
-        sys.exit(f"PORT={value!r} is not valid. Choices: 1 to 65535, or 0 for a free port.")
+        sys.exit(
+            f"PORT={value!r} is not valid. Choices: 1 to 65535, or 0 for a free port."
+        )
     return int(value)
 
 
@@ -171,7 +188,13 @@ def set_contract() -> None:
 def parser(description: str) -> argparse.ArgumentParser:
     """Return a parser with the arguments of the commands that execute pages."""
     arguments = argparse.ArgumentParser(description=description.splitlines()[0])
-    arguments.add_argument("--book", type=absolute, default=BOOK, help="folder of the pages")
-    arguments.add_argument("--cache", type=absolute, default=CACHE, help="folder of the caches")
-    arguments.add_argument("--timeout", type=int, default=TIMEOUT, help="seconds for one cell")
+    arguments.add_argument(
+        "--book", type=absolute, default=BOOK, help="folder of the pages"
+    )
+    arguments.add_argument(
+        "--cache", type=absolute, default=CACHE, help="folder of the caches"
+    )
+    arguments.add_argument(
+        "--timeout", type=int, default=TIMEOUT, help="seconds for one cell"
+    )
     return arguments

@@ -1,10 +1,10 @@
 """A fresh checkout of HEAD, and the build of `make book RELEASE=1` in it.
 
-The fresh checkout gets the commit's objects through git's own transfer, which computes their names
-again, and nothing else: no file that the user's checkout or its index hides or changes, no
-configuration of git, no bytecode, and of `.cache` only the named folders. A release shares what the
-engine compiled: compiling takes minutes, and a test requires equal arrays from reused and from new
-kernels.
+The fresh checkout gets the commit's objects through git's own transfer, which computes
+their names again, and nothing else: no file that the user's checkout or its index hides
+or changes, no configuration of git, no bytecode, and of `.cache` only the named
+folders. A release shares what the engine compiled: compiling takes minutes, and a test
+requires equal arrays from reused and from new kernels.
 """
 
 import os
@@ -19,28 +19,49 @@ from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import COMPILED, ROOT, STORE, ProjectError
 from robo_genesis.pipeline.command import end_with_parent
-from robo_genesis.pipeline.pages.kernels import interrupts_blocked, users_variables, wait_or_kill
+from robo_genesis.pipeline.pages.kernels import (
+    interrupts_blocked,
+    users_variables,
+    wait_or_kill,
+)
 
-# Folders of a release in the caches, and of the checkout in it. They stay if a release fails.
+# Folders of a release in the caches, and of the checkout in it. They stay if a release
+# fails.
 FOLDER, CHECKOUT = "release", "checkout"
 
-# Caches whose folders are named by their inputs; a release shares what is compiled alone.
+# Caches whose folders are named by their inputs; a release shares what is compiled
+# alone.
 SHARED = ("derived", COMPILED, "npm", STORE)
 
-# Variables of the outer make that a make in another checkout must not get: a new pin makes recorded
-# bundles stale, which a release would refuse.
+# Variables of the outer make that a make in another checkout must not get: a new pin
+# makes recorded bundles stale, which a release would refuse.
 OUTER = (
-    "GENESIS", "PYTHON", "BUNDLE", "RELEASE", "EXECUTED", "SECOND", "MAKEFLAGS", "MFLAGS",
-    "MAKELEVEL", "PYTEST_ADDOPTS",
-)  # fmt: skip
+    "GENESIS",
+    "PYTHON",
+    "BUNDLE",
+    "RELEASE",
+    "EXECUTED",
+    "SECOND",
+    "MAKEFLAGS",
+    "MFLAGS",
+    "MAKELEVEL",
+    "PYTEST_ADDOPTS",
+)
 
-SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "ROBO_GENESIS_BACKEND")
+SETTINGS = (
+    "RENDER",
+    "JOBS",
+    "SITE_URL",
+    "SOLUTIONS",
+    "SOURCE_DATE_EPOCH",
+    "ROBO_GENESIS_BACKEND",
+)
 
 # What npm needs to fetch the locked packages; it compares them with the lock.
 NETWORK = ("HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY", "NODE_EXTRA_CA_CERTS")
 
-# The whole configuration of the git that makes the checkout. A container's user may differ from the
-# owner of the checkout, which git would refuse.
+# The whole configuration of the git that makes the checkout. A container's user may
+# differ from the owner of the checkout, which git would refuse.
 GIT_CONFIG = """\
 [safe]
 directory = *
@@ -51,15 +72,17 @@ autocrlf = false
 """
 
 
-def release(arguments: Sequence[str], cache: Path, root: Path = ROOT, **handed: Path | None) -> int:
+def release(
+    arguments: Sequence[str], cache: Path, root: Path = ROOT, **handed: Path | None
+) -> int:
     """Build the last commit in a fresh checkout, and return the exit status of its build.
 
     Args:
         arguments: of `build_scripts/book.py` there.
         cache: the folder of the caches.
         root: the checkout whose HEAD is built.
-        handed: `executed` is the folder of pages that other machines executed at this commit,
-            `second` that of a second execution.
+        handed: `executed` is the folder of pages that other machines executed at this
+            commit, `second` that of a second execution.
 
     Raises:
         ProjectError: the tree has changes, git failed, or another release runs here.
@@ -101,10 +124,16 @@ def check_out(root: Path, folder: Path, cache: Path, shared: Sequence[str]) -> P
     work.mkdir(parents=True)
     config = folder / "gitconfig"
     config.write_text(GIT_CONFIG)
-    own = {"GIT_CONFIG_GLOBAL": str(config), "GIT_CONFIG_NOSYSTEM": "1", "GIT_ATTR_NOSYSTEM": "1"}
+    own = {
+        "GIT_CONFIG_GLOBAL": str(config),
+        "GIT_CONFIG_NOSYSTEM": "1",
+        "GIT_ATTR_NOSYSTEM": "1",
+    }
     git(work, "init", "--quiet", "--template=", **own)
     source = root.resolve().as_uri()
-    git(work, "fetch", "--quiet", "--no-tags", "--update-shallow", source, "HEAD", **own)
+    git(
+        work, "fetch", "--quiet", "--no-tags", "--update-shallow", source, "HEAD", **own
+    )
     git(work, "checkout", "--quiet", "--detach", commit, **own)
     (work / ".cache").mkdir()
     for name in shared:
@@ -139,7 +168,11 @@ def release_environment(work: Path, **handed: Path | None) -> dict[str, str]:
         "PYTHONNOUSERSITE": "1",
         "PYDANTIC_DISABLE_PLUGINS": "__all__",
     }
-    return kept | own | {n.upper(): str(path.absolute()) for n, path in handed.items() if path}
+    return (
+        kept
+        | own
+        | {n.upper(): str(path.absolute()) for n, path in handed.items() if path}
+    )
 
 
 def _build(work: Path, arguments: Sequence[str], environment: Mapping[str, str]) -> int:

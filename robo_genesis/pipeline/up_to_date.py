@@ -1,7 +1,7 @@
 """Whether the published site is up to date with all of its inputs: then a build has nothing to do.
 
-Inputs and site are read whole, which takes a tenth of a second. Packages count by name, version and
-time of installation: an edited file inside one is not noticed.
+Inputs and site are read whole, which takes a tenth of a second. Packages count by name,
+version and time of installation: an edited file inside one is not noticed.
 """
 
 import json
@@ -23,17 +23,33 @@ FOLDERS = ("robo_genesis", "build_scripts")
 
 # Folders and files of the checkout, beside the book, that a build reads.
 FILES = (
-    "pyproject.toml", "requirements.lock", "package.json", "package-lock.json", ".npmrc",
-    "README.md", "LICENSE",
-)  # fmt: skip
+    "pyproject.toml",
+    "requirements.lock",
+    "package.json",
+    "package-lock.json",
+    ".npmrc",
+    "README.md",
+    "LICENSE",
+)
 
-# Environment variables that a build reads, beside those that decide the pages' measurements.
-VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC_TIME", "TZ")
+# Environment variables that a build reads, beside those that decide the pages'
+# measurements.
+VARIABLES = (
+    "SITE_URL",
+    "SOLUTIONS",
+    "SOURCE_DATE_EPOCH",
+    "LANG",
+    "LC_ALL",
+    "LC_TIME",
+    "TZ",
+)
 
 SITE = ("html", "evidence", "pages")
 
 
-def inputs_digest(root: Path, book: Path, environment: Mapping[str, str] | None = None) -> str:
+def inputs_digest(
+    root: Path, book: Path, environment: Mapping[str, str] | None = None
+) -> str:
     """Return the digest of everything that decides a build's site.
 
     Args:
@@ -43,11 +59,16 @@ def inputs_digest(root: Path, book: Path, environment: Mapping[str, str] | None 
     """
     parts = other_inputs(root, book, (), environment)
     commit = git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository")
-    return json_digest(parts | {"commit": commit})  # a recorded run names one in the history
+    return json_digest(
+        parts | {"commit": commit}
+    )  # a recorded run names one in the history
 
 
 def other_inputs(
-    root: Path, book: Path, pages: Collection[Path], environment: Mapping[str, str] | None = None
+    root: Path,
+    book: Path,
+    pages: Collection[Path],
+    environment: Mapping[str, str] | None = None,
 ) -> dict[str, object]:
     """Return the inputs of a build, without some pages and the commit.
 
@@ -58,10 +79,16 @@ def other_inputs(
         environment: variables, by default those of this process.
     """
     given = os.environ if environment is None else environment
-    kept = (path for path in files_below(book, (PUBLISHED, f".{PUBLISHED}")) if path not in pages)
+    kept = (
+        path
+        for path in files_below(book, (PUBLISHED, f".{PUBLISHED}"))
+        if path not in pages
+    )
     return {
         "book": [str(book), files_digest(book, kept)],
-        "code": files_digest(root, (p for name in FOLDERS for p in files_below(root / name))),
+        "code": files_digest(
+            root, (p for name in FOLDERS for p in files_below(root / name))
+        ),
         "files": files_digest(root, (root / name for name in FILES)),
         "contract": project.environment_contract(given),
         "variables": {name: given.get(name) or "" for name in VARIABLES},
@@ -72,7 +99,9 @@ def other_inputs(
 
 def site_digest(published: Path) -> str:
     """Return the digest of a published folder: the site and its bundles."""
-    return files_digest(published, (p for name in SITE for p in files_below(published / name)))
+    return files_digest(
+        published, (p for name in SITE for p in files_below(published / name))
+    )
 
 
 def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
@@ -88,14 +117,18 @@ def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
         lines = recorded_lines(published, inputs_digest(root, book))
     except (ProjectError, OSError):
         return []  # the build reports it
-    site = ["Nothing changed: the site is up to date.", f"Site: {published / 'html/index.html'}"]
+    site = [
+        "Nothing changed: the site is up to date.",
+        f"Site: {published / 'html/index.html'}",
+    ]
     return lines and [*site, *lines]
 
 
 def record(published: Path, inputs: str, now: str, lines: Sequence[str]) -> None:
     """Write beside a site from which inputs it was made, and the last lines of its build.
 
-    Nothing is written, and so the next build has work, if the inputs changed during the build.
+    Nothing is written, and so the next build has work, if the inputs changed during the
+    build.
 
     Args:
         published: the folder of the complete site.
@@ -104,7 +137,11 @@ def record(published: Path, inputs: str, now: str, lines: Sequence[str]) -> None
         lines: the last lines of a build without work.
     """
     if inputs == now:
-        record = {"inputs": inputs, "site": site_digest(published), "lines": list(lines)}
+        record = {
+            "inputs": inputs,
+            "site": site_digest(published),
+            "lines": list(lines),
+        }
         (published / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf8")
 
 
@@ -117,7 +154,9 @@ def recorded_lines(published: Path, inputs: str) -> list[str]:
     """
     try:
         record = json.loads((published / RECORD).read_text("utf8"))
-        current = record["inputs"] == inputs and record["site"] == site_digest(published)
+        current = record["inputs"] == inputs and record["site"] == site_digest(
+            published
+        )
         return list(record["lines"]) if current else []
     except (OSError, ValueError, KeyError, TypeError):
         return []

@@ -1,6 +1,7 @@
 """The steps of the doctor for an accelerator: what a run would find, without starting the engine.
 
-They read files below a given root, variables, and what Torch answers in a process of its own.
+They read files below a given root, variables, and what Torch answers in a process of
+its own.
 """
 
 import grp
@@ -24,7 +25,8 @@ PROBE_SECONDS = 180  # Until Torch must have answered
 
 VISIBILITY = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
 
-# Where the engine's compiler looks for `llvm/bin/ld.lld` after ROCM_PATH and before PATH.
+# Where the engine's compiler looks for `llvm/bin/ld.lld` after ROCM_PATH and before
+# PATH.
 ROCM_FOLDERS = ("opt/rocm", "opt/rocm-7.0.0", "opt/rocm-6.0.0")
 
 
@@ -32,8 +34,8 @@ ROCM_FOLDERS = ("opt/rocm", "opt/rocm-7.0.0", "opt/rocm-6.0.0")
 class ProbedMachine:
     """Where the steps look: in these variables, and below `root`.
 
-    `probe` adds the backend to record and the facts from Torch, whose process `ended` so; empty
-    means without an error.
+    `probe` adds the backend to record and the facts from Torch, whose process `ended`
+    so; empty means without an error.
     """
 
     environ: Mapping[str, str]
@@ -54,7 +56,10 @@ class ProbedMachine:
 
 def devices(machine: ProbedMachine) -> str:
     """The device files of the driver exist, and this user may open them."""
-    kfd, drawing = machine.root / "dev/kfd", sorted((machine.root / "dev/dri").glob("renderD*"))
+    kfd, drawing = (
+        machine.root / "dev/kfd",
+        sorted((machine.root / "dev/dri").glob("renderD*")),
+    )
     absent = ["/dev/kfd"] * (not kfd.exists()) + ["/dev/dri/renderD*"] * (not drawing)
     if absent:
         raise StepError(
@@ -85,7 +90,9 @@ def driver(machine: ProbedMachine) -> str:
     """The kernel has loaded the driver."""
     name = DRIVERS[machine.backend]
     if not (machine.root / "sys/module" / name).is_dir():
-        raise DoubtError(f"/sys/module has no {name}, expected the driver loaded: modprobe {name}.")
+        raise DoubtError(
+            f"/sys/module has no {name}, expected the driver loaded: modprobe {name}."
+        )
     return f"{name} {driver_version(machine.backend, machine.root)}"
 
 
@@ -95,7 +102,9 @@ def card(machine: ProbedMachine) -> str:
     found = []
     for path in sorted(nodes.glob("*/properties")):
         lines = (line.partition(" ") for line in path.read_text("utf8").splitlines())
-        number = int({name: value for name, _, value in lines}.get("gfx_target_version", "0"))
+        number = int(
+            {name: value for name, _, value in lines}.get("gfx_target_version", "0")
+        )
         if number:  # 0 is a processor
             found.append(f"gfx{number // 10000}{number // 100 % 100:x}{number % 100:x}")
     if not found:
@@ -109,7 +118,9 @@ def card(machine: ProbedMachine) -> str:
 def linker(machine: ProbedMachine) -> str:
     """`ld.lld`, with which the engine's compiler links each kernel, is where it looks."""
     given = machine.environ.get("ROCM_PATH")
-    folders = ([Path(given)] if given else []) + [machine.root / path for path in ROCM_FOLDERS]
+    folders = ([Path(given)] if given else []) + [
+        machine.root / path for path in ROCM_FOLDERS
+    ]
     for file in (folder / "llvm/bin/ld.lld" for folder in folders):
         if file.is_file():
             return str(file)
@@ -134,8 +145,14 @@ def visibility(machine: ProbedMachine) -> str:
     if given.keys() <= {VISIBILITY[0]}:
         return text or "no variable hides a card"
     remedy = f"Only {VISIBILITY[0]} selects a card reliably: set it alone and unset the others."
-    if len(given) == len(VISIBILITY) and len({*given.values()}) == 1 and "0" not in given.values():
-        raise StepError(f"{text}: one index other than 0 in all three hides the card. {remedy}")
+    if (
+        len(given) == len(VISIBILITY)
+        and len({*given.values()}) == 1
+        and "0" not in given.values()
+    ):
+        raise StepError(
+            f"{text}: one index other than 0 in all three hides the card. {remedy}"
+        )
     raise DoubtError(f"{text}. {remedy}")
 
 
@@ -155,7 +172,9 @@ def torch(machine: ProbedMachine) -> str:
 def device(machine: ProbedMachine) -> str:
     """Torch finds a device."""
     if (count := machine.said("count")) == 0:
-        raise StepError("Torch finds no device, expected one. Check driver and rights of access.")
+        raise StepError(
+            "Torch finds no device, expected one. Check driver and rights of access."
+        )
     name = f"{machine.said('device')} {machine.said('gfx')}".rstrip()
     return f"{name}, device 0 of {count}"
 
@@ -169,7 +188,9 @@ def device_code(machine: ProbedMachine) -> str:
         f"Torch has code for {', '.join(codes) or 'no card'}, expected {gfx}. Install Torch with "
         f"it: torch[device-{gfx}] from AMD's index."
     )
-    raise (DoubtError if machine.torch.get("kernel") == torch_probe.SUM else StepError)(text)
+    raise (DoubtError if machine.torch.get("kernel") == torch_probe.SUM else StepError)(
+        text
+    )
 
 
 def hip_runtime(machine: ProbedMachine) -> str:
@@ -181,9 +202,13 @@ def hip_runtime(machine: ProbedMachine) -> str:
         "folder in LD_LIBRARY_PATH, as AMD's Dockerfile for Genesis does."
     )
     if unopened:
-        raise StepError(f"{name}, which the engine opens, cannot be loaded: {unopened}. {remedy}")
+        raise StepError(
+            f"{name}, which the engine opens, cannot be loaded: {unopened}. {remedy}"
+        )
     if len(files) > 1:
-        raise DoubtError(f"{len(files)} are loaded: {', '.join(files)}; expected Torch's. {remedy}")
+        raise DoubtError(
+            f"{len(files)} are loaded: {', '.join(files)}; expected Torch's. {remedy}"
+        )
     return ", ".join(files)
 
 
@@ -191,7 +216,9 @@ def kernel(machine: ProbedMachine) -> str:
     """The card computes."""
     found, expected = machine.said("kernel"), torch_probe.SUM
     if found != expected:
-        raise StepError(f"A sum on the card is {found}, expected {expected}. Check the driver.")
+        raise StepError(
+            f"A sum on the card is {found}, expected {expected}. Check the driver."
+        )
     return f"a sum on the card is {found}, as expected"
 
 
@@ -203,11 +230,15 @@ def built_for(facts: Mapping[str, Any]) -> str:
 # The steps for each accelerator; a broken one ends its own chain.
 CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
     "amdgpu": (
-        (devices,), (driver,), (card,), (linker,), (visibility,),
+        (devices,),
+        (driver,),
+        (card,),
+        (linker,),
+        (visibility,),
         (torch, device, device_code, hip_runtime, kernel),
     ),
     "cuda": ((driver,), (torch, device, kernel)),
-}  # fmt: skip
+}
 
 
 def probe(machine: ProbedMachine, expected: str | None) -> tuple[str, list[StepResult]]:
@@ -228,8 +259,16 @@ def probe(machine: ProbedMachine, expected: str | None) -> tuple[str, list[StepR
 def torch_facts(machine: ProbedMachine) -> tuple[dict[str, Any], str]:
     """Return the facts from Torch, and how its process ended."""
     maps = machine.root / "proc/self/maps"
-    command = [sys.executable, "-P", torch_probe.__file__, str(maps), str(PROBE_SECONDS)]
-    done = subprocess.run(command, env={**machine.environ}, capture_output=True, check=False)
+    command = [
+        sys.executable,
+        "-P",
+        torch_probe.__file__,
+        str(maps),
+        str(PROBE_SECONDS),
+    ]
+    done = subprocess.run(
+        command, env={**machine.environ}, capture_output=True, check=False
+    )
     facts: dict[str, Any] = {}
     for line in done.stdout.decode("utf8", errors="replace").splitlines():
         with suppress(ValueError, TypeError):  # a driver may write lines of its own

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-# Actual backend → architectures of Quadrants, device of Torch. ROCm calls its device `cuda`.
+# Actual backend → architectures of Quadrants, device of Torch. ROCm calls its device
+# `cuda`.
 BACKENDS = {
     "cpu": (("x64", "arm64"), "cpu"),
     "cuda": (("cuda",), "cuda"),
@@ -14,19 +15,24 @@ BACKENDS = {
     "metal": (("metal",), "mps"),
 }
 
-DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}  # Kernel module of each accelerator's driver
+DRIVERS = {
+    "amdgpu": "amdgpu",
+    "cuda": "nvidia",
+}  # Kernel module of each accelerator's driver
 
 # Tag of a build of Torch, without its version → whether that build has HIP, and CUDA.
 BUILDS = {"cpu": (False, False), "rocm": (True, False), "cu": (False, True)}
 
-# The tag in Torch's version: `+cpu`, `+rocm7.2.1`, `+cu130`. PyPI's packages name none, and nor do
-# builds from source.
+# The tag in Torch's version: `+cpu`, `+rocm7.2.1`, `+cu130`. PyPI's packages name none,
+# and nor do builds from source.
 TAG = re.compile(r"\+(cpu|rocm|cu(?=\d))(\d*)\.?(\d*)")
 
-PROCESSOR = r"intel|xeon|epyc|threadripper|opteron|processor|\bcpu\b|apple|pipe\b|swrast"
+PROCESSOR = (
+    r"intel|xeon|epyc|threadripper|opteron|processor|\bcpu\b|apple|pipe\b|swrast"
+)
 
-# Words that the name of an accelerator's device never has: of processors and of software that
-# draws, and by backend those of other makers.
+# Words that the name of an accelerator's device never has: of processors and of
+# software that draws, and by backend those of other makers.
 FOREIGN = {"amdgpu": "nvidia|geforce|tesla|quadro", "cuda": r"\bamd\b|radeon|instinct"}
 
 
@@ -44,12 +50,23 @@ def contradictions(backend: Any) -> Iterator[tuple[str, object, object]]:
     if backend.torch_device != device:
         yield "backend.torch_device", backend.torch_device, device
     builds = (bool(backend.hip_version), bool(backend.cuda_version))
-    needed = {"amdgpu": (True, False), "cuda": (False, True)}.get(backend.actual, builds)
+    needed = {"amdgpu": (True, False), "cuda": (False, True)}.get(
+        backend.actual, builds
+    )
     if builds != needed:
         yield f"whether Torch has (HIP, CUDA) for {backend.actual}", builds, needed
-    versions, tag = (backend.hip_version, backend.cuda_version), TAG.search(backend.torch_version)
-    if tag and not (builds == BUILDS[tag[1]] and _fits(tag, versions[0] or versions[1] or "")):
-        yield f"(HIP, CUDA) of Torch {backend.torch_version}", versions, f"those of {tag[0]}"
+    versions, tag = (
+        (backend.hip_version, backend.cuda_version),
+        TAG.search(backend.torch_version),
+    )
+    if tag and not (
+        builds == BUILDS[tag[1]] and _fits(tag, versions[0] or versions[1] or "")
+    ):
+        yield (
+            f"(HIP, CUDA) of Torch {backend.torch_version}",
+            versions,
+            f"those of {tag[0]}",
+        )
 
 
 def _fits(tag: re.Match[str], version: str) -> bool:

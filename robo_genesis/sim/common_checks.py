@@ -36,7 +36,9 @@ def posture(run: Experiment) -> Iterator[Finding]:
     expected = ["final", "initial"] if run.rendered else []
     yield equal("frames", sorted(frames), expected)
     if not run.rendered:
-        links = run.traces[next(iter(run.cases))].link_pos  # a schematic draws the first run
+        links = run.traces[
+            next(iter(run.cases))
+        ].link_pos  # a schematic draws the first run
         yield above("moved_m", float(np.abs(links[-1] - links[0]).max()), 0)
     elif sorted(frames) == expected:
         for name in expected:

@@ -12,31 +12,39 @@ from typing import Any
 
 import numpy as np
 
-IMPORT = "<frozen importlib._bootstrap>"  # What Python names as the file of its own import
+IMPORT = (
+    "<frozen importlib._bootstrap>"  # What Python names as the file of its own import
+)
 
-OBJECTS = 20_000  # New objects after which Python looks for unused ones; by default 700 or 2000
+# New objects after which Python looks for unused ones; by default 700 or 2000
+OBJECTS = 20_000
 
-FRAMES = 10  # Calls written down; the engine drops its own. A cell of a notebook has 50 more
+FRAMES = (
+    10  # Calls written down; the engine drops its own. A cell of a notebook has 50 more
+)
 
 
 def spare_repeated_work() -> None:
     """Keep the answers that the engine requests repeatedly from Python's library and trimesh.
 
-    - For each kernel the compiler asks `inspect` for the line of source that calls the declaration.
-      At the top level of a module the caller is Python's own import, in no file. `inspect`
-      keeps what it finds, but not that it found nothing, so it would search all 3000 modules every
-      time. The entry names no module either.
-    - For each expression it wraps the line of source for the message of a possible error, and it
-      does so again in each pass and in each unrolled loop.
-    - For each call of a function inside a kernel it splits that function's source into tokens.
-    - For each array it writes down all calls that led there, for the message of a possible error,
-      and some of its warnings name them. Here these are at most the last `FRAMES`.
-    - In each scene, for every two shapes of a robot whose boxes overlap, the engine covers both
-      surfaces with small cubes.
+    - For each kernel the compiler asks `inspect` for the line of source that calls the
+      declaration. At the top level of a module the caller is Python's own import, in no
+      file. `inspect` keeps what it finds, but not that it found nothing, so it would
+      search all 3000 modules every time. The entry names no module either.
+    - For each expression it wraps the line of source for the message of a possible
+      error, and it does so again in each pass and in each unrolled loop.
+    - For each call of a function inside a kernel it splits that function's source into
+        tokens.
+    - For each array it writes down all calls that led there, for the message of a
+      possible error, and some of its warnings name them. Here these are at most the
+      last `FRAMES`.
+    - In each scene, for every two shapes of a robot whose boxes overlap, the engine
+      covers both surfaces with small cubes.
 
-    An answer is that for the same line and settings, for the same function with the same code, or
-    for a surface with the same numbers. Python looks for unused objects after each `OBJECTS` new
-    ones: a kernel has many, and all of them are used. All this lasts as long as the process.
+    An answer is that for the same line and settings, for the same function with the
+    same code, or for a surface with the same numbers. Python looks for unused objects
+    after each `OBJECTS` new ones: a kernel has many, and all of them are used. All this
+    lasts as long as the process.
     """
     if IMPORT in inspect.modulesbyfile:
         return

@@ -19,10 +19,14 @@ from robo_genesis.sim.arm import franka, joint_control, model
 from robo_genesis.sim.arm import joints as robot_model
 from robo_genesis.sim.camera import frames as camera
 
-STEPPED_JOINT, ANGLE = "joint4", 0.25  # The joint that the run commands, and by how much [rad]
+STEPPED_JOINT, ANGLE = (
+    "joint4",
+    0.25,
+)  # The joint that the run commands, and by how much [rad]
 
 BASELINE = joint_control.ControlCase(
-    q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT), steps=120
+    q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT),
+    steps=120,
 )
 
 AT_LIMIT = 0.99  # Share of the effort limit from which a sample counts as clipped
@@ -75,7 +79,9 @@ def libraries(bench: Bench) -> str:
     if sys.platform != "linux":
         return f"not checked on {sys.platform}"
     if (given := os.environ.get("PYOPENGL_PLATFORM", "egl")) != "egl":
-        raise StepError(f"PYOPENGL_PLATFORM={given!r} does not work with the engine: unset it.")
+        raise StepError(
+            f"PYOPENGL_PLATFORM={given!r} does not work with the engine: unset it."
+        )
     session.require_display(session.require_libraries())
     return f"{' and '.join(session.LIBRARIES)} can be loaded, and EGL starts"
 
@@ -85,9 +91,13 @@ def backend(bench: Bench) -> str:
     bench.contract = session.read_contract(bench.environ)
     if project.in_checkout():
         for name, value in project.engine_cache_environment().items():
-            os.environ.setdefault(name, value)  # reuse the kernels that `make book` compiled
+            os.environ.setdefault(
+                name, value
+            )  # reuse the kernels that `make book` compiled
     if not (os.environ.get("HOME") or os.environ.get("XDG_CACHE_HOME")):
-        raise StepError("HOME is not set, and the compiler ends without it: export HOME=folder")
+        raise StepError(
+            "HOME is not set, and the compiler ends without it: export HOME=folder"
+        )
     for name, folder in project.cache_folders().items():
         session.require_writable(name, Path(folder))
     bench.engine = session.start(bench.contract)
@@ -105,11 +115,14 @@ def build(bench: Bench) -> str:
     """Entities and camera come before build, joint calls after it."""
     gs = session.import_engine()
     bench.scene = gs.Scene(
-        sim_options=gs.options.SimOptions(dt=scene.DT, substeps=scene.SUBSTEPS), show_viewer=False
+        sim_options=gs.options.SimOptions(dt=scene.DT, substeps=scene.SUBSTEPS),
+        show_viewer=False,
     )
     bench.scene.add_entity(gs.morphs.Plane())
     bench.robot = bench.scene.add_entity(gs.morphs.MJCF(file=franka.FRANKA_MJCF))
-    bench.camera = bench.scene.add_camera(**scene.CAMERA) if bench.contract.render else None
+    bench.camera = (
+        bench.scene.add_camera(**scene.CAMERA) if bench.contract.render else None
+    )
     bench.scene.build()
     count, substeps = len(bench.scene.entities), scene.SUBSTEPS
     return f"scene of {count} entities built, dt {scene.DT:g} s, {substeps} substeps"
@@ -154,9 +167,13 @@ def reset(bench: Bench) -> str:
 def stamps(bench: Bench) -> str:
     """A run gives finite arrays with one time for each state."""
     try:
-        bench.trace = joint_control.run_case(bench.scene, bench.robot, bench.joints, BASELINE)
+        bench.trace = joint_control.run_case(
+            bench.scene, bench.robot, bench.joints, BASELINE
+        )
     except TraceError as error:
-        raise StepError(f"{error} Check reset, start, gains and dt before the getters.") from error
+        raise StepError(
+            f"{error} Check reset, start, gains and dt before the getters."
+        ) from error
     t = bench.trace.t
     return f"{bench.trace.steps} steps, {len(t)} states from {t[0]:g} to {t[-1]:g} s, all finite"
 
@@ -165,7 +182,9 @@ def saturation(bench: Bench) -> str:
     """The baseline approaches its target, and its effort is not clipped at every sample."""
     trace, k = bench.trace, bench.joints.entry(STEPPED_JOINT)
     error = np.abs(trace.target[0, k] - trace.q[:, k])  # (n+1,)
-    at_limit = np.abs(trace.control_force[:, k]) >= AT_LIMIT * trace.effort_limit[k]  # (n,)
+    at_limit = (
+        np.abs(trace.control_force[:, k]) >= AT_LIMIT * trace.effort_limit[k]
+    )  # (n,)
     clipped = f"{at_limit.sum()} of {trace.steps} samples at the effort limit"
     errors = " to ".join(format_value(float(e), "rad") for e in error[[0, -1]])
     if error[-1] >= error[0] or at_limit.all():
@@ -174,20 +193,33 @@ def saturation(bench: Bench) -> str:
             "its target in this window, or every sample is clipped. Check limit, gains and reset "
             "before you lengthen the window."
         )
-    return f"{clipped}; error of {STEPPED_JOINT} from {errors} in {bench.trace.t[-1]:g} s"
+    return (
+        f"{clipped}; error of {STEPPED_JOINT} from {errors} in {bench.trace.t[-1]:g} s"
+    )
 
 
 # In the order of the lesson: each step comes after the steps that it needs.
 STEPS: tuple[Callable[[Bench], str], ...] = (
-    version, libraries, backend, model_file, build, render,
-    names, target, reset, stamps, saturation,
-)  # fmt: skip
+    version,
+    libraries,
+    backend,
+    model_file,
+    build,
+    render,
+    names,
+    target,
+    reset,
+    stamps,
+    saturation,
+)
 
 
 Subject = TypeVar("Subject")
 
 
-def run_steps(steps: Sequence[Callable[[Subject], str]], subject: Subject) -> Iterator[StepResult]:
+def run_steps(
+    steps: Sequence[Callable[[Subject], str]], subject: Subject
+) -> Iterator[StepResult]:
     """Run steps in order and yield the result of each; after a broken one, run none.
 
     Args:

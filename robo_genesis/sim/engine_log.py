@@ -19,7 +19,10 @@ class EngineLog(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Keep (level, message)."""
-        level, plain = record.levelname, re.sub("~{1,4}<|>~{1,4}", "", record.getMessage())
+        level, plain = (
+            record.levelname,
+            re.sub("~{1,4}<|>~{1,4}", "", record.getMessage()),
+        )
         self.lines.append((level, clean_message(plain, LINE_LIMIT - len(f"{level} "))))
 
     @property

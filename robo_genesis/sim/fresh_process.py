@@ -31,22 +31,31 @@ def run_python(
     """
     try:
         done = subprocess.run(
-            [sys.executable, *arguments], env=os.environ | changed, capture_output=True, text=True,
-            timeout=TIMEOUT, check=False,
-        )  # fmt: skip
+            [sys.executable, *arguments],
+            env=os.environ | changed,
+            capture_output=True,
+            text=True,
+            timeout=TIMEOUT,
+            check=False,
+        )
     except subprocess.TimeoutExpired as error:
         problem = f"had not ended after {TIMEOUT} s and was killed"
         raise StartError(_report(problem, error.stdout, error.stderr)) from error
     if done.returncode not in statuses or not done.stdout.strip():
         valid = " or ".join(map(str, statuses))
-        problem = f"ended with {ended(done.returncode)}, expected {valid} and some output"
+        problem = (
+            f"ended with {ended(done.returncode)}, expected {valid} and some output"
+        )
         raise StartError(_report(problem, done.stdout, done.stderr))
     return done.stdout
 
 
 def _report(problem: str, *outputs: str | bytes | None) -> str:
     """Return what is wrong with a process, with its last lines; a killed one leaves bytes."""
-    texts = (o.decode("utf8", "replace") if isinstance(o, bytes) else o or "" for o in outputs)
+    texts = (
+        o.decode("utf8", "replace") if isinstance(o, bytes) else o or ""
+        for o in outputs
+    )
     last = "\n".join("".join(texts).splitlines()[-10:])
     return f"The process {problem}. Its last lines:\n{last}"
 
@@ -61,4 +70,6 @@ def last_value(printed: str) -> Any:
     try:
         return json.loads(line)
     except json.JSONDecodeError as error:
-        raise StartError(f"The process should end with a line of JSON, found: {line!r}") from error
+        raise StartError(
+            f"The process should end with a line of JSON, found: {line!r}"
+        ) from error

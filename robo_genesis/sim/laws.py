@@ -1,7 +1,7 @@
 """Laws that the arrays of every run obey, whatever it shows: times, start, unit quaternions.
 
-A law yields nothing where it holds, and a finding where it is broken. Checks of the lessons use
-laws, so the page, the recorder and the verification judge arrays alike.
+A law yields nothing where it holds, and a finding where it is broken. Checks of the
+lessons use laws, so the page, the recorder and the verification judge arrays alike.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -20,7 +20,9 @@ MEASURES = False
 
 TIME = 1e-9  # Tolerance of a time against k · dt [s]; both are computed in float64
 
-UNIT = 1e-5  # Tolerance of the norm of a quaternion; runs of the engine have at most 2e-7
+UNIT = (
+    1e-5  # Tolerance of the norm of a quaternion; runs of the engine have at most 2e-7
+)
 
 # Expected values of what is zero, and of the quaternion of a body that has not turned.
 ZERO, UNTURNED = np.zeros(()), np.array([1.0, 0, 0, 0])
@@ -47,7 +49,11 @@ def kept(run: str, laws: Iterable[Finding]) -> Iterator[Finding]:
 
 
 def apart(
-    code: str, what: str, found: FloatArray, expected: FloatArray, tolerance: float | FloatArray
+    code: str,
+    what: str,
+    found: FloatArray,
+    expected: FloatArray,
+    tolerance: float | FloatArray,
 ) -> Iterator[Finding]:
     """Yield the entry that is farthest beyond the tolerance of its expected value, if any is.
 
@@ -60,10 +66,14 @@ def apart(
     """
     beyond = np.abs(np.subtract(found, expected, dtype=np.float64)) - tolerance
     if beyond.size and not beyond.max() <= 0:
-        expected, room = (np.broadcast_to(of, found.shape) for of in (expected, tolerance))
+        expected, room = (
+            np.broadcast_to(of, found.shape) for of in (expected, tolerance)
+        )
         at = tuple(int(k) for k in np.unravel_index(int(beyond.argmax()), beyond.shape))
         where = f"{what} at index {list(at)}" if at else what
-        yield broken(code, where, float(found[at]), f"{float(expected[at])!r} ± {room[at]:g}")
+        yield broken(
+            code, where, float(found[at]), f"{float(expected[at])!r} ± {room[at]:g}"
+        )
 
 
 def times(trace: TimeSeries, steps: int, dt: float) -> Iterator[Finding]:
@@ -92,7 +102,9 @@ def mean_speed(
         room: tolerance of the mean velocity.
     """
     mean, middle = np.diff(position, axis=0) / dt, (velocity[1:] + velocity[:-1]) / 2
-    beyond = np.maximum(np.abs(mean - middle) - np.abs(np.diff(velocity, axis=0)) / 2, 0)
+    beyond = np.maximum(
+        np.abs(mean - middle) - np.abs(np.diff(velocity, axis=0)) / 2, 0
+    )
     what = "mean velocity beyond those of both samples [rad/s or m/s]"
     yield from apart("motion", what, beyond, ZERO, room)
 
@@ -102,7 +114,8 @@ def copied(
 ) -> Iterator[Finding]:
     """Yield the first run of Genesis that has the motion of a run of another engine.
 
-    Arrays are the same to the last bit. `second` has the names of `traces` of the other engine.
+    Arrays are the same to the last bit. `second` has the names of `traces` of the other
+    engine.
     """
     of_motion = ("q", "qd", "link_pos", "link_quat", "link_vel", "link_ang")
     motion = [field.name for field in fields(trace) if field.name in of_motion]

@@ -67,7 +67,9 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
     for name, value in values.items():
         if value not in CHOICES[name]:
             choices = ", ".join(sorted(CHOICES[name]))
-            raise ContractError(f"{name}={value!r} is not valid. Choose one of: {choices}.")
+            raise ContractError(
+                f"{name}={value!r} is not valid. Choose one of: {choices}."
+            )
     outputs = Path(environ.get(OUTPUTS_DIR) or "outputs").resolve()
     require_writable(OUTPUTS_DIR, outputs)
     backend, render = values.values()
@@ -121,8 +123,8 @@ def start(contract: Contract) -> Engine:
     """Initialise Genesis, once per process, and probe where it runs.
 
     Raises:
-        EngineError: Genesis is missing or already initialised, a graphics library is missing, or
-            engine, Quadrants and Torch disagree on the backend.
+        EngineError: Genesis is missing or already initialised, a graphics library is
+            missing, or engine, Quadrants and Torch disagree on the backend.
     """
     backend = requested_backend(contract)
     import_engine().init(backend=backend, **ARGUMENTS, **plain_log())
@@ -132,7 +134,8 @@ def start(contract: Contract) -> Engine:
 def requested_backend(contract: Contract) -> Any:
     """Return the argument `backend` of the `gs.init` that follows, and start to keep its log.
 
-    It raises EngineError if Genesis is missing or initialised, or a graphics library is missing.
+    It raises EngineError if Genesis is missing or initialised, or a graphics library is
+    missing.
     """
     gs = import_engine()
     if getattr(gs, "_initialized", False):
@@ -141,7 +144,9 @@ def requested_backend(contract: Contract) -> Any:
             "backend, seed or precision cannot be changed afterwards: restart the kernel."
         )
     logger = logging.getLogger("genesis")
-    for earlier in _kept_logs():  # of a gs.init that failed, or of an engine that was destroyed
+    for (
+        earlier
+    ) in _kept_logs():  # of a gs.init that failed, or of an engine that was destroyed
         logger.removeHandler(earlier)
     logger.addFilter(remove_private_paths)
     logger.addHandler(EngineLog())
@@ -163,12 +168,15 @@ def started(contract: Contract) -> Engine:
     """Return the engine that `gs.init` started, after checking how it was started.
 
     Raises:
-        EngineError: Genesis is not initialised, its log was not kept, seed, precision or algorithms
-            are not the expected ones, or engine, Quadrants and Torch disagree on the backend.
+        EngineError: Genesis is not initialised, its log was not kept, seed, precision
+            or algorithms are not the expected ones, or engine, Quadrants and Torch
+            disagree on the backend.
     """
     gs = import_engine()
     if not getattr(gs, "_initialized", False):
-        raise EngineError("Genesis is not initialised. Run the cell with gs.init first.")
+        raise EngineError(
+            "Genesis is not initialised. Run the cell with gs.init first."
+        )
     logs = _kept_logs()
     if not logs or not logs[-1].lines:
         raise EngineError(
@@ -178,7 +186,9 @@ def started(contract: Contract) -> Engine:
     found = {
         "seed": getattr(gs, "SEED", None),
         "precision": str(8 * np.dtype(gs.np_float).itemsize),
-        "use_deterministic_algorithms": getattr(gs, "use_deterministic_algorithms", True),
+        "use_deterministic_algorithms": getattr(
+            gs, "use_deterministic_algorithms", True
+        ),
     }
     if found != ARGUMENTS:
         raise EngineError(
@@ -189,12 +199,16 @@ def started(contract: Contract) -> Engine:
     compiler = ".".join(map(str, importlib.import_module("quadrants").__version__))
     switches = project.engine_switches(os.environ)
     backend = probe(contract.backend)
-    return Engine(gs.__version__, compiler, PRECISION, SEED, backend, logs[-1], switches)
+    return Engine(
+        gs.__version__, compiler, PRECISION, SEED, backend, logs[-1], switches
+    )
 
 
 def _kept_logs() -> list[EngineLog]:
     """Return the handlers of the engine's logger that keep its lines."""
-    return [h for h in logging.getLogger("genesis").handlers if isinstance(h, EngineLog)]
+    return [
+        h for h in logging.getLogger("genesis").handlers if isinstance(h, EngineLog)
+    ]
 
 
 def import_engine() -> Any:
@@ -230,7 +244,9 @@ def require_display(egl: ctypes.CDLL) -> None:
     query, display = (call(egl.eglGetProcAddress(name)) for name in names)
     devices, count = (pointer * 64)(), ctypes.c_int()
     query(len(devices), devices, ctypes.addressof(count))
-    found = [display(PLATFORM_DEVICE, device, None) for device in devices[: count.value]]
+    found = [
+        display(PLATFORM_DEVICE, device, None) for device in devices[: count.value]
+    ]
     if not any(egl.eglInitialize(pointer(one), None, None) for one in found):
         raise EngineError(
             f"EGL starts on none of {count.value} devices, so scene.build() fails. A driver is "
@@ -261,16 +277,23 @@ def probe(requested: str) -> Backend:
 def _device_name(gs: Any) -> str:
     """Return the name of the device: from the log, because the engine takes a second to find it."""
     lines = [text for log in _kept_logs()[-1:] for _, text in log.lines]
-    named = [found[1] for text in lines if (found := re.search(r"Running on \[(.+)\] with ", text))]
+    named = [
+        found[1]
+        for text in lines
+        if (found := re.search(r"Running on \[(.+)\] with ", text))
+    ]
     return named[0] if named else str(gs.utils.get_device(gs.backend)[1])
 
 
 def require_agreement(found: Backend) -> None:
     """Raise EngineError unless Genesis, Quadrants and Torch use the requested backend."""
     if found.actual not in BACKENDS:
-        raise EngineError(f"Backend {found.actual!r} is unknown. Known: {', '.join(BACKENDS)}.")
+        raise EngineError(
+            f"Backend {found.actual!r} is unknown. Known: {', '.join(BACKENDS)}."
+        )
     problems = [
-        f"{n} is {value!r}, expected {valid!r}" for n, value, valid in contradictions(found)
+        f"{n} is {value!r}, expected {valid!r}"
+        for n, value, valid in contradictions(found)
     ]
     if found.requested == "cpu" and found.actual != "cpu":
         problems.append(f"the backend is {found.actual!r}, requested was 'cpu'")
@@ -285,7 +308,9 @@ def require_agreement(found: Backend) -> None:
 def require_built(scene: Any, case: Any) -> None:
     """Raise CaseError unless a scene is built with the `dt` and `substeps` of a case."""
     if not scene.is_built:
-        raise CaseError("The scene is not built: call scene.build() before any joint call or step.")
+        raise CaseError(
+            "The scene is not built: call scene.build() before any joint call or step."
+        )
     if (scene.dt, scene.substeps) != (case.dt, case.substeps):
         raise CaseError(
             f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "

@@ -21,7 +21,11 @@ Calls = tuple[Callable[[], Any], Callable[[], Any]]
 Clock = Callable[[], float]
 
 # What is kept of the repeats.
-KEPT: dict[str, Callable[..., Any]] = {"step": np.median, "fastest": np.min, "slowest": np.max}
+KEPT: dict[str, Callable[..., Any]] = {
+    "step": np.median,
+    "fastest": np.min,
+    "slowest": np.max,
+}
 
 
 def calls_of(scene: Any, robot: Any) -> Calls:
@@ -31,7 +35,9 @@ def calls_of(scene: Any, robot: Any) -> Calls:
 
 def together(scenes: Sequence[Calls]) -> Calls:
     """Return calls that step all scenes, and wait for all."""
-    return lambda: [step() for step, _ in scenes], lambda: [finish() for _, finish in scenes]
+    return lambda: [step() for step, _ in scenes], lambda: [
+        finish() for _, finish in scenes
+    ]
 
 
 def seconds_per_step(calls: Calls, steps: int, clock: Clock) -> float:
@@ -50,18 +56,20 @@ def in_turn(
 ) -> dict[str, float]:
     """Time several scenes in turn, so that a slow second of the machine touches all of them.
 
-    Each repeat has an order of its own, so that no scene always follows the same other one.
+    Each repeat has an order of its own, so that no scene always follows the same other
+    one.
 
     Args:
         timed: calls of each scene by name.
-        warm_up: steps of each scene before each repeat, whose time is not used: the scene before
-            has filled the processor's cache with its own data.
+        warm_up: steps of each scene before each repeat, whose time is not used: the
+            scene before has filled the processor's cache with its own data.
         steps: of each scene in one repeat.
         repeats: their number.
         clock: returns a time [s].
 
     Returns:
-        Median, fastest and slowest of the repeats: `step_NAME`, `fastest_NAME`, `slowest_NAME` [s].
+        Median, fastest and slowest of the repeats: `step_NAME`, `fastest_NAME`,
+            `slowest_NAME` [s].
     """
 
     def one(calls: Calls) -> float:
@@ -82,7 +90,9 @@ def used_memory() -> float:
     """Return the memory in use [MiB]: of this process, on an accelerator of the whole device."""
     gc.collect()
     torch = importlib.import_module("torch")
-    if torch.cuda.is_initialized():  # the name in ROCm as well; not if the engine runs on the CPU
+    if (
+        torch.cuda.is_initialized()
+    ):  # the name in ROCm as well; not if the engine runs on the CPU
         free, total = torch.cuda.mem_get_info()
         return float((total - free) / MIB)
     pages = int(Path("/proc/self/statm").read_text().split()[1])

@@ -1,7 +1,8 @@
 """What Torch finds on this machine, in a process that `accelerator` starts: facts as JSON lines.
 
-Each line is written at once, so a crash or a hang leaves the facts before it. An alarm ends a
-hanging process, with or without its parent. Nothing of the course and the engine is imported.
+Each line is written at once, so a crash or a hang leaves the facts before it. An alarm
+ends a hanging process, with or without its parent. Nothing of the course and the engine
+is imported.
 """
 
 import ctypes
@@ -10,7 +11,8 @@ import signal
 import sys
 from pathlib import Path
 
-# The name by which the engine's compiler opens the HIP runtime; its wheel names no folder.
+# The name by which the engine's compiler opens the HIP runtime; its wheel names no
+# folder.
 RUNTIME = "libamdhip64.so"
 
 NUMBERS, SUM = 8, 140  # The card adds the squares of so many numbers from 0; the sum

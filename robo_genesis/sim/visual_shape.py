@@ -22,7 +22,8 @@ FLOOR_RGB = (205, 205, 205)
 class Part:
     """The triangles of one link that have one colour.
 
-    `vertices` (v, 3) [m] in the link's frame; `faces` (f, 3) count vertices; `rgb` 0 to 255.
+    `vertices` (v, 3) [m] in the link's frame; `faces` (f, 3) count vertices; `rgb` 0 to
+    255.
     """
 
     link: str
@@ -56,10 +57,14 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
             mesh = geom.get_trimesh()
             red, green, blue = (int(value) for value in mesh.visual.main_color[:3])
             placed = rotate(geom.init_quat, mesh.vertices) + geom.init_pos
-            by_colour.setdefault((red, green, blue), []).append((placed, np.array(mesh.faces)))
+            by_colour.setdefault((red, green, blue), []).append(
+                (placed, np.array(mesh.faces))
+            )
         for rgb, meshes in by_colour.items():
             vertices, faces = trimesh.util.append_faces(*zip(*meshes, strict=True))
-            parts.append(Part(name, rgb, vertices.astype(np.float32), faces.astype(np.int32)))
+            parts.append(
+                Part(name, rgb, vertices.astype(np.float32), faces.astype(np.int32))
+            )
     return parts
 
 
@@ -71,7 +76,11 @@ def fixed_parts(entity: Any) -> list[Part]:
     place = to_numpy(entity.get_pos()).reshape(-1, 3)[0]
     quat = to_numpy(entity.get_quat()).reshape(-1, 4)[0]
     return [
-        replace(part, link=WORLD, vertices=(rotate(quat, part.vertices) + place).astype(np.float32))
+        replace(
+            part,
+            link=WORLD,
+            vertices=(rotate(quat, part.vertices) + place).astype(np.float32),
+        )
         for part in read_shape(entity)
     ]
 
@@ -124,7 +133,8 @@ def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
     """Require that each part belongs to one link of the record, or to the world.
 
     Raises:
-        ValueError: a part belongs to a link that is not in the record, or two links have one name.
+        ValueError: a part belongs to a link that is not in the record, or two links
+            have one name.
     """
     twice = sorted({link for link in links if links.count(link) > 1 or link == WORLD})
     if twice:
@@ -147,7 +157,9 @@ def write_shape(folder: Path, parts: Sequence[Part]) -> Path:
     meshes = {f"vertices_m_{k}": part.vertices for k, part in enumerate(parts)}
     meshes |= {f"faces_{k}": part.faces for k, part in enumerate(parts)}
     links, rgb = [part.link for part in parts], [part.rgb for part in parts]
-    np.savez_compressed(folder / FILE, allow_pickle=False, link=links, rgb=rgb, **meshes)
+    np.savez_compressed(
+        folder / FILE, allow_pickle=False, link=links, rgb=rgb, **meshes
+    )
     return folder / FILE
 
 
@@ -155,7 +167,12 @@ def load_shape(file: Path) -> list[Part]:
     """Return the parts that `write_shape` wrote."""
     with np.load(file, allow_pickle=False) as stored:
         return [
-            Part(link, (red, green, blue), stored[f"vertices_m_{k}"], stored[f"faces_{k}"])
+            Part(
+                link,
+                (red, green, blue),
+                stored[f"vertices_m_{k}"],
+                stored[f"faces_{k}"],
+            )
             for k, (link, (red, green, blue)) in enumerate(
                 zip(stored["link"].tolist(), stored["rgb"].tolist(), strict=True)
             )

@@ -24,7 +24,9 @@ class PageDirective(_OfPage, SphinxDirective):
         try:
             return self.shown()
         except (LookupError, ValueError) as error:
-            raise self.error(f"{' '.join([self.name, *self.arguments])}: {error}") from error
+            raise self.error(
+                f"{' '.join([self.name, *self.arguments])}: {error}"
+            ) from error
 
 
 class PageRole(_OfPage, SphinxRole):

@@ -21,7 +21,11 @@ from robo_genesis.core.experiment import Readings
         (checks.equal("x", np.float32(0), 0.0), True, None),
         (checks.within("x", 1.5, 1.0, 0.5), True, None),
         (checks.within("x", 1.6, 1.0, 0.5), False, "x is 1.6, expected 1 ± 0.5"),
-        (checks.within("x", None, 1.0, 0.5), False, "x is not observed, expected 1 ± 0.5"),
+        (
+            checks.within("x", None, 1.0, 0.5),
+            False,
+            "x is not observed, expected 1 ± 0.5",
+        ),
         (checks.within("x", 1.0, np.nan, 0.5), False, None),
         (checks.at_most("x", 2.0, 2.0), True, None),
         (checks.at_most("x", 2.1, 2.0), False, "x is 2.1, expected at most 2"),
@@ -128,14 +132,20 @@ def test_a_shared_check_names_each_value_that_is_not_allowed(findings, labels):
 
 
 def test_a_reading_is_within_its_limits_and_a_count_is_an_integer():
-    number, count = (Readings({"x": "1"}, kind, {"x": (1, 4)}) for kind in ("value", "exact"))
-    assert [number.possible("x", of) for of in (3.5, 0.9, 4.1, np.nan)] == [True, *[False] * 3]
+    number, count = (
+        Readings({"x": "1"}, kind, {"x": (1, 4)}) for kind in ("value", "exact")
+    )
+    assert [number.possible("x", of) for of in (3.5, 0.9, 4.1, np.nan)] == [
+        True,
+        *[False] * 3,
+    ]
     assert [count.possible("x", of) for of in (3, 3.0, 5)] == [True, False, False]
     assert not Readings({"x": "1"}, "exact").possible("x", -1)
 
 
 @pytest.mark.parametrize(
-    ("other", "passed"), [(Case(steps=8), True), (Case(), False), (Case(steps=8, dt=0.25), False)]
+    ("other", "passed"),
+    [(Case(steps=8), True), (Case(), False), (Case(steps=8, dt=0.25), False)],
 )
 def test_compared_cases_differ_in_the_given_fields_alone(other, passed):
     pairs = {("one", "other"): ["steps"]}

@@ -10,22 +10,40 @@ NAMES, ADVICE = ("G1", "G2"), "Look at the window."
 
 
 def test_values_are_written_with_their_unit():
-    written = [format_value(*of) for of in (
-        (None, "s"), (0.04472, "rad"), (87, "N·m"), (1, "1"), (19, "1"), (-1e-5, "rad"),
-    )]  # fmt: skip
+    written = [
+        format_value(*of)
+        for of in (
+            (None, "s"),
+            (0.04472, "rad"),
+            (87, "N·m"),
+            (1, "1"),
+            (19, "1"),
+            (-1e-5, "rad"),
+        )
+    ]
     assert written == [
-        "not observed", "0.0447 rad", "87.00 N·m", "1 sample", "19 samples", "0.0000 rad",
-    ]  # fmt: skip
+        "not observed",
+        "0.0447 rad",
+        "87.00 N·m",
+        "1 sample",
+        "19 samples",
+        "0.0000 rad",
+    ]
 
 
 @pytest.mark.parametrize(
     ("value", "unit", "text"),
     [
-        (0.00447, "mm", "4.47 mm"), (0.0123, "%", "1.23 %"), (0.5, "rad", "0.500 rad"),
-        (12.345, "mm", "12300 mm"), (0.9, "%", "90.0 %"), (1e-9, "m", "0.000000001 m"),
-        (-3e-8, "mm", "-0.00003 mm"), (0.0, "mm", "0.00 mm"),
+        (0.00447, "mm", "4.47 mm"),
+        (0.0123, "%", "1.23 %"),
+        (0.5, "rad", "0.500 rad"),
+        (12.345, "mm", "12300 mm"),
+        (0.9, "%", "90.0 %"),
+        (1e-9, "m", "0.000000001 m"),
+        (-3e-8, "mm", "-0.00003 mm"),
+        (0.0, "mm", "0.00 mm"),
     ],
-)  # fmt: skip
+)
 def test_a_value_in_another_unit_has_three_digits(value, unit, text):
     assert scaled_value(value, unit) == text
     with pytest.raises(LookupError, match="No text has the unit 'inch'"):
@@ -43,15 +61,29 @@ def rise_times(*values, margin=0.0):
         ((0.4, 0.3), 0, "goes down (G1 0.40 s, G2 0.30 s)."),
         ((0.4, 0.4), 0.015, "does not change measurably (G1 0.40 s, G2 0.40 s)."),
         ((0.4, 0.404), 0, "does not change measurably (G1 0.40 s, G2 0.40 s)."),
-        ((0.12, 0.11), 0.015,
-         "is too close to call: G1 0.12 s, G2 0.11 s, within the margin of 0.015 s."),
-        ((0.4, None), 0, "was observed for G1 alone (G1 0.40 s, G2 not observed); within this "
-                         "window G2 is the slower one, by how much is unknown."),
-        ((None, None), 0, "was not observed in either case, so this window cannot rank them."),
+        (
+            (0.12, 0.11),
+            0.015,
+            "is too close to call: G1 0.12 s, G2 0.11 s, within the margin of 0.015 s.",
+        ),
+        (
+            (0.4, None),
+            0,
+            "was observed for G1 alone (G1 0.40 s, G2 not observed); within this "
+            "window G2 is the slower one, by how much is unknown.",
+        ),
+        (
+            (None, None),
+            0,
+            "was not observed in either case, so this window cannot rank them.",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_comparison_says_what_was_measured_or_not_observed(values, margin, says):
-    assert comparison_sentence(NAMES, rise_times(*values, margin=margin)) == f"The rise time {says}"
+    assert (
+        comparison_sentence(NAMES, rise_times(*values, margin=margin))
+        == f"The rise time {says}"
+    )
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,9 @@ def test_the_same_inputs_are_made_once_and_others_anew(made, other):
     assert len(made.calls) == 2
 
 
-def test_another_kind_another_lock_and_another_environment_are_made_anew(made, monkeypatch):
+def test_another_kind_another_lock_and_another_environment_are_made_anew(
+    made, monkeypatch
+):
     made(b"one")
     made(b"one", kind="b")
     monkeypatch.setattr(module, "lock_digest", lambda: "another")
@@ -42,12 +44,16 @@ def test_another_kind_another_lock_and_another_environment_are_made_anew(made, m
     assert len(made.calls) == 4
 
 
-def test_a_value_is_made_again_when_the_module_that_makes_it_changes(tmp_path, monkeypatch):
+def test_a_value_is_made_again_when_the_module_that_makes_it_changes(
+    tmp_path, monkeypatch
+):
     calls: list[int] = []
     monkeypatch.setattr(module, "derived", partial(derived, cache=tmp_path))
     for source in (b"one", b"one", b"other"):
         monkeypatch.setattr(module, "_source", lambda file, source=source: source)
-        assert module.derived_value("a", ["x", 1], lambda: calls.append(1) or [1.5]) == [1.5]
+        assert module.derived_value(
+            "a", ["x", 1], lambda: calls.append(1) or [1.5]
+        ) == [1.5]
     assert len(calls) == 2
 
 
@@ -82,11 +88,18 @@ def stored(tmp_path, made):
     return find
 
 
-def test_a_file_that_is_not_whole_or_is_that_of_another_is_made_anew(made, stored, capsys):
+def test_a_file_that_is_not_whole_or_is_that_of_another_is_made_anew(
+    made, stored, capsys
+):
     one, other, kind = stored(b"one"), stored(b"other"), stored(b"one", kind="b")
     whole = one.read_bytes()
     made.calls.clear()
-    for file, content in ((one, b""), (one, whole[:-1] + b"?"), (other, whole), (kind, whole)):
+    for file, content in (
+        (one, b""),
+        (one, whole[:-1] + b"?"),
+        (other, whole),
+        (kind, whole),
+    ):
         file.write_bytes(content)
         assert made(b"one") == made(b"one", kind="b") == b"one"
         assert made(b"other") == b"other"

@@ -35,8 +35,14 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
             lambda values: values * np.nan,
             "returned [nan, nan, nan]\n  twice[0], the first that differs, is nan, expected 0 ±",
         ),
-        (lambda values: "no numbers", "([0, 1, 2]) returned no numbers: ValueError: could not"),
-        (raises, "raises([0, 1, 2]): IndexError: list index out of range\n  line 10 of its cell"),
+        (
+            lambda values: "no numbers",
+            "([0, 1, 2]) returned no numbers: ValueError: could not",
+        ),
+        (
+            raises,
+            "raises([0, 1, 2]): IndexError: list index out of range\n  line 10 of its cell",
+        ),
     ],
 )
 def test_a_wrong_one_fails_and_its_check_says_what_was_found(function, says):
@@ -48,8 +54,14 @@ def test_a_wrong_one_fails_and_its_check_says_what_was_found(function, says):
 @pytest.mark.parametrize(
     ("shape", "says"),
     [
-        ((4, 3), "twice[2], the first that differs, is [12, 14.5, 16], expected [12, 14, 16] ± "),
-        ((2, 3, 2), "twice[1, 0], the first that differs, is [12, 14.5], expected [12, 14] ± 1"),
+        (
+            (4, 3),
+            "twice[2], the first that differs, is [12, 14.5, 16], expected [12, 14, 16] ± ",
+        ),
+        (
+            (2, 3, 2),
+            "twice[1, 0], the first that differs, is [12, 14.5], expected [12, 14] ± 1",
+        ),
     ],
 )
 def test_the_first_wrong_row_is_named_with_what_it_should_be(shape, says):

@@ -26,14 +26,24 @@ files.put(Path(sys.argv[1]), Path(sys.argv[2]))
 
 
 @pytest.mark.parametrize(("renames", "stands"), [(0, "old"), (1, "old"), (2, "new")])
-def test_a_kill_at_any_rename_leaves_the_old_or_the_new_bundle(tmp_path, renames, stands):
+def test_a_kill_at_any_rename_leaves_the_old_or_the_new_bundle(
+    tmp_path, renames, stands
+):
     old, new = old_bundle(tmp_path, "cuda"), tmp_path / "run" / "cuda"
     new.mkdir(parents=True)
     (new / "manifest.json").write_text("{}")
     (new / "log.txt").write_text("new")
-    command = [sys.executable, "-c", DIES.format(renames=renames), str(new), str(old.parent)]
+    command = [
+        sys.executable,
+        "-c",
+        DIES.format(renames=renames),
+        str(new),
+        str(old.parent),
+    ]
     assert subprocess.run(command, check=False, cwd=ROOT).returncode == 9
-    assert len(list(old.parents[1].iterdir())) == 2  # one stands aside, or is not yet whole
+    assert (
+        len(list(old.parents[1].iterdir())) == 2
+    )  # one stands aside, or is not yet whole
     settle_below(tmp_path / "kept")
     assert [path.name for path in old.parents[1].iterdir()] == ["cuda"]
     assert old.read_text() == stands
@@ -50,5 +60,7 @@ def test_what_is_no_bundle_is_never_replaced(tmp_path, link):
         (lesson / "cuda").symlink_to(mine)
     else:
         mine.rename(lesson / "cuda")
-    with pytest.raises(ProjectError, match=r"has no manifest\.json, or is a link\. .* TO=folder"):
+    with pytest.raises(
+        ProjectError, match=r"has no manifest\.json, or is a link\. .* TO=folder"
+    ):
         require_replaceable(lesson / "cuda", "manifest.json")

@@ -15,11 +15,15 @@ def test_only_a_repository_that_cannot_be_read_is_refused(tmp_path):
     (below / "file").touch()
     commit(tmp_path)
     require_history(below)
-    (tmp_path / ".git" / "HEAD").write_text("no reference")  # as unreadable as another user's
+    (tmp_path / ".git" / "HEAD").write_text(
+        "no reference"
+    )  # as unreadable as another user's
     settings = {"root": below, "cache": tmp_path / "cache"}
     for command in (
         lambda: export_one("l04/lab", None, Build(**settings)),
         lambda: record(Recording(to=tmp_path, **settings)),
     ):
-        with pytest.raises(ProjectError, match=r"rev-parse failed[\s\S]*a copy without \.git"):
+        with pytest.raises(
+            ProjectError, match=r"rev-parse failed[\s\S]*a copy without \.git"
+        ):
             command()

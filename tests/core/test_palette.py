@@ -6,7 +6,10 @@ from contrast import GROUNDS, contrast
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import MARKS, PARTS, marks_of
 
-TEXT, GRAPHICS = 4.5, 3  # Least contrast of text and of graphics, WCAG 2.2, 1.4.3 and 1.4.11
+TEXT, GRAPHICS = (
+    4.5,
+    3,
+)  # Least contrast of text and of graphics, WCAG 2.2, 1.4.3 and 1.4.11
 
 
 @pytest.mark.parametrize("theme", GROUNDS)
@@ -17,12 +20,18 @@ def test_each_mark_reads_as_text_on_each_ground(name, theme):
 
 
 @pytest.mark.parametrize("theme", GROUNDS)
-def test_the_parts_of_a_figure_can_be_seen_on_each_ground_and_its_marks_on_the_band(theme):
-    text, line, band = (getattr(PARTS[name], theme) for name in ("text", "line", "band"))
+def test_the_parts_of_a_figure_can_be_seen_on_each_ground_and_its_marks_on_the_band(
+    theme,
+):
+    text, line, band = (
+        getattr(PARTS[name], theme) for name in ("text", "line", "band")
+    )
     assert getattr(PARTS["ground"], theme) in GROUNDS[theme]
     assert min(contrast(text, ground) for ground in (*GROUNDS[theme], band)) >= TEXT
     assert min(contrast(line, ground) for ground in (*GROUNDS[theme], band)) >= GRAPHICS
-    assert min(contrast(getattr(mark, theme), band) for mark in MARKS.values()) >= GRAPHICS
+    assert (
+        min(contrast(getattr(mark, theme), band) for mark in MARKS.values()) >= GRAPHICS
+    )
 
 
 def test_a_colour_of_a_drawing_tells_what_it_is():
@@ -58,5 +67,7 @@ def test_each_case_drawn_with_others_has_a_mark_of_its_own(cases, marks):
 
 
 def test_more_cases_than_marks_are_refused():
-    with pytest.raises(ValueError, match=r"a, b, c, d, e are 5 cases; the palette has 4 marks"):
+    with pytest.raises(
+        ValueError, match=r"a, b, c, d, e are 5 cases; the palette has 4 marks"
+    ):
         marks_of("abcde", {})

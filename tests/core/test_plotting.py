@@ -35,7 +35,11 @@ def test_a_schematic_draws_the_measured_links_at_both_ends(ax, traces):
     assert "not a camera frame" in ax.get_title()
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [m]", "z [m]")
     assert legend(ax) == ["before the first step", "after the last step"]
-    bones = [trace.link_pos[when, [parents[link], link]] for when in (0, -1) for link in (1, 2)]
+    bones = [
+        trace.link_pos[when, [parents[link], link]]
+        for when in (0, -1)
+        for link in (1, 2)
+    ]
     for line, bone in zip(ax.get_lines(), bones, strict=True):
         assert np.array_equal(line.get_xydata(), bone[:, [0, 2]])
 
@@ -70,7 +74,9 @@ def test_the_style_starts_no_shell_outside_a_notebook():
         "from IPython.core.interactiveshell import InteractiveShell\n"
         "assert not InteractiveShell.initialized()"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -86,4 +92,6 @@ def test_labels_are_beside_the_ends_of_lines_in_their_order_and_apart():
     assert (np.diff(heights) >= plotting.LABELS_APART - 1e-9).all()
     assert 0 < heights[0] < heights[-1] < 1
     colours = {text.get_text(): text.get_color() for text in ax.texts}
-    assert colours == {line.get_label(): line.get_color() for line in ax.get_lines()[:4]}
+    assert colours == {
+        line.get_label(): line.get_color() for line in ax.get_lines()[:4]
+    }

@@ -41,7 +41,9 @@ def test_the_pin_is_one_exact_version(tmp_path, text, reason):
 def test_the_pin_is_not_repeated():
     package = Path(project.__file__).parents[1]
     sources = [*package.rglob("*.py"), *(project.BOOK / "lessons").rglob("*.md")]
-    assert [path for path in sources if project.engine_pin() in path.read_text("utf8")] == []
+    assert [
+        path for path in sources if project.engine_pin() in path.read_text("utf8")
+    ] == []
 
 
 def test_without_a_checkout_the_pin_is_that_of_the_installed_package(monkeypatch):
@@ -57,7 +59,9 @@ def test_without_a_checkout_the_pin_is_that_of_the_installed_package(monkeypatch
 def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path):
     for name in ("robo_genesis.egg-info", "numpy-2.0.dist-info"):
         (tmp_path / name).mkdir()
-    assert [name for _, name, _ in project.installed([str(tmp_path)])] == ["numpy-2.0.dist-info"]
+    assert [name for _, name, _ in project.installed([str(tmp_path)])] == [
+        "numpy-2.0.dist-info"
+    ]
 
 
 def test_a_missing_lock_is_refused_with_the_command_that_writes_it(tmp_path):
@@ -72,7 +76,12 @@ def test_engine_caches_are_named_by_engine_and_lock(tmp_path):
     assert kernels == root / ".cache/engine" / kernels.parent.name / "kernels"
     assert kernels.parent.name == f"9.8.7-{project.lock_digest(root)[:12]}"
     assert environment["QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES"] == "2000000000"
-    for name in ("GS_CACHE_FILE_PATH", "NUMBA_CACHE_DIR", "MESA_SHADER_CACHE_DIR", "MPLCONFIGDIR"):
+    for name in (
+        "GS_CACHE_FILE_PATH",
+        "NUMBA_CACHE_DIR",
+        "MESA_SHADER_CACHE_DIR",
+        "MPLCONFIGDIR",
+    ):
         assert Path(environment[name]).is_dir()
     (root / "requirements.lock").write_text("numpy==2.1\n")
     assert project.engine_cache_folder(root) != kernels.parent
@@ -97,7 +106,10 @@ ADMINISTRATOR = pwd.getpwuid(0).pw_dir
         ("/srv/me", "~"),
         ("/srv/men/x", "/srv/men/x"),
         ("/home/other/x:/Users/other", "~/x:~"),
-        (f"{ADMINISTRATOR}/.cache,/srv{ADMINISTRATOR}/x", f"~/.cache,/srv{ADMINISTRATOR}/x"),
+        (
+            f"{ADMINISTRATOR}/.cache,/srv{ADMINISTRATOR}/x",
+            f"~/.cache,/srv{ADMINISTRATOR}/x",
+        ),
         ("0,1", "0,1"),
     ],
 )
@@ -107,9 +119,13 @@ def test_a_home_folder_is_not_named(text, kept, monkeypatch):
     assert not project.HOME_FOLDER.search(project.without_home(text))
 
 
-def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(tmp_path):
+def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(
+    tmp_path,
+):
     switches = {f"{prefix}X": "1" for prefix in project.ENGINE_PREFIXES}
-    folders = project.engine_cache_environment(checkout(tmp_path, "genesis-world==9.8.7"))
+    folders = project.engine_cache_environment(
+        checkout(tmp_path, "genesis-world==9.8.7")
+    )
     switches["LD_LIBRARY_PATH"] = "/opt/rocm/lib"
     given = {**switches, **folders, "ROBO_GENESIS_RENDER": "0", "HOME": "/"}
     defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "0"}

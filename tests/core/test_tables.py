@@ -9,7 +9,14 @@ from robo_genesis.lessons.l04.metrics import step_metrics
 
 
 def test_numbers_stand_to_the_right_and_are_written_short():
-    row = {"name": "joint4", "upper": -0.0698, "dof": 3, "share": 0.04, "zero": -0.0, "kp": 87.0}
+    row = {
+        "name": "joint4",
+        "upper": -0.0698,
+        "dof": 3,
+        "share": 0.04,
+        "zero": -0.0,
+        "kp": 87.0,
+    }
     _, sides, written = tables.markdown([row]).splitlines()
     assert sides == f"| :--- |{' ---: |' * 5}"
     assert written == "| joint4 | −0.0698 | 3 | 0.04 | 0 | 87 |"

@@ -17,7 +17,12 @@ def trace(traces):
 
 
 def test_a_run_of_n_steps_has_n_plus_one_states(trace):
-    assert (trace.steps, len(trace.t), len(trace.q), len(trace.qd)) == (120, 121, 121, 120)
+    assert (trace.steps, len(trace.t), len(trace.q), len(trace.qd)) == (
+        120,
+        121,
+        121,
+        120,
+    )
     assert trace.dt == 0.01
 
 
@@ -35,7 +40,9 @@ def test_a_value_that_is_not_finite_is_refused_with_its_place(trace, name, value
     array = np.array(getattr(trace, name), dtype=float)
     array.flat[1] = value
     place = [int(k) for k in np.unravel_index(1, array.shape)]
-    with pytest.raises(TraceError, match=re.escape(f"{name} is not finite at index {place}.")):
+    with pytest.raises(
+        TraceError, match=re.escape(f"{name} is not finite at index {place}.")
+    ):
         replace(trace, **{name: array})
 
 

@@ -1,8 +1,8 @@
 """Bundles spoiled in one way each, with the code that refuses them.
 
-`SPOILED` is name → (code as it is, code after digests and key were made right again, spoiler).
-A spoiler changes the bundle in a folder; it returns the folder where it moved it.
-"""
+`SPOILED` is name → (code as it is, code after digests and key were made right again,
+spoiler). A spoiler changes the bundle in a folder; it returns the folder where it moved
+it."""
 
 import json
 import os
@@ -31,7 +31,8 @@ CHECKS = [check.__name__ for check in LAB.checks]
 MAPPING = ("predicate", "checks", CHECKS.index("mapping"))
 
 
-# --- JSON -----------------------------------------------------------------------------------
+# --- JSON
+# -----------------------------------------------------------------------------------
 
 
 def edit(folder, name, change):
@@ -62,7 +63,9 @@ def put(file, /, *path, **values):
 
 def pop(file, *path):
     """Remove the entry at a path in a file."""
-    return editing(file)(lambda content: reduce(getitem, path[:-1], content).pop(path[-1]))
+    return editing(file)(
+        lambda content: reduce(getitem, path[:-1], content).pop(path[-1])
+    )
 
 
 predicate = part = partial(put, MANIFEST, "predicate")
@@ -80,13 +83,16 @@ def found(name, **values):
     return check(CHECKS.index(name), "found", **values)
 
 
-# --- files ----------------------------------------------------------------------------------
+# --- files
+# ----------------------------------------------------------------------------------
 
 
 def bytes_of(name, change):
     """Change the bytes of a file."""
 
-    return lambda folder: (folder / name).write_bytes(change((folder / name).read_bytes()))
+    return lambda folder: (folder / name).write_bytes(
+        change((folder / name).read_bytes())
+    )
 
 
 def text(name, old, new):
@@ -173,11 +179,20 @@ def crowd(folder):
         (folder / f"{number}.txt").touch()
 
 
-# --- accelerators ---------------------------------------------------------------------------
+# --- accelerators
+# ---------------------------------------------------------------------------
 
 TORCH = {
-    "amdgpu": {"torch_version": "2.13.0+rocm7.1", "hip_version": "7.1.25424", "cuda_version": None},
-    "cuda": {"torch_version": "2.13.0+cu130", "hip_version": None, "cuda_version": "13.0"},
+    "amdgpu": {
+        "torch_version": "2.13.0+rocm7.1",
+        "hip_version": "7.1.25424",
+        "cuda_version": None,
+    },
+    "cuda": {
+        "torch_version": "2.13.0+cu130",
+        "hip_version": None,
+        "cuda_version": "13.0",
+    },
 }
 SOFTWARE = "INFO Software rendering context detected. Shadows not supported.\n"
 
@@ -216,7 +231,8 @@ def last_bit(array):
     return np.nextafter(array, np.float32(np.inf))
 
 
-# --- arrays, frames, checks -----------------------------------------------------------------
+# --- arrays, frames, checks
+# -----------------------------------------------------------------
 
 
 def in_archive(case, change):
@@ -235,7 +251,9 @@ def in_archive(case, change):
 def rewrite(case="G1", **fields):
     """Change some fields of one case by their functions."""
     named = {FIELDS[field]: change for field, change in fields.items()}
-    return in_archive(case, lambda of: of.update({n: new(of[n]) for n, new in named.items()}))
+    return in_archive(
+        case, lambda of: of.update({n: new(of[n]) for n, new in named.items()})
+    )
 
 
 def changed_at(index, value):
@@ -271,7 +289,13 @@ def first_array(content, packing=zipfile.ZIP_STORED):
 
 def npy(shape=b"(1,", fields=b"<f8"):
     """Return the bytes of an array that is nothing but a header."""
-    said = b"{'descr': '" + fields + b"', 'fortran_order': False, 'shape': " + shape + b"\n"
+    said = (
+        b"{'descr': '"
+        + fields
+        + b"', 'fortran_order': False, 'shape': "
+        + shape
+        + b"\n"
+    )
     return b"\x93NUMPY\1\0" + len(said).to_bytes(2, "little") + said
 
 
@@ -300,7 +324,9 @@ link_too_many = put(METRICS, "model", "links", value=12)
 failing = both(link_too_many, checked_again)
 """A run that fails a check of its own, as it would have been measured."""
 
-older_compiler = both(part("engine", quadrants_version="1.2.9"), packages(quadrants="1.2.9"))
+older_compiler = both(
+    part("engine", quadrants_version="1.2.9"), packages(quadrants="1.2.9")
+)
 drop_case = both(remove("arrays/G3.npz"), pop(ARRAYS, "cases", "G3"))
 older_type = manifest(lambda m: m.update(predicateType="urn:robo-genesis:evidence:v1"))
 
@@ -323,7 +349,10 @@ GROUPS = {
         "a pipe among the files": lambda f: os.mkfifo(f / "pipe"),
     },
     ("too-big", None): {"a manifest that is too long": pad(MANIFEST)},
-    ("too-big", "too-big"): {"an archive that is too long": pad(G1), "too many files": crowd},
+    ("too-big", "too-big"): {
+        "an archive that is too long": pad(G1),
+        "too many files": crowd,
+    },
     ("bad-json", None): {
         "a key twice": text(MANIFEST, '"seed"', '"seed": 0, "seed"'),
         "NaN in the manifest": predicate(seed=float("nan")),
@@ -331,10 +360,13 @@ GROUPS = {
         "a number beyond JSON": predicate(seed=2**60),
         "a manifest too deep": write(MANIFEST, "[" * 200_000),
         "parameters of 40 levels": predicate(
-            "parameters", deep=reduce(lambda inner, _: [inner], range(40), 0)),
+            "parameters", deep=reduce(lambda inner, _: [inner], range(40), 0)
+        ),
     },
     ("digest", "bad-json"): {
-        "a metric of 10,000 digits": text(METRICS, '"value": 0', '"value": 1' + "0" * 10_000),
+        "a metric of 10,000 digits": text(
+            METRICS, '"value": 0', '"value": 1' + "0" * 10_000
+        ),
         "a limit that is no number": joint(0, lower=float("nan")),
     },
     ("bad-schema", "bad-schema"): {
@@ -344,10 +376,16 @@ GROUPS = {
         "the name of a branch": predicate(git={"commit": "main", "dirty": False}),
         "an unknown backend": part("backend", actual="tpu"),
         "found text of two lines": found("mapping", links="a\nb"),
-        **{f"a driver of {what}": part("backend", driver=value) for what, value in ODD.items()},
+        **{
+            f"a driver of {what}": part("backend", driver=value)
+            for what, value in ODD.items()
+        },
         "a switch of two lines": predicate(environment={"GS_LOG": ODD["two lines"]}),
-        **{f"a warning of {what}": predicate(warnings=[value * 100])
-           for what, value in ODD.items() if "lines" not in what},
+        **{
+            f"a warning of {what}": predicate(warnings=[value * 100])
+            for what, value in ODD.items()
+            if "lines" not in what
+        },
     },
     ("digest", "bad-schema"): {
         "metrics as a list": write(METRICS, "[]\n"),
@@ -356,13 +394,19 @@ GROUPS = {
     },
     ("schema", "schema"): {
         "a newer schema": predicate(schema_version=3),
-        "an older type of a newer schema": both(older_type, predicate(schema_version=3)),
+        "an older type of a newer schema": both(
+            older_type, predicate(schema_version=3)
+        ),
         "a type of no number": manifest(
-            lambda m: m.update(predicateType="urn:robo-genesis:evidence:v0x")),
+            lambda m: m.update(predicateType="urn:robo-genesis:evidence:v0x")
+        ),
     },
     ("older-schema", "older-schema"): {"an older schema": predicate(schema_version=1)},
-    ("older-schema", None): {"an older schema of other fields": both(
-        manifest(lambda m: m.update(predicate={"backend": "cpu"})), older_type)},
+    ("older-schema", None): {
+        "an older schema of other fields": both(
+            manifest(lambda m: m.update(predicate={"backend": "cpu"})), older_type
+        )
+    },
     # Identity and the list of files.
     ("key", "lesson"): {
         "another lesson": predicate(lesson="l99"),
@@ -380,27 +424,39 @@ GROUPS = {
         "names that differ in case": listed("ARRAYS.JSON"),
     },
     ("files", "cases"): {"a missing file": remove(G1), "a dropped case": drop_case},
-    ("files", "files"): {"no log": remove(LOG), "an extra file": write("extra.txt", "x")},
-    ("files", "bad-schema"): {"outputs of no cell": write(bundle.PRINTED, "[\n {}\n]\n")},
+    ("files", "files"): {
+        "no log": remove(LOG),
+        "an extra file": write("extra.txt", "x"),
+    },
+    ("files", "bad-schema"): {
+        "outputs of no cell": write(bundle.PRINTED, "[\n {}\n]\n")
+    },
     ("files", "frames"): {"an extra picture": copied_to("frames/third.png")},
     # Backend, Torch, renderer, log.
     ("backend", "backend"): {
         "the CPU's run filed as amdgpu": both(
-            part("backend", requested="auto"), filed_as("amdgpu")),
+            part("backend", requested="auto"), filed_as("amdgpu")
+        ),
         "another backend at the end": part("backend", actual_at_end="cuda"),
         "cpu requested, amdgpu claimed": on("amdgpu", requested="cpu"),
         "an accelerator without a driver": on("cuda", driver=None),
         "a CPU with a driver": part("backend", driver="6.16"),
         "another processor than the device": part("host", cpu="another CPU"),
         "the processor as accelerator": on("amdgpu", device_name="a CPU"),
-        "a processor as accelerator": on("cuda", device_name="13th Gen Intel(R) Core(TM) i7"),
+        "a processor as accelerator": on(
+            "cuda", device_name="13th Gen Intel(R) Core(TM) i7"
+        ),
         "a card of the other maker": on("cuda", device_name="AMD Instinct MI300X"),
     },
     ("packages", "packages"): {
         "another engine installed": packages(**{"genesis-world": "1.3.2"}),
-        "no compiler installed": pop(MANIFEST, "predicate", "host", "packages", "quadrants"),
+        "no compiler installed": pop(
+            MANIFEST, "predicate", "host", "packages", "quadrants"
+        ),
         "another Torch installed": packages(torch="2.12.0"),
-        "another build of Torch installed": both(on("cuda"), packages(torch="2.13.0+cpu")),
+        "another build of Torch installed": both(
+            on("cuda"), packages(torch="2.13.0+cpu")
+        ),
     },
     ("torch", "torch"): {
         "amdgpu without HIP": on("amdgpu", hip_version=None),
@@ -408,14 +464,18 @@ GROUPS = {
         "a HIP newer than its ROCm": on("amdgpu", torch_version="2.13.0+rocm6.0"),
         "a Torch of another CUDA": on("cuda", torch_version="2.13.0+cu126"),
         "Torch forced to the CPU": on("amdgpu", torch_device="cpu"),
-        "an architecture that spells the valid ones": part("backend", arch="x64 or arm64"),
+        "an architecture that spells the valid ones": part(
+            "backend", arch="x64 or arm64"
+        ),
         "Torch forced to the CPU by a switch": predicate(
-            environment={"GS_TORCH_FORCE_CPU_DEVICE": "1"}),
+            environment={"GS_TORCH_FORCE_CPU_DEVICE": "1"}
+        ),
     },
     ("environment", "environment"): {
         "a variable that is no switch": predicate(environment={"LOGNAME": "somebody"}),
         "somebody's home": predicate(
-            environment={"LIBGL_DRIVERS_PATH": "/usr/lib:/home/somebody/mesa"}),
+            environment={"LIBGL_DRIVERS_PATH": "/usr/lib:/home/somebody/mesa"}
+        ),
     },
     ("render", "render"): {
         "software drawing claimed as a GPU's": part("render", software=False),
@@ -431,24 +491,33 @@ GROUPS = {
         "a log without its software drawing": log(SOFTWARE, ""),
         "a log without a seed": log("seed: 0", "seeds: none"),
         "a log with the device of another": after(
-            LOG, b"INFO Running on [a GPU] with backend gs.amdgpu. Device memory: 1 GB.\n"),
+            LOG,
+            b"INFO Running on [a GPU] with backend gs.amdgpu. Device memory: 1 GB.\n",
+        ),
         "a long line of one word of the log": after(
-            LOG, b"INFO " + b"initialized. version: " * LINE_LIMIT),
+            LOG, b"INFO " + b"initialized. version: " * LINE_LIMIT
+        ),
         "a warning of many lines": after(LOG, b"WARNING \n" + b"\n" * 2_000_000),
         "a log that is no text": after(LOG, b"\xff"),
     },
-    ("engine-files", "engine-files"): {"a patched engine": part("engine", files_match_wheel=False)},
+    ("engine-files", "engine-files"): {
+        "a patched engine": part("engine", files_match_wheel=False)
+    },
     # The question.
     ("key", "stale"): {
         "an older engine": both(
-            part("engine", version="1.2.0"), packages(**{"genesis-world": "1.2.0"}),
-            log("version: ", "version: 1.2.0, was: ")),
+            part("engine", version="1.2.0"),
+            packages(**{"genesis-world": "1.2.0"}),
+            log("version: ", "version: 1.2.0, was: "),
+        ),
         "other parameters": part("parameters", "cases", "G1", kp=lambda kp: kp[::-1]),
         "another module": modules(metrics="0" * 64),
         "no page digest": part("source", page=None),
     },
     # Arrays.
-    ("digest", "path"): {"arrays outside the bundle": case("G1", file="../elsewhere/G1.npz")},
+    ("digest", "path"): {
+        "arrays outside the bundle": case("G1", file="../elsewhere/G1.npz")
+    },
     ("digest", "labels"): {
         "a wrong unit": case("G2", "variables", "q_rad_or_m", unit=["deg"] * 9),
         "an undescribed array": pop(ARRAYS, "cases", "G1", "variables", "t_s"),
@@ -457,7 +526,9 @@ GROUPS = {
         "a joint too few": pop(ARRAYS, "joints", -1),
         "a joint of no known type": joint(0, type="SPHERICAL"),
         "two joints on one DOF": joint(1, dof_idx_local=0),
-        "two joints in each other's place": both(joint(0, q_idx_local=1), joint(1, q_idx_local=0)),
+        "two joints in each other's place": both(
+            joint(0, q_idx_local=1), joint(1, q_idx_local=0)
+        ),
         "a limit left out": joint(3, upper=None),
         "a wider limit": joint(8, lower=-0.001),
     },
@@ -473,7 +544,8 @@ GROUPS = {
         "an archive before other bytes": after(G1, b"x"),
     },
     ("digest", "too-big"): {
-        "a zip bomb": first_array(bytes(UNPACKED_LIMIT + 1), zipfile.ZIP_DEFLATED)},
+        "a zip bomb": first_array(bytes(UNPACKED_LIMIT + 1), zipfile.ZIP_DEFLATED)
+    },
     ("digest", "bad-trace"): {
         "arrays that are not finite": rewrite(q=changed_at((-1, 0), np.nan)),
         "a shifted time axis": rewrite(t=lambda t: t + 0.01),
@@ -504,8 +576,11 @@ GROUPS = {
         "a frame with rows of another filter": rows(lambda r: b"\0" + r[1:]),
         "a frame of bombs": rows(lambda r: bytes(2**27)),
     },
-    ("frames", "frames"): {"frames without a camera": part(
-        "render", mode="skip", vendor=None, renderer=None, software=None)},
+    ("frames", "frames"): {
+        "frames without a camera": part(
+            "render", mode="skip", vendor=None, renderer=None, software=None
+        )
+    },
     # Metrics and checks.
     ("digest", "metrics"): {
         "an edited metric": metric(value=0.0),
@@ -520,7 +595,9 @@ GROUPS = {
     },
     ("checks", "checks"): {
         "a value found off by a millionth": found(
-            "saturation", **{"G2.saturation_duration_s": lambda value: value * (1 + 1e-6)}),
+            "saturation",
+            **{"G2.saturation_duration_s": lambda value: value * (1 + 1e-6)},
+        ),
         "a found value of another type": found("mapping", links=11.0),
         "a found value too many": found("mapping", luck=1),
         "a found value that is missing": pop(MANIFEST, *MAPPING, "found", "links"),
@@ -528,9 +605,15 @@ GROUPS = {
     },
     ("digest", "failed"): {
         "a link too many, and it says so": failing,
-        "a link too many, called passed": both(failing, manifest(
-            lambda m: [of.update(passed=True) for of in m["predicate"]["checks"]])),
+        "a link too many, called passed": both(
+            failing,
+            manifest(
+                lambda m: [of.update(passed=True) for of in m["predicate"]["checks"]]
+            ),
+        ),
     },
-}  # fmt: skip
+}
 
-SPOILED = {name: (*codes, spoil) for codes, of in GROUPS.items() for name, spoil in of.items()}
+SPOILED = {
+    name: (*codes, spoil) for codes, of in GROUPS.items() for name, spoil in of.items()
+}

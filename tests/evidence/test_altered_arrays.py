@@ -1,8 +1,7 @@
 """One array of one run of a built bundle altered, and everything that follows from it made right.
 
-The forger keeps the types of data and computes metrics, checks and digests again. A try is refused
-if the arrays form no run, a law is broken, or a check fails.
-"""
+The forger keeps the types of data and computes metrics, checks and digests again. A try
+is refused if the arrays form no run, a law is broken, or a check fails."""
 
 from collections.abc import Iterator
 from dataclasses import fields, replace
@@ -26,7 +25,8 @@ pytestmark = pytest.mark.engine  # the bundles of the built site
 LAWS = ("laws_of_motion", "free_fall")
 REQUIRED = 0.97  # Share of the tries that must be refused
 
-# Tolerances of the laws of a body on a surface; an array that changes by less is not altered.
+# Tolerances of the laws of a body on a surface; an array that changes by less is not
+# altered.
 WITHIN = NEXT | {"penetration": DEPTH}
 
 # Those of held boxes, which hardly move, by lesson and page.
@@ -36,12 +36,18 @@ NOISE = "A landed cube turns by less than float32 resolves in a step, so nothing
 SCHEME = "MuJoCo does not have the engine's resolution of the elliptic cone."
 ON_EDGE = "A cube that lands on an edge has other contact points in the two engines."
 ROUNDING = "The alteration is no larger than what float32 resolves of a position."
-TOUCHING = "A hand or a hull touches the body, and forces of these contacts are in no array."
+TOUCHING = (
+    "A hand or a hull touches the body, and forces of these contacts are in no array."
+)
 SCALES = ("× 1.02", "× 0.98", "sample", "zero")
 
 # By lesson, array and alteration, why a try may be accepted. No other may.
 ACCEPTED = {
-    **{("l07", name, how): TOUCHING for name in ("link_ang", "link_vel") for how in SCALES},
+    **{
+        ("l07", name, how): TOUCHING
+        for name in ("link_ang", "link_vel")
+        for how in SCALES
+    },
     **{
         (of, name, "sample"): TOUCHING
         for of in ("l07", "l08")
@@ -49,7 +55,10 @@ ACCEPTED = {
     },
     ("l07", "contacts", "sample"): ON_EDGE,
     ("l07", "penetration", "× 1.02"): ROUNDING,
-    **{("l03", "link_ang", how): f"{NOISE} {SCHEME}" for how in ("× 1.02", "× 0.98", "sample")},
+    **{
+        ("l03", "link_ang", how): f"{NOISE} {SCHEME}"
+        for how in ("× 1.02", "× 0.98", "sample")
+    },
     **{("l03", name, "sample"): ON_EDGE for name in ("link_vel", "contacts")},
     ("l03", "penetration", "sample"): ROUNDING,
 }
@@ -82,12 +91,18 @@ def alterations(array: np.ndarray, seed: int) -> dict[str, np.ndarray]:
 
 def tries(lesson: str, page: str, experiment: Experiment) -> Iterator[Try]:
     for run, trace in experiment.traces.items():
-        within = WITHIN if isinstance(trace, ContactTrace) else OF_PAGE.get((lesson, page), {})
+        within = (
+            WITHIN
+            if isinstance(trace, ContactTrace)
+            else OF_PAGE.get((lesson, page), {})
+        )
         for field in fields(trace):
             seed = sum(map(ord, f"{lesson}/{page}/{run}/{field.name}"))
             array = getattr(trace, field.name)
             for how, value in alterations(array, seed).items():
-                if np.abs(np.subtract(value, array, dtype=float)).max() > within.get(field.name, 0):
+                if np.abs(np.subtract(value, array, dtype=float)).max() > within.get(
+                    field.name, 0
+                ):
                     yield Try(lesson, page, run, field.name, how, value)
 
 
@@ -123,7 +138,13 @@ def experiments(build_output) -> dict[tuple[str, str], Experiment]:
 
 def test_an_altered_array_is_refused(experiments):
     all_tries = [of for page, run in experiments.items() for of in tries(*page, run)]
-    accepted = [of for of in all_tries if not is_refused(experiments[of.lesson, of.page], of)]
-    for_no_reason = [of[:5] for of in accepted if (of.lesson, of.array, of.how) not in ACCEPTED]
+    accepted = [
+        of for of in all_tries if not is_refused(experiments[of.lesson, of.page], of)
+    ]
+    for_no_reason = [
+        of[:5] for of in accepted if (of.lesson, of.array, of.how) not in ACCEPTED
+    ]
     assert for_no_reason == []
-    assert len(accepted) <= (1 - REQUIRED) * len(all_tries), f"{len(accepted)} of {len(all_tries)}"
+    assert len(accepted) <= (1 - REQUIRED) * len(all_tries), (
+        f"{len(accepted)} of {len(all_tries)}"
+    )

@@ -75,14 +75,21 @@ UPGRADED = part("engine", version="9.9.9")
         (same, "repeat"),
         (UPGRADED, rf"engine version .* → 9\.9\.9 \(quadrants {QUADRANTS}\)"),
         (ACCELERATED, "backend cpu → cuda"),
-        (part("source", modules={"metrics": "0" * 64}), "same engine and backend, other code"),
+        (
+            part("source", modules={"metrics": "0" * 64}),
+            "same engine and backend, other code",
+        ),
         (joint(3, lower=-3.07180000001), "repeat"),  # equal but for the last digits
     ],
 )
 def test_the_axis_names_what_differs(compared, spoiler, axis):
     comparison = compared(spoiler)
     assert re.fullmatch(axis, comparison.axis)
-    assert {section.state for section in comparison.sections} == {comparison.state} == {"equal"}
+    assert (
+        {section.state for section in comparison.sections}
+        == {comparison.state}
+        == {"equal"}
+    )
     assert len(rows(comparison, "Values")) == 4 * 9
     assert len(rows(comparison, "Arrays")) == 4 * 11
 
@@ -91,15 +98,20 @@ def test_the_axis_names_what_differs(compared, spoiler, axis):
     ("spoiler", "note"),
     [
         (same, "Both have the same run id. One is a copy of the other, or was edited."),
-        (predicate(environment={"QD_DEBUG": "1", "GS_ENABLE_ZEROCOPY": "0"}),
-         "The switches of the engine differ: none; QD_DEBUG=1, GS_ENABLE_ZEROCOPY=0."),
+        (
+            predicate(environment={"QD_DEBUG": "1", "GS_ENABLE_ZEROCOPY": "0"}),
+            "The switches of the engine differ: none; QD_DEBUG=1, GS_ENABLE_ZEROCOPY=0.",
+        ),
         (modules(metrics="0" * 64), "The code differs and may be the cause: metrics."),
         (predicate(warnings=["New one."]), "Engine warning gained: New one."),
-        (predicate(warnings=["New one."]), "Engine warning lost: Approximating tendon."),
+        (
+            predicate(warnings=["New one."]),
+            "Engine warning lost: Approximating tendon.",
+        ),
         (part("backend", device_name="another CPU"), "The devices differ."),
         (predicate(git=None), "The new bundle was not recorded from a clean checkout."),
     ],
-)  # fmt: skip
+)
 def test_circumstances_are_noted_and_are_not_a_difference(compared, spoiler, note):
     comparison = compared(spoiler)
     assert note in comparison.notes
@@ -112,11 +124,19 @@ def test_circumstances_are_noted_and_are_not_a_difference(compared, spoiler, not
         (part("parameters", stepped_joint="joint2"), "parameters.stepped_joint"),
         (predicate(seed=1), "The seed differs: 0 and 1"),
         (part("engine", precision="64"), "The precision differs: 32 and 64"),
-        (part("backend", actual_at_end="cuda"), "changed during the run, from cpu to cuda"),
-        (both(ACCELERATED, UPGRADED), "9.9.9 (quadrants " + QUADRANTS + ") and backend cpu → cuda"),
+        (
+            part("backend", actual_at_end="cuda"),
+            "changed during the run, from cpu to cuda",
+        ),
+        (
+            both(ACCELERATED, UPGRADED),
+            "9.9.9 (quadrants " + QUADRANTS + ") and backend cpu → cuda",
+        ),
     ],
 )
-def test_another_question_or_a_second_axis_is_not_comparable(compared, spoiler, obstacle):
+def test_another_question_or_a_second_axis_is_not_comparable(
+    compared, spoiler, obstacle
+):
     comparison = compared(spoiler)
     assert (comparison.state, comparison.sections) == ("not comparable", ())
     assert obstacle in " ".join(comparison.obstacles)
@@ -131,7 +151,12 @@ def limit(speed):
 @pytest.mark.parametrize(
     ("case", "metric", "new", "state"),
     [
-        ("G1", "initial_error", lambda v: v + 5e-6, "differs"),  # by the metric's own tolerance
+        (
+            "G1",
+            "initial_error",
+            lambda v: v + 5e-6,
+            "differs",
+        ),  # by the metric's own tolerance
         ("G1", "peak_speed", lambda v: v - 0.99 * limit(v), "within tolerance"),
         ("G1", "peak_speed", lambda v: v - 1.01 * limit(v), "differs"),
         ("G1", "settling_time", None, "differs"),
@@ -142,7 +167,9 @@ def limit(speed):
 def test_values_agree_within_their_tolerance(compared, case, metric, new, state, swap):
     comparison = compared(value(case, metric, new), swap=swap)
     assert comparison.state == state
-    row = rows(comparison, "Exact counts" if metric.endswith("samples") else "Values")[0]
+    row = rows(comparison, "Exact counts" if metric.endswith("samples") else "Values")[
+        0
+    ]
     assert (row.what, row.state) == (f"{case}.{metric}", state)
     assert ("not observed" in (row.old, row.new)) == (new is None)
     assert (row.weight < 1) == (state == "within tolerance" or new is None)
@@ -156,7 +183,13 @@ def test_values_agree_within_their_tolerance(compared, case, metric, new, state,
         ("peak_speed", (2.0, 1.0), (2.0, 1.0), "differs", "broken in both"),
         ("peak_speed", (1.0, 2.0), (1.0, 1.04), "inconclusive", "inconclusive"),
         ("peak_speed", (1.0, 0.96), (1.0, 1.04), "inconclusive", "inconclusive"),
-        ("peak_speed", (2.0, 1.0), (1.0, 1.04), "differs", "broken in one, undecided in the other"),
+        (
+            "peak_speed",
+            (2.0, 1.0),
+            (1.0, 1.04),
+            "differs",
+            "broken in one, undecided in the other",
+        ),
         ("peak_speed", (1.0, 2.0), (None, 1.0), "differs", "flipped"),
         ("peak_speed", (1.0, 2.0), (1.0, None), "equal", "held in both"),
         ("peak_speed", (1.0, 2.0), (None, None), "inconclusive", "inconclusive"),
@@ -166,7 +199,9 @@ def test_values_agree_within_their_tolerance(compared, case, metric, new, state,
     ],
 )
 def test_claimed_orderings(compared, metric, old, new, state, verdict):
-    first, second = (both(value("G1", metric, a), value("G2", metric, b)) for a, b in (old, new))
+    first, second = (
+        both(value("G1", metric, a), value("G2", metric, b)) for a, b in (old, new)
+    )
     found = rows(compared(second, first=first), "Relations")
     [row] = [row for row in found if row.what.startswith(f"{metric}: G2 ")]
     assert (row.state, row.what.partition(", ")[2]) == (state, verdict)
@@ -179,26 +214,56 @@ LACKING = ("present", "missing")
 @pytest.mark.parametrize(
     ("first", "second", "title", "found"),
     [
-        (same, without_g3, "Coverage",
-         {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "missing")}),
+        (
+            same,
+            without_g3,
+            "Coverage",
+            {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "missing")},
+        ),
         (without_g3, without_g3, "Coverage", {"case G3": ("missing", "missing")}),
-        (same, pop("manifest.json", "predicate", "checks", -1), "Coverage",
-         {"check functions": LACKING}),
-        (same, put(METRICS, "G1", "overshoot", unit="degree"), "Coverage",
-         {"metric G1.overshoot": ("rad, value", "degree, value")}),
-        (same, joint(3, dof_idx_local=4, lower=None), "Coverage",
-         {"joint joint4": ("REVOLUTE, DOF 3, qpos 3, -3.0718 rad to -0.0698 rad",
-                           "REVOLUTE, DOF 4, qpos 3, no limit to -0.0698 rad")}),
-        (check(3, passed=False), check(3, passed=False), "Invariants",
-         {"baseline_approaches": ("FAILED", "FAILED")}),
-        (same, part("engine", files_match_wheel=False), "Invariants",
-         {"engine files match the wheel": ("passed", "FAILED")}),
+        (
+            same,
+            pop("manifest.json", "predicate", "checks", -1),
+            "Coverage",
+            {"check functions": LACKING},
+        ),
+        (
+            same,
+            put(METRICS, "G1", "overshoot", unit="degree"),
+            "Coverage",
+            {"metric G1.overshoot": ("rad, value", "degree, value")},
+        ),
+        (
+            same,
+            joint(3, dof_idx_local=4, lower=None),
+            "Coverage",
+            {
+                "joint joint4": (
+                    "REVOLUTE, DOF 3, qpos 3, -3.0718 rad to -0.0698 rad",
+                    "REVOLUTE, DOF 4, qpos 3, no limit to -0.0698 rad",
+                )
+            },
+        ),
+        (
+            check(3, passed=False),
+            check(3, passed=False),
+            "Invariants",
+            {"baseline_approaches": ("FAILED", "FAILED")},
+        ),
+        (
+            same,
+            part("engine", files_match_wheel=False),
+            "Invariants",
+            {"engine files match the wheel": ("passed", "FAILED")},
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_one_or_both_sides_lack_differs(compared, first, second, title, found):
     comparison = compared(second, first=first)
     assert comparison.state == "differs"
-    differing = {f.what: (f.old, f.new) for f in rows(comparison, title) if f.state == "differs"}
+    differing = {
+        f.what: (f.old, f.new) for f in rows(comparison, title) if f.state == "differs"
+    }
     assert found.items() <= differing.items()
 
 
@@ -210,14 +275,40 @@ def added(place, amount):
 @pytest.mark.parametrize(
     ("fields", "state", "what", "delta", "allowed"),
     [
-        ({"qd": added((7, 3), 0.5)}, "differs", "qd_rad_s_or_m_s[7, 3]", "0.5 rad/s", "rad/s"),
-        ({"qd": added((7, 8), 0.5)}, "differs", "qd_rad_s_or_m_s[7, 8]", "0.5 m/s", "m/s"),
-        ({"qd": added((7, 3), 5e-4)}, "within tolerance", "qd_rad_s_or_m_s[7, 3]", "rad/s", " "),
-        ({"link_quat": np.zeros_like}, "differs", "link_quat_wxyz[0, 0, 0]", "-1", "0.0001"),
+        (
+            {"qd": added((7, 3), 0.5)},
+            "differs",
+            "qd_rad_s_or_m_s[7, 3]",
+            "0.5 rad/s",
+            "rad/s",
+        ),
+        (
+            {"qd": added((7, 8), 0.5)},
+            "differs",
+            "qd_rad_s_or_m_s[7, 8]",
+            "0.5 m/s",
+            "m/s",
+        ),
+        (
+            {"qd": added((7, 3), 5e-4)},
+            "within tolerance",
+            "qd_rad_s_or_m_s[7, 3]",
+            "rad/s",
+            " ",
+        ),
+        (
+            {"link_quat": np.zeros_like},
+            "differs",
+            "link_quat_wxyz[0, 0, 0]",
+            "-1",
+            "0.0001",
+        ),
     ],
 )
 @pytest.mark.parametrize("swap", [False, True])
-def test_arrays_agree_within_their_tolerance(compared, fields, state, what, delta, allowed, swap):
+def test_arrays_agree_within_their_tolerance(
+    compared, fields, state, what, delta, allowed, swap
+):
     comparison = compared(rewrite(**fields), swap=swap)
     row = rows(comparison, "Arrays")[0]
     assert (comparison.state, row.state, row.what) == (state, state, f"G1 {what}")
@@ -235,7 +326,9 @@ def test_arrays_without_a_tolerance_are_equal(compared, monkeypatch):
     assert {row.state for row in others} == {"equal"}
 
 
-def test_a_case_may_have_no_bound_and_its_largest_difference_is_named(compared, monkeypatch):
+def test_a_case_may_have_no_bound_and_its_largest_difference_is_named(
+    compared, monkeypatch
+):
     monkeypatch.setattr(l04, "TOLERANCES", l04.TOLERANCES | {"G1": (np.inf, 0.0)})
     faster = value("G1", "peak_speed", lambda v: v + 2 * limit(v))
     comparison = compared(rewrite(q=added((7, 3), 1)), faster)
@@ -249,11 +342,19 @@ def test_a_case_may_have_no_bound_and_its_largest_difference_is_named(compared, 
     [
         (pad("log.txt"), "too-big: {}: log.txt: number of bytes is"),
         (write(METRICS, "{}"), "digest: {}: metrics.json: sha256 is"),
-        (both(predicate(lesson="l02"), seal), "is of l04/lab, {} of l02/lab. Give two bundles"),
-        (both(predicate(lesson="l99"), seal), "lesson: Lesson 'l99' does not exist. Choices: l01"),
+        (
+            both(predicate(lesson="l02"), seal),
+            "is of l04/lab, {} of l02/lab. Give two bundles",
+        ),
+        (
+            both(predicate(lesson="l99"), seal),
+            "lesson: Lesson 'l99' does not exist. Choices: l01",
+        ),
     ],
 )
-def test_bundles_are_bounded_as_for_the_verifier_and_of_one_page(folder, other, spoiler, said):
+def test_bundles_are_bounded_as_for_the_verifier_and_of_one_page(
+    folder, other, spoiler, said
+):
     spoiler(other)
     with pytest.raises(BundleRefused, match=said.format(other)):
         compare(folder, other)
@@ -264,9 +365,13 @@ def command(monkeypatch, capsys):
     """Run the command; return its exit status and what it printed, to both streams."""
 
     def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["compare.py", "--report", *map(str, arguments)])
+        monkeypatch.setattr(
+            sys, "argv", ["compare.py", "--report", *map(str, arguments)]
+        )
         with pytest.raises(SystemExit) as ended:
-            runpy.run_path(str(ROOT / "build_scripts" / "compare.py"), run_name="__main__")
+            runpy.run_path(
+                str(ROOT / "build_scripts" / "compare.py"), run_name="__main__"
+            )
         return ended.value.code, "".join(capsys.readouterr())
 
     return run
@@ -283,7 +388,9 @@ ODD = "\x1b[2J\nEqual. Rows: \u202e"
         predicate(warnings=["New one.\nEqual. Rows: 9"]),
     ],
 )
-def test_nothing_of_a_bundle_controls_the_terminal(folder, other, command, spoiler, tmp_path):
+def test_nothing_of_a_bundle_controls_the_terminal(
+    folder, other, command, spoiler, tmp_path
+):
     both(spoiler, seal)(other)
     _, printed = command(tmp_path / "report", folder, other)
     assert all(c.isprintable() for c in printed.replace("\n", ""))
@@ -294,7 +401,9 @@ def test_nothing_of_a_bundle_controls_the_terminal(folder, other, command, spoil
 
 def test_performance_is_shown_and_decides_nothing(compared):
     of = {"unit": "steps/s", "class": "performance", "from": ["clock"]}
-    slow, fast = (put(METRICS, "G1", speed=of | {"value": steps}) for steps in (10.0, 100.0))
+    slow, fast = (
+        put(METRICS, "G1", speed=of | {"value": steps}) for steps in (10.0, 100.0)
+    )
     comparison = compared(slow, first=fast)
     (row,) = rows(comparison, "Performance")
     assert (row.old, row.new, row.state) == ("100 steps/s", "10 steps/s", "shown")
@@ -312,7 +421,10 @@ def test_the_report_is_worst_first_and_keeps_words_as_words(compared):
     )
     order = [SEVERITY.index(section.state) for section in unlike.sections]
     assert len(set(order)) > 2
-    ranks = [[(SEVERITY.index(row.state), row.weight) for row in of.rows] for of in unlike.sections]
+    ranks = [
+        [(SEVERITY.index(row.state), row.weight) for row in of.rows]
+        for of in unlike.sections
+    ]
     assert all(of == sorted(of, reverse=True) for of in [order, *ranks])
     text = report.summary(unlike)
     assert text.splitlines()[1].startswith("Differs. Rows: ")
@@ -341,7 +453,9 @@ alike = both(value("G1", "peak_speed", 3.0), value("G2", "peak_speed", 3.0))
         (same, predicate(seed=1), 2, "Not comparable."),
     ],
 )
-def test_the_exit_status_and_the_report(folder, other, command, tmp_path, old, new, status, said):
+def test_the_exit_status_and_the_report(
+    folder, other, command, tmp_path, old, new, status, said
+):
     both(old, seal)(folder)
     both(new, seal)(other)
     code, printed = command(tmp_path / "a report", folder, other)
@@ -350,13 +464,18 @@ def test_the_exit_status_and_the_report(folder, other, command, tmp_path, old, n
     assert f"Report: {tmp_path / 'a report' / 'report.md'}" in printed
 
 
-def test_what_cannot_be_compared_or_written_exits_2(folder, other, command, no_file, tmp_path):
+def test_what_cannot_be_compared_or_written_exits_2(
+    folder, other, command, no_file, tmp_path
+):
     (other / "metrics.json").write_text("{}")
     report = tmp_path / "report"
     for arguments, said in (
         ((report, folder, other), f"Refused: digest: {other}: metrics.json"),
         ((report, "", folder), "OLD='' is not a folder. Usage: make compare"),
-        ((no_file.parent, folder, folder), f"REPORT={no_file.parent} cannot be written: "),
+        (
+            (no_file.parent, folder, folder),
+            f"REPORT={no_file.parent} cannot be written: ",
+        ),
     ):
         code, printed = command(*arguments)
         assert (code, printed[: len(said)]) == (2, said)

@@ -24,7 +24,9 @@ from robo_genesis.sim.engine_log import EngineLog
 
 
 def files(folder):
-    return sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file())
+    return sorted(
+        p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()
+    )
 
 
 def test_frames_come_back_as_they_were_with_the_run_id(pristine, frames):
@@ -34,10 +36,17 @@ def test_frames_come_back_as_they_were_with_the_run_id(pristine, frames):
             assert picture.info["run_id"] == RUN_ID
 
 
-def test_backend_renderer_log_and_host_are_recorded(recorder, experiment, backend, monkeypatch):
-    switches = {"GS_ENABLE_ZEROCOPY": "0", "LIBGL_DRIVERS_PATH": f"/usr/lib:{Path.home()}/mesa"}
+def test_backend_renderer_log_and_host_are_recorded(
+    recorder, experiment, backend, monkeypatch
+):
+    switches = {
+        "GS_ENABLE_ZEROCOPY": "0",
+        "LIBGL_DRIVERS_PATH": f"/usr/lib:{Path.home()}/mesa",
+    }
     recorder.engine = replace(recorder.engine, switches=switches)
-    monkeypatch.setattr(session, "probe", lambda requested: replace(backend, actual="cuda"))
+    monkeypatch.setattr(
+        session, "probe", lambda requested: replace(backend, actual="cuda")
+    )
     written = recorder.write(experiment, RENDERER)
     found = read_manifest(written).predicate
     assert (written / "log.txt").read_text() == recorder.engine.log.text()
@@ -62,7 +71,9 @@ def test_the_build_names_run_command_and_page(quiet, tmp_path, engine, experimen
     assert [found.run_id, found.command, found.source.page] == list(names.values())
 
 
-def test_a_new_bundle_replaces_an_old_one_and_what_an_earlier_failure_left(recorder, experiment):
+def test_a_new_bundle_replaces_an_old_one_and_what_an_earlier_failure_left(
+    recorder, experiment
+):
     outputs = recorder.contract.outputs
     written = recorder.write(experiment, RENDERER)
     for left in (written, written.with_name(f".{written.name}.next")):
@@ -75,22 +86,48 @@ def test_a_new_bundle_replaces_an_old_one_and_what_an_earlier_failure_left(recor
 @pytest.mark.parametrize(
     ("spoil", "error", "said"),
     [
-        (lambda e: {"traces": {n: t for n, t in e.traces.items() if n != "G2"}}, RecordError,
-         "the runs G1, G3, baseline; its declaration names G1, G2, G3, baseline. Run each"),
-        (lambda e: {"readings": e.readings | {"model": e.readings["model"] | {"links": np.nan}}},
-         RecordError, "Not finite or beyond limits: model.links. A bundle needs others"),
-        (lambda e: {"readings": e.readings | {"model": e.readings["model"] | {"dofs": 2**60}}},
-         ValueError, "is not a number within ±2⁵³"),
-        (lambda e: {"frames": {"initial": np.zeros((2, 2, 7), np.uint8)}}, FrameError, "shape"),
+        (
+            lambda e: {"traces": {n: t for n, t in e.traces.items() if n != "G2"}},
+            RecordError,
+            "the runs G1, G3, baseline; its declaration names G1, G2, G3, baseline. Run each",
+        ),
+        (
+            lambda e: {
+                "readings": e.readings
+                | {"model": e.readings["model"] | {"links": np.nan}}
+            },
+            RecordError,
+            "Not finite or beyond limits: model.links. A bundle needs others",
+        ),
+        (
+            lambda e: {
+                "readings": e.readings
+                | {"model": e.readings["model"] | {"dofs": 2**60}}
+            },
+            ValueError,
+            "is not a number within ±2⁵³",
+        ),
+        (
+            lambda e: {"frames": {"initial": np.zeros((2, 2, 7), np.uint8)}},
+            FrameError,
+            "shape",
+        ),
     ],
-)  # fmt: skip
-def test_a_failed_write_leaves_nothing_or_the_old_bundle(recorder, experiment, spoil, error, said):
-    outputs, spoiled = recorder.contract.outputs, replace(experiment, **spoil(experiment))
+)
+def test_a_failed_write_leaves_nothing_or_the_old_bundle(
+    recorder, experiment, spoil, error, said
+):
+    outputs, spoiled = (
+        recorder.contract.outputs,
+        replace(experiment, **spoil(experiment)),
+    )
     for _ in range(2):
         before = {name: (outputs / name).read_bytes() for name in files(outputs)}
         with pytest.raises(error, match=re.escape(said)):
             recorder.write(spoiled, RENDERER)
-        assert {name: (outputs / name).read_bytes() for name in files(outputs)} == before
+        assert {
+            name: (outputs / name).read_bytes() for name in files(outputs)
+        } == before
         recorder.write(experiment, RENDERER)
 
 
@@ -124,11 +161,19 @@ def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(quiet):
         (b"x = 1\n", ("RECORD",), False),  # no digest is recorded
     ],
 )
-def test_files_without_their_digest_match_no_wheel(tmp_path, monkeypatch, content, listed, match):
-    digest = base64.urlsafe_b64encode(hashlib.sha256(b"x = 1\n").digest()).rstrip(b"=").decode()
+def test_files_without_their_digest_match_no_wheel(
+    tmp_path, monkeypatch, content, listed, match
+):
+    digest = (
+        base64.urlsafe_b64encode(hashlib.sha256(b"x = 1\n").digest())
+        .rstrip(b"=")
+        .decode()
+    )
     hashes = {"module.py": SimpleNamespace(mode="sha256", value=digest), "RECORD": None}
     files = [
-        SimpleNamespace(hash=hashes[n], suffix=Path(n).suffix, locate=lambda n=n: tmp_path / n)
+        SimpleNamespace(
+            hash=hashes[n], suffix=Path(n).suffix, locate=lambda n=n: tmp_path / n
+        )
         for n in listed
     ]
     found = SimpleNamespace(files=files)
@@ -142,9 +187,14 @@ def test_the_driver_is_that_of_the_backend(tmp_path):
     for module, text in (("amdgpu", "6.16\n"), ("nvidia", "580.1\n")):
         (tmp_path / "sys/module" / module).mkdir(parents=True)
         (tmp_path / "sys/module" / module / "version").write_text(text)
-    found = {of: record.driver_version(of, tmp_path) for of in ("amdgpu", "cuda", "cpu", "metal")}
+    found = {
+        of: record.driver_version(of, tmp_path)
+        for of in ("amdgpu", "cuda", "cpu", "metal")
+    }
     assert found == {"amdgpu": "6.16", "cuda": "580.1", "cpu": None, "metal": None}
-    assert record.driver_version("cuda", tmp_path / "elsewhere").startswith("of the kernel ")
+    assert record.driver_version("cuda", tmp_path / "elsewhere").startswith(
+        "of the kernel "
+    )
 
 
 def test_commit_and_changes_are_recorded(tmp_path, monkeypatch):
@@ -157,7 +207,10 @@ def test_commit_and_changes_are_recorded(tmp_path, monkeypatch):
     assert record.git_record() == {"commit": head, "dirty": False}
     page = tmp_path / "book" / "evidence" / "page.md"
     page.parent.mkdir(parents=True)
-    for place in ("l02/amdgpu/frames", "l03/.amdgpu.next"):  # of the labs that were recorded before
+    for place in (
+        "l02/amdgpu/frames",
+        "l03/.amdgpu.next",
+    ):  # of the labs that were recorded before
         (page.parent / place).mkdir(parents=True)
         (page.parent / place / "new").touch()
     assert record.git_record() == {"commit": head, "dirty": False}

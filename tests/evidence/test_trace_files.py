@@ -11,7 +11,9 @@ LINKS = ["link0", "link4", "hand"]
 
 @pytest.fixture
 def written(tmp_path, traces, joints):
-    return tmp_path, trace_files.write_traces(tmp_path, {"G1": traces["G1"]}, joints, LINKS)
+    return tmp_path, trace_files.write_traces(
+        tmp_path, {"G1": traces["G1"]}, joints, LINKS
+    )
 
 
 def test_arrays_come_back_bit_for_bit(written, traces):
@@ -22,7 +24,9 @@ def test_arrays_come_back_bit_for_bit(written, traces):
         assert after.tobytes() == before.tobytes()
 
 
-def test_joints_come_back_as_they_were_and_a_limit_that_is_missing_is_null(written, joints):
+def test_joints_come_back_as_they_were_and_a_limit_that_is_missing_is_null(
+    written, joints
+):
     lower, upper = np.array(joints.lower), np.array(joints.upper)
     lower[2], upper[5] = -np.inf, np.inf
     free = replace(joints, lower=lower, upper=upper)

@@ -8,7 +8,9 @@ from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 
-def body_run(t, x=0.0, y=0.0, z=0.0, *, vx=0.0, vz=0.0, quat=(1, 0, 0, 0), contacts=None):
+def body_run(
+    t, x=0.0, y=0.0, z=0.0, *, vx=0.0, vz=0.0, quat=(1, 0, 0, 0), contacts=None
+):
     """Return a run from values for each state, or for all; with a count of contacts if given."""
     position, velocity, orientation, still = (
         np.float32(np.stack(np.broadcast_arrays(*parts, t)[:-1], axis=-1))[:, None]
@@ -36,11 +38,17 @@ def make_drop(case: Drop) -> BodyTrace:
 def slide_on_corners(case: ContactCase) -> ContactTrace:
     """Return a cube that slides on four corners: Coulomb friction by semi-implicit Euler."""
     states, friction = case.steps + 1, max(case.friction, case.surface_friction)
-    speed = case.speed - friction * case.gravity * case.h * np.arange(states * case.substeps)
+    speed = case.speed - friction * case.gravity * case.h * np.arange(
+        states * case.substeps
+    )
     speed = np.maximum(speed, 0)
     travelled = np.concatenate([[0], np.cumsum(case.h * speed[1:])])[:: case.substeps]
     x, y, z = np.float32(case.start)
     return body_run(
-        np.arange(states) * case.dt, x + travelled, y, z,
-        vx=speed[:: case.substeps], contacts=4,
-    )  # fmt: skip
+        np.arange(states) * case.dt,
+        x + travelled,
+        y,
+        z,
+        vx=speed[:: case.substeps],
+        contacts=4,
+    )

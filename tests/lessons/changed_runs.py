@@ -20,7 +20,9 @@ def passed(page):
 
 def with_fields(of, fields):
     """Return an object with other fields: values, or changes of a copy of the present array."""
-    new = {n: v(np.array(getattr(of, n))) if callable(v) else v for n, v in fields.items()}
+    new = {
+        n: v(np.array(getattr(of, n))) if callable(v) else v for n, v in fields.items()
+    }
     return replace(of, **new)
 
 
@@ -28,7 +30,9 @@ def beginning(trace, steps):
     """Return the first steps of a run."""
     arrays = {field.name: getattr(trace, field.name) for field in fields(trace)}
     counts = {trace.steps: steps, trace.steps + 1: steps + 1}
-    return replace(trace, **{name: a[: counts.get(len(a), len(a))] for name, a in arrays.items()})
+    return replace(
+        trace, **{name: a[: counts.get(len(a), len(a))] for name, a in arrays.items()}
+    )
 
 
 # What follows returns a function that changes a run, for tables of spoiled runs.
@@ -96,4 +100,6 @@ def joints(**fields):
 
 def frames(**names):
     """Take each named camera frame from another one of the run."""
-    return lambda run: replace(run, frames={n: run.frames[of] for n, of in names.items()})
+    return lambda run: replace(
+        run, frames={n: run.frames[of] for n, of in names.items()}
+    )

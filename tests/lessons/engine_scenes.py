@@ -17,4 +17,6 @@ def robot_in_scene(gs, envs=0, substeps=SUBSTEPS, **options):
     scene.add_entity(gs.morphs.Plane())
     robot = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
     scene.build(n_envs=envs)
-    return SimpleNamespace(scene=scene, robot=robot, joints=resolve_joints(robot, JOINT_NAMES))
+    return SimpleNamespace(
+        scene=scene, robot=robot, joints=resolve_joints(robot, JOINT_NAMES)
+    )

@@ -11,7 +11,9 @@ from robo_genesis.pipeline.pages.book import Page, find_pages
 
 def page_of(lesson: str, name: str) -> Page:
     """Return an executed page of a lesson."""
-    (found,) = (page for page in find_pages(BOOK) if (page.lesson, page.page) == (lesson, name))
+    (found,) = (
+        page for page in find_pages(BOOK) if (page.lesson, page.page) == (lesson, name)
+    )
     return found
 
 

@@ -15,18 +15,27 @@ def experiment_of(page, traces, known, links, frames, joints=None) -> Experiment
         traces: at least its runs, which may be longer.
         known: at least its readings, by group.
         links: names of the links of the traces.
-        frames: camera frames; those with a name of the page have this name, others are the last.
+        frames: camera frames; those with a name of the page have this name, others are
+            the last.
         joints: of a robot.
     """
     return Experiment(
         page=page,
-        traces={name: beginning(traces[name], case.steps) for name, case in page.cases.items()},
+        traces={
+            name: beginning(traces[name], case.steps)
+            for name, case in page.cases.items()
+        },
         links=links,
         readings={
-            group: {name: known[group][name] if group in known else 1 for name in of.units}
+            group: {
+                name: known[group][name] if group in known else 1 for name in of.units
+            }
             for group, of in page.readings.items()
         },
-        frames={name: frames.get(name, frames["final"]) for name in page.frames * page.camera},
+        frames={
+            name: frames.get(name, frames["final"])
+            for name in page.frames * page.camera
+        },
         rendered=page.camera,
         joints=joints,
     )
@@ -47,5 +56,7 @@ def run_with(experiments, check):
 
 def checks_of(experiments):
     """Return the names of the checks of all pages; laws and functions have tests of their own."""
-    found = {check.__name__ for run in experiments.values() for check in run.page.checks}
+    found = {
+        check.__name__ for run in experiments.values() for check in run.page.checks
+    }
     return found - {"laws_of_motion", "functions"}

@@ -42,7 +42,8 @@ def judged_again(folder, monkeypatch, judgements):
     Args:
         folder: a sound bundle.
         monkeypatch: the fixture of pytest.
-        judgements: module, name and value with which a check fails, and the name of the check.
+        judgements: module, name and value with which a check fails, and the name of the
+            check.
     """
     manifest = bundle.read_manifest(folder)
     experiment = from_bundle(folder, manifest, bundle.read_metrics(folder))

@@ -39,16 +39,24 @@ def script(lesson: str, *left_out: str) -> list[str]:
 def test_it_needs_nothing_of_the_course(lesson):
     code = ast.parse("\n".join(script(lesson)))
     nodes = [*ast.walk(code)]
-    imported = {name.name for n in nodes if isinstance(n, ast.Import) for name in n.names}
+    imported = {
+        name.name for n in nodes if isinstance(n, ast.Import) for name in n.names
+    }
     assert imported <= MODULES
     assert not any(isinstance(node, ast.ImportFrom) for node in nodes)
-    found = {ast.unparse(node) for node in nodes if isinstance(node, ast.Name | ast.Attribute)}
+    found = {
+        ast.unparse(node)
+        for node in nodes
+        if isinstance(node, ast.Name | ast.Attribute)
+    }
     assert not found & {"page", *LESSONS}
     assert {name for name in found if name.startswith("rg.")} <= OF_COURSE
 
 
 # All lessons; each takes a quarter of a minute, so one of them runs by default.
-RUN = [pytest.param(name, marks=[pytest.mark.slow] * (name != "l04")) for name in LESSONS]
+RUN = [
+    pytest.param(name, marks=[pytest.mark.slow] * (name != "l04")) for name in LESSONS
+]
 
 
 @pytest.mark.engine
@@ -57,12 +65,20 @@ def test_pasted_into_an_empty_file_it_prints_what_the_page_shows(lesson, tmp_pat
     between = f"\nprint({json.dumps(NEXT)}, flush=True)\n"
     (tmp_path / "script.py").write_text(between.join(script(lesson, FAILS)))
     done = subprocess.run(
-        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=False,
-        env=OUTSIDE | project.engine_cache_environment() | {"PYTHONPATH": str(project.ROOT)},
-    )  # fmt: skip
+        [sys.executable, "script.py"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=OUTSIDE
+        | project.engine_cache_environment()
+        | {"PYTHONPATH": str(project.ROOT)},
+    )
     assert done.returncode == 0, done.stderr[-3000:]
     page = page_of(lesson, "lecture")
-    executed = nbformat.read(executed_pages().folders[page.docname] / NOTEBOOK, as_version=4)
+    executed = nbformat.read(
+        executed_pages().folders[page.docname] / NOTEBOOK, as_version=4
+    )
     cells = [cell for cell in page.notebook.cells if cell.cell_type == "code"]
     printed = [
         "".join(out.text for out in ran.outputs if out.get("name") == "stdout")

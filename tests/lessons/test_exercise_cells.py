@@ -29,9 +29,13 @@ def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(stub):
     assert "solution" not in empty.metadata.get("tags", [])
     assert "solution" in solution.metadata["tags"]
     assert len(solution.source.splitlines()) - 1 <= 15
-    assert re.search(rf"page\.test\([\w.]+, {name}[,)]", "\n".join(c.source for c in all_cells))
+    assert re.search(
+        rf"page\.test\([\w.]+, {name}[,)]", "\n".join(c.source for c in all_cells)
+    )
     declared = find_page(lesson, page).readings[FUNCTIONS].units
-    assert [*declared] == [stub[1] for stub in STUBS if (stub[0], stub[2]) == (lesson, page)]
+    assert [*declared] == [
+        stub[1] for stub in STUBS if (stub[0], stub[2]) == (lesson, page)
+    ]
 
 
 def test_each_lab_leaves_functions_to_write():

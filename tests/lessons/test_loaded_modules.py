@@ -8,7 +8,9 @@ from robo_genesis.pipeline.pages.sources import Tree, measuring_modules
 from robo_genesis.pipeline.pages.syntax import PACKAGE
 
 
-@pytest.mark.parametrize("page", find_pages(BOOK), ids=lambda page: f"{page.lesson}-{page.page}")
+@pytest.mark.parametrize(
+    "page", find_pages(BOOK), ids=lambda page: f"{page.lesson}-{page.page}"
+)
 def test_whatever_a_page_may_import_is_known_to_its_key(page):
     """Except what only judges a finished run: its functions import what some lessons need."""
     imports = page.code.imports

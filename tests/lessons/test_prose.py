@@ -13,11 +13,15 @@ from robo_genesis.sim.bodies.free_fall import GRAVITY
 LISTS = sorted(Path(__file__).parent.glob("*/prose_numbers.py"))
 
 CONFIGURED = {f"{GRAVITY:g}"} | {
-    f"{value:g}" for path in LISTS for value in runpy.run_path(str(path))["CONFIGURED"].values()
+    f"{value:g}"
+    for path in LISTS
+    for value in runpy.run_path(str(path))["CONFIGURED"].values()
 }
 PAGES = [*sorted(BOOK.glob("*.md")), *sorted(BOOK.glob("[el]*/**/*.md"))]
 DECIMAL = re.compile(r"(?<![\w.])(?:\d*\.\d+(?:e[-+]?\d+)?|\d+e[-+]?\d+)(?!\.\d)", re.I)
-CODE_CELL = re.compile(r"^```\{code-cell\}[^\n]*\n((?:---\n.*?^---\n)?).*?^```", re.S | re.M)
+CODE_CELL = re.compile(
+    r"^```\{code-cell\}[^\n]*\n((?:---\n.*?^---\n)?).*?^```", re.S | re.M
+)
 
 
 def prose(source: str) -> str:
@@ -49,7 +53,10 @@ ROLE = "{measured}`l04/lab G2.overshoot 0.5`"
     [
         ("G2 overshoots by 0.0447 rad, under 9.81 m/s².", {"0.0447"}),
         ("It overshoots by 0.0447rad or so, or by .0447.", {"0.0447", ".0447"}),
-        ("It overshoots by 6e-3 or `0.0448 rad`, or 6.1E+3.", {"6e-3", "0.0448", "6.1E+3"}),
+        (
+            "It overshoots by 6e-3 or `0.0448 rad`, or 6.1E+3.",
+            {"6e-3", "0.0448", "6.1E+3"},
+        ),
         (CELL + ROLE, {"3.67"}),  # an alternative text is prose, code and roles are not
         ("Python 3.11 to 3.13. The fall takes 3.11 s.", {"3.11"}),
         ("Python 3.11 fell by 3.13 m.", {"3.13"}),

@@ -14,8 +14,12 @@ from robo_genesis.pipeline.pages.book import find_pages
 
 
 def test_the_pages_that_measure_are_those_of_the_book():
-    declared = {(page.lesson, page.page) for page in find_pages(BOOK) if page.declares_bundle}
-    assert declared == {(name, page) for name in LESSONS for page in find_lesson(name).pages}
+    declared = {
+        (page.lesson, page.page) for page in find_pages(BOOK) if page.declares_bundle
+    }
+    assert declared == {
+        (name, page) for name in LESSONS for page in find_lesson(name).pages
+    }
 
 
 @pytest.mark.parametrize("name", LESSONS)
@@ -30,7 +34,9 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
     assert lesson.replays
     assert lesson.metrics.keys() >= lesson.spec.CASES.keys()
     marks = getattr(lesson.spec, "CASE_MARKS", {})
-    assert marks.keys() <= {name for page in lesson.pages.values() for name in page.runs}
+    assert marks.keys() <= {
+        name for page in lesson.pages.values() for name in page.runs
+    }
     assert {*marks.values()} <= CASE_CLASSES.keys()
     for (first, second), metric, order, margin in lesson.spec.RELATIONS:
         assert {first, second} <= {*lesson.spec.CASES}
@@ -47,7 +53,9 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
 @pytest.mark.parametrize("name", LESSONS)
 def test_a_specification_is_data(name):
     """Apart from its parameters, a lesson's spec has at most functions that build its constants."""
-    tree = ast.parse((ROOT / "robo_genesis" / "lessons" / name / "spec.py").read_text("utf8"))
+    tree = ast.parse(
+        (ROOT / "robo_genesis" / "lessons" / name / "spec.py").read_text("utf8")
+    )
     calls = (n.func for n in ast.walk(tree) if isinstance(n, ast.Call))
     called = {func.id for func in calls if isinstance(func, ast.Name)}
     for function in (n.name for n in tree.body if isinstance(n, ast.FunctionDef)):
@@ -65,11 +73,17 @@ def test_each_check_has_a_claim():
 
 def test_a_lookup_error_lists_the_choices():
     choices = ", ".join(LESSONS)
-    with pytest.raises(LookupError, match=rf"Lesson 'l00' does not exist\. Choices: {choices}\."):
+    with pytest.raises(
+        LookupError, match=rf"Lesson 'l00' does not exist\. Choices: {choices}\."
+    ):
         find_lesson("l00")
-    with pytest.raises(LookupError, match=r"l04/exam does not measure anything\. Choices: l04/lab"):
+    with pytest.raises(
+        LookupError, match=r"l04/exam does not measure anything\. Choices: l04/lab"
+    ):
         find_page("l04", "exam")
-    with pytest.raises(LookupError, match=r"no replay called 'falls'\. Choices: drops, slides\."):
+    with pytest.raises(
+        LookupError, match=r"no replay called 'falls'\. Choices: drops, slides\."
+    ):
         find_replay("l03", "falls")
 
 
@@ -82,7 +96,9 @@ def test_a_closed_wheel_says_what_to_do(monkeypatch):
 def test_a_lesson_gives_its_modules_and_what_it_offers_when_they_are_used():
     from robo_genesis.lessons import l03, l05
 
-    assert l03.tables.__name__ == "robo_genesis.lessons.l03.tables"  # which has a name `tables`
+    assert (
+        l03.tables.__name__ == "robo_genesis.lessons.l03.tables"
+    )  # which has a name `tables`
     assert l05.kinematics.__name__ == "robo_genesis.sim.arm.kinematics"
     assert l05.ask.__module__ == "robo_genesis.lessons.l05.run"
     with pytest.raises(AttributeError, match=r"l05' has no attribute 'kinematix'"):

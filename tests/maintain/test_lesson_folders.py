@@ -1,8 +1,7 @@
 """A lesson is a folder: one is removed from a copy of the checkout, and one is added to another.
 
-Both books are built as `make book` does it. Pages that the checkout has executed are copied, so
-that a build executes the pages alone whose code changed.
-"""
+Both books are built as `make book` does it. Pages that the checkout has executed are
+copied, so that a build executes the pages alone whose code changed."""
 
 import shutil
 
@@ -19,21 +18,38 @@ from robo_genesis.pipeline.pages.book import find_pages
 pytestmark = pytest.mark.engine
 
 REMOVED, KEPT = ("l03",), "l01"
-UNIT_TESTS = ("core", "evidence", "lessons", "maintain", "sim", "site", "test_imports.py")
+UNIT_TESTS = (
+    "core",
+    "evidence",
+    "lessons",
+    "maintain",
+    "sim",
+    "site",
+    "test_imports.py",
+)
 
 
 def edit(path, change):
-    path.write_text(yaml.safe_dump(change(yaml.safe_load(path.read_text())), sort_keys=False))
+    path.write_text(
+        yaml.safe_dump(change(yaml.safe_load(path.read_text())), sort_keys=False)
+    )
 
 
 def remove(work, lesson):
     """Remove the folders of a lesson and its lines in the two lists of the book."""
-    for place in ("robo_genesis/lessons", "book/lessons", "book/evidence", "tests/lessons"):
+    for place in (
+        "robo_genesis/lessons",
+        "book/lessons",
+        "book/evidence",
+        "tests/lessons",
+    ):
         for folder in (work / place).glob(f"{lesson}*"):
             shutil.rmtree(folder)
 
     def chapters(toc):
-        kept = [c for c in toc["chapters"] if not c["file"].startswith(f"lessons/{lesson}-")]
+        kept = [
+            c for c in toc["chapters"] if not c["file"].startswith(f"lessons/{lesson}-")
+        ]
         return toc | {"chapters": kept}
 
     def entries(rows):
@@ -73,7 +89,9 @@ def test_the_rest_of_the_code_does_without_a_lesson(without):
     import_contracts(work)
     run_in(work, "python", "-m", "ruff", "check", "--no-cache", ".")
     git_needed = "--ignore=tests/maintain/test_new_lesson.py"
-    assert "passed" in unit_tests(work, *(f"tests/{place}" for place in UNIT_TESTS), git_needed)
+    assert "passed" in unit_tests(
+        work, *(f"tests/{place}" for place in UNIT_TESTS), git_needed
+    )
 
 
 @pytest.mark.slow
@@ -103,7 +121,10 @@ def test_a_new_lesson_is_on_the_site_at_once(tmp_path, build_output):
     assert lecture.select_one(".replay")
     assert lecture.select_one(".measured")
     for page in ("lecture", "lab", "mistakes"):
-        assert "L99 CHECK: PASSED" in parsed(site, f"lessons/l99-new-lesson/{page}").get_text()
+        assert (
+            "L99 CHECK: PASSED"
+            in parsed(site, f"lessons/l99-new-lesson/{page}").get_text()
+        )
         assert f"lessons/l99-new-lesson/{page}" in (site / "searchindex.js").read_text()
         assert f"l99/{page}" in parsed(site, "evidence/ledger").get_text()
     taken = {path.name for path in (site / "takeaways" / "l99-lab").iterdir()}

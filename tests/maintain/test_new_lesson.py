@@ -6,7 +6,13 @@ from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
 from tiny_book import contents
 
 from robo_genesis.core.project import BOOK, ProjectError
-from robo_genesis.maintain.new_lesson import OUTCOME, TEMPLATE, add_lesson, with_chapter, with_entry
+from robo_genesis.maintain.new_lesson import (
+    OUTCOME,
+    TEMPLATE,
+    add_lesson,
+    with_chapter,
+    with_entry,
+)
 
 TOC, COURSE_MAP = (BOOK / name for name in ("_toc.yml", "course_map.yml"))
 MAP = COURSE_MAP.read_text() + "- id: L98\n  title: A lesson that is planned\n"
@@ -28,7 +34,15 @@ def test_the_code_is_clean(work):
     places = ("robo_genesis/lessons/l99", "tests/lessons/l99")
     run_in(work, "python", "-m", "ruff", "check", "--no-cache", *places)
     run_in(work, "python", "-m", "ruff", "format", "--no-cache", "--check", *places)
-    run_in(work, "python", "-m", "mypy", "--cache-dir=/dev/null", "-p", "robo_genesis.lessons.l99")
+    run_in(
+        work,
+        "python",
+        "-m",
+        "mypy",
+        "--cache-dir=/dev/null",
+        "-p",
+        "robo_genesis.lessons.l99",
+    )
     import_contracts(work)
     run_in(work, "python", "build_scripts/sizes.py")
 
@@ -37,7 +51,9 @@ def test_its_tests_and_those_of_all_lessons_pass(work):
     own = ("lessons/l99", "lessons/test_registry.py", "lessons/test_prose.py")
     names = (*own, "lessons/test_loaded_modules.py")
     course_map = "tests/site/course/test_course_map.py::" + PUBLISHED
-    assert "passed" in unit_tests(work, *(f"tests/{name}" for name in names), course_map)
+    assert "passed" in unit_tests(
+        work, *(f"tests/{name}" for name in names), course_map
+    )
 
 
 def test_the_template_is_small():
@@ -48,7 +64,11 @@ def test_the_template_is_small():
 @pytest.fixture
 def small(tmp_path):
     """The files that adding a lesson reads and changes."""
-    for place in ("robo_genesis/lessons/l04", "book/lessons/l07-old", "tests/lessons/l08"):
+    for place in (
+        "robo_genesis/lessons/l04",
+        "book/lessons/l07-old",
+        "tests/lessons/l08",
+    ):
         (tmp_path / place).mkdir(parents=True)
     for path in (TOC, COURSE_MAP):
         (tmp_path / "book" / path.name).write_bytes(path.read_bytes())
@@ -74,7 +94,9 @@ def test_a_name_that_cannot_be_used_changes_nothing(small, name, message):
     assert contents(small) == before
 
 
-@pytest.mark.parametrize(("lesson", "before"), [("l00", None), (PLANNED, LAST), ("l99", LAST)])
+@pytest.mark.parametrize(
+    ("lesson", "before"), [("l00", None), (PLANNED, LAST), ("l99", LAST)]
+)
 def test_the_lists_stay_in_order(lesson, before):
     toc = yaml.safe_load(with_chapter(TOC.read_text(), lesson))["chapters"]
     names = [chapter["file"] for chapter in toc]
@@ -85,7 +107,8 @@ def test_the_lists_stay_in_order(lesson, before):
     assert len(names) == len(yaml.safe_load(TOC.read_text())["chapters"]) + 1
 
     rows, before = (
-        {row["id"]: row for row in yaml.safe_load(text)} for text in (with_entry(MAP, lesson), MAP)
+        {row["id"]: row for row in yaml.safe_load(text)}
+        for text in (with_entry(MAP, lesson), MAP)
     )
     name = lesson.upper()
     assert [*rows] == sorted(rows)
@@ -96,10 +119,14 @@ def test_the_lists_stay_in_order(lesson, before):
 
 def test_a_list_in_another_order_without_a_last_line_break_loses_nothing():
     rows = [{"id": name, "title": name} for name in ("L03", "L02")]
-    found = yaml.safe_load(with_entry(yaml.safe_dump(rows, sort_keys=False).rstrip(), "l02"))
+    found = yaml.safe_load(
+        with_entry(yaml.safe_dump(rows, sort_keys=False).rstrip(), "l02")
+    )
     page = {"page": "lessons/l02-new-lesson/lecture", "outcomes": [OUTCOME]}
     assert found == [rows[0], rows[1] | page]
-    assert with_chapter(TOC.read_text().rstrip(), "l99") == with_chapter(TOC.read_text(), "l99")
+    assert with_chapter(TOC.read_text().rstrip(), "l99") == with_chapter(
+        TOC.read_text(), "l99"
+    )
 
 
 def test_a_list_without_lessons_is_refused():

@@ -87,12 +87,16 @@ def root(tmp_path) -> Path:
 
 
 def repin(root: Path, genesis: str, **changes) -> list[str]:
-    return run_repin(genesis, root, root / ".cache", **{"say": lambda line: None} | changes)
+    return run_repin(
+        genesis, root, root / ".cache", **{"say": lambda line: None} | changes
+    )
 
 
 def state(root: Path) -> tuple[str, str, str]:
     """Return pin, lock and everything else that git sees."""
-    texts = [(root / name).read_text() for name in ("pyproject.toml", "requirements.lock")]
+    texts = [
+        (root / name).read_text() for name in ("pyproject.toml", "requirements.lock")
+    ]
     return (*texts, git(root, "status", "--porcelain"))
 
 
@@ -105,11 +109,16 @@ def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root):
     lines = repin(root, f"v{NEW}.0")  # the index spells it NEW
     assert (root / "pyproject.toml").read_text() == PROJECT.format(NEW)
     assert (root / "requirements.lock").read_text() == LOCK.format(NEW) + "zeta==2\n"
-    assert git(root, "status", "--porcelain") == " M pyproject.toml\n M requirements.lock\n"
+    assert (
+        git(root, "status", "--porcelain")
+        == " M pyproject.toml\n M requirements.lock\n"
+    )
     assert f"genesis-world {OLD} → {NEW}" in lines[0]
     assert left(root) == ["lock", "logs"]
     assert not (root / "book" / "_build").exists()
-    text = (root / ".cache" / "reports" / f"repin-{OLD}-{NEW}" / "report.md").read_text()
+    text = (
+        root / ".cache" / "reports" / f"repin-{OLD}-{NEW}" / "report.md"
+    ).read_text()
     for row in (f"| genesis-world | {OLD} | {NEW} |", "| zeta |  | 2 |"):
         assert row in text
     assert f"| Measured: 7{OLD} m. | Measured: 7{NEW} m. |" in text
@@ -127,10 +136,21 @@ def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root):
         ("test", "Error 1", "| zeta |  | 2 |"),
     ],
 )
-def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree(root, stage, why, packages):
-    before, named = state(root), root / ".cache" / "repin" / "work" / "checkout" / "named"
-    with pytest.raises(ProjectError) as caught:  # the build ends when each page was named
-        repin(root, FAILS[stage], say=lambda line: "deeper  refused: " in line and named.touch())
+def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree(
+    root, stage, why, packages
+):
+    before, named = (
+        state(root),
+        root / ".cache" / "repin" / "work" / "checkout" / "named",
+    )
+    with pytest.raises(
+        ProjectError
+    ) as caught:  # the build ends when each page was named
+        repin(
+            root,
+            FAILS[stage],
+            say=lambda line: "deeper  refused: " in line and named.touch(),
+        )
     message = str(caught.value)
     remedy = f"The checkout still pins {OLD}. Give another version, or change what failed so that"
     places = re.findall("^(?:Log|Report): (.*)$", message, re.MULTILINE)
@@ -141,7 +161,9 @@ def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree(root, stage, w
         assert said in text
     assert packages in text
     assert "execute  2 pages" not in text
-    table = re.findall(r"^\| \w.*", text, re.MULTILINE)  # the tests print pages of other books
+    table = re.findall(
+        r"^\| \w.*", text, re.MULTILINE
+    )  # the tests print pages of other books
     found = [line[: len(row)] for line, row in zip(table, ROWS, strict=False)]
     assert (found == ROWS, "CheckFailed" in text) == (stage == "book", stage == "book")
     assert state(root) == before
@@ -156,14 +178,17 @@ def commit_another_lock(root: Path) -> None:
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [
-        (lambda root: (root / "new.txt").touch(),
-         r"1 changed or new files \(new.txt\)\. .*: commit or stash"),
-        (commit_another_lock,
-         r"differs from .*: pip \S+ instead of 0\.1\. Install"),
-        (lambda root: (root / ".git").rename(root.parent / ".git.away"),
-         r"is not a git checkout: .* clone the repository"),
+        (
+            lambda root: (root / "new.txt").touch(),
+            r"1 changed or new files \(new.txt\)\. .*: commit or stash",
+        ),
+        (commit_another_lock, r"differs from .*: pip \S+ instead of 0\.1\. Install"),
+        (
+            lambda root: (root / ".git").rename(root.parent / ".git.away"),
+            r"is not a git checkout: .* clone the repository",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_tried_is_refused_before_anything_runs(root, spoil, says):
     spoil(root)
     with pytest.raises(ProjectError, match=says):
@@ -175,7 +200,9 @@ def test_what_cannot_be_tried_is_refused_before_anything_runs(root, spoil, says)
 def test_two_at_once_are_refused(root):
     with (
         locked(root / ".cache" / "repin" / "lock", "Another"),
-        pytest.raises(ProjectError, match=rf"make repin runs here \(process {os.getpid()}\)"),
+        pytest.raises(
+            ProjectError, match=rf"make repin runs here \(process {os.getpid()}\)"
+        ),
     ):
         repin(root, NEW)
 
@@ -187,18 +214,24 @@ def test_a_pin_that_is_edited_meanwhile_is_kept(root):
         if "] test " in line:
             (root / "pyproject.toml").write_text(mine)
 
-    with pytest.raises(ProjectError, match=r"pyproject\.toml .* changed while .* again"):
+    with pytest.raises(
+        ProjectError, match=r"pyproject\.toml .* changed while .* again"
+    ):
         repin(root, NEW, say=edit_during_the_tests)
     assert (root / "pyproject.toml").read_text() == mine
     assert (root / "requirements.lock").read_text() == LOCK.format(OLD)
 
 
-def test_a_command_gets_no_variable_that_was_meant_for_the_outer_make(tmp_path, monkeypatch):
+def test_a_command_gets_no_variable_that_was_meant_for_the_outer_make(
+    tmp_path, monkeypatch
+):
     meant = {"RELEASE", "BUNDLE", "GENESIS", "PYTHON", "MAKEFLAGS"}
     for name in (*meant, "JOBS"):
         monkeypatch.setenv(name, "given")
     assert run_logged(["env"], tmp_path, tmp_path / "log") == 0
-    found = {line.partition("=")[0] for line in (tmp_path / "log").read_text().splitlines()}
+    found = {
+        line.partition("=")[0] for line in (tmp_path / "log").read_text().splitlines()
+    }
     assert "JOBS" in found
     assert not found & meant
 
@@ -218,9 +251,16 @@ sys.exit(run(lambda: run_repin(sys.argv[2], root, root / ".cache"), "changed"))
 """
 
 
-@pytest.mark.parametrize(("sent", "status"), [(signal.SIGTERM, 130), (signal.SIGKILL, -9)])
-def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(root, sent, status):
-    before, sleeper = state(root), root / ".cache" / "repin" / "work" / "checkout" / "sleeper"
+@pytest.mark.parametrize(
+    ("sent", "status"), [(signal.SIGTERM, 130), (signal.SIGKILL, -9)]
+)
+def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(
+    root, sent, status
+):
+    before, sleeper = (
+        state(root),
+        root / ".cache" / "repin" / "work" / "checkout" / "sleeper",
+    )
     process = subprocess.Popen([sys.executable, "-c", RUN, str(root), HANGS], cwd=ROOT)
     wait(process, sleeper)
     child = psutil.Process(int(sleeper.read_text()))

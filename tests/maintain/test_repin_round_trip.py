@@ -32,7 +32,10 @@ def clone(tmp_path_factory) -> Path:
 
 
 def texts(clone: Path) -> dict[str, bytes]:
-    return {name: (clone / name).read_bytes() for name in ("pyproject.toml", "requirements.lock")}
+    return {
+        name: (clone / name).read_bytes()
+        for name in ("pyproject.toml", "requirements.lock")
+    }
 
 
 def changed(clone: Path) -> list[str]:
@@ -60,7 +63,9 @@ def test_there_and_back(clone):
     make(clone, "repin", f"GENESIS={OTHER}")
     assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
     assert project.engine_pin(clone) == OTHER
-    report = (clone / ".cache/reports" / f"repin-{PIN}-{OTHER}" / "report.md").read_text()
+    report = (
+        clone / ".cache/reports" / f"repin-{PIN}-{OTHER}" / "report.md"
+    ).read_text()
     states = dict(re.findall(r"^\| (l\d+ \w+) \| ([a-z ]+) \|", report, re.MULTILINE))
     measuring = [page for page in find_pages(clone / "book") if page.declares_bundle]
     assert states.keys() == {f"{page.lesson} {page.page}" for page in measuring}

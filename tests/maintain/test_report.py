@@ -10,7 +10,12 @@ from tiny_book import lab, make_book
 
 from robo_genesis.core import project
 from robo_genesis.maintain import report as refresh
-from robo_genesis.maintain.report import EngineBuild, changed_sentences, compare_builds, read_build
+from robo_genesis.maintain.report import (
+    EngineBuild,
+    changed_sentences,
+    compare_builds,
+    read_build,
+)
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.folder import write_page
@@ -33,9 +38,15 @@ def builds(pristine, tmp_path) -> tuple[EngineBuild, EngineBuild]:
 
 def test_equal_metrics_are_reported_as_such(builds):
     found = compare_builds(*builds)
-    assert (found.state, found.packages, found.changed) == ("equal", {"b": ("", "2")}, ())
+    assert (found.state, found.packages, found.changed) == (
+        "equal",
+        {"b": ("", "2")},
+        (),
+    )
     text = refresh.document(found).markdown()
-    head = "# Engine 1.0 → 9.9.9\n\n**Equal; changed packages: 1, changed sentences: 0, "
+    head = (
+        "# Engine 1.0 → 9.9.9\n\n**Equal; changed packages: 1, changed sentences: 0, "
+    )
     assert text.startswith(head)
     assert "| l04 lab | equal | Equal. Rows: " in text
     assert text.count("Nothing was found here") == 2
@@ -53,13 +64,17 @@ def test_a_bundle_that_one_build_lacks_or_that_is_damaged_is_not_comparable(buil
     assert found.missing["l04/lab/cpu"].startswith("digest: ")
 
 
-def test_a_refused_build_has_the_bundles_of_its_executed_pages(builds, courses_pages, tmp_path):
+def test_a_refused_build_has_the_bundles_of_its_executed_pages(
+    builds, courses_pages, tmp_path
+):
     root, left = tmp_path / "root", tmp_path / "left"
     book = make_book(root, lab=lab("cpu"), other=lab("cpu").replace("l04", "l02"))
     (root / "requirements.lock").write_text("a==1\n")
     shutil.copy(project.ROOT / "pyproject.toml", root)
     shutil.copytree(builds[1].bundles["l04/lab/cpu"], left / "cpu")
-    run_id = json.loads((left / "cpu" / "manifest.json").read_text())["predicate"]["run_id"]
+    run_id = json.loads((left / "cpu" / "manifest.json").read_text())["predicate"][
+        "run_id"
+    ]
     [page] = [page for page in find_pages(book) if page.docname == "lab"]
     place = root / ".cache" / "pages" / "lab" / "0123"
     how = {"run_id": run_id, "seconds": 1.0, "cell_seconds": [1.0]}
@@ -68,7 +83,9 @@ def test_a_refused_build_has_the_bundles_of_its_executed_pages(builds, courses_p
     found = read_build(root, pin, tmp_path / "no site")
     assert found.bundles == {"l04/lab/cpu": place / "outputs" / "cpu"}
     assert read_build(root, "9.9.9", tmp_path / "no site").bundles == {}
-    assert read_build(root, pin, tmp_path / "no site", ["lab"]).bundles == {}  # it failed later
+    assert (
+        read_build(root, pin, tmp_path / "no site", ["lab"]).bundles == {}
+    )  # it failed later
     assert compare_builds(builds[0], found).changed == ()
 
 
@@ -94,7 +111,10 @@ def test_a_bundle_that_a_new_pin_makes_stale_is_named_with_both_states(builds):
     new.recorded["l04/amdgpu"] = Status("stale", "amdgpu", "older", None)
     found = compare_builds(old, new)
     assert found.stale == ["l04/amdgpu"]
-    assert "| l04/amdgpu | verified | stale | older |" in refresh.document(found).markdown()
+    assert (
+        "| l04/amdgpu | verified | stale | older |"
+        in refresh.document(found).markdown()
+    )
     old.recorded.update(new.recorded)
     assert compare_builds(old, new).stale == []
 
@@ -117,7 +137,9 @@ def test_recorded_bundles_are_verified_with_the_pin_of_their_own_checkout(copy):
     pin.write_text(pin.read_text().replace(f"=={project.engine_pin()}", "==9.9.9"))
     found = refresh.recorded(copy)["l04/cpu"]
     assert found.state == "stale"
-    assert found.summary.endswith(f"Genesis {project.engine_pin()}; this site uses 9.9.9.")
+    assert found.summary.endswith(
+        f"Genesis {project.engine_pin()}; this site uses 9.9.9."
+    )
 
 
 PAGE = """<nav><p>Menu 1.</p></nav><article>
@@ -135,37 +157,59 @@ counted {line}</pre>
 <script>var n = {source};</script>
 </article>"""
 SAME = {
-    "time": "0.31", "source": "1", "cell": "7.5", "line": "12345678", "date": "2026-11-21",
-    "run": "7c694fce", "digest": "0123456789abcdef" * 4, "version": "1.0",
-}  # fmt: skip
+    "time": "0.31",
+    "source": "1",
+    "cell": "7.5",
+    "line": "12345678",
+    "date": "2026-11-21",
+    "run": "7c694fce",
+    "digest": "0123456789abcdef" * 4,
+    "version": "1.0",
+}
 
 
 @pytest.mark.parametrize(
     ("change", "moved"),
     [
-        ({"source": "2", "run": "12345678", "digest": "f" * 64, "version": "9.9.9"}, []),
+        (
+            {"source": "2", "run": "12345678", "digest": "f" * 64, "version": "9.9.9"},
+            [],
+        ),
         ({"date": "2027-01-02T05:11:12.25Z"}, []),
-        ({"version": "9.9"}, [("Measured with Genesis 1.0.", "Measured with Genesis 9.9.")]),
+        (
+            {"version": "9.9"},
+            [("Measured with Genesis 1.0.", "Measured with Genesis 9.9.")],
+        ),
         ({"time": "0.32"}, [("It rose in 0.31 s.", "It rose in 0.32 s.")]),
         ({"cell": "7.6"}, [("G1 | 7.5 |", "G1 | 7.6 |")]),
         ({"line": "87654321"}, [("counted 12345678", "counted 87654321")]),
         ({"line": "12345678\nmore"}, [("", "more")]),
     ],
-)  # fmt: skip
-def test_a_changed_sentence_is_listed_and_what_all_runs_differ_in_is_not(tmp_path, change, moved):
+)
+def test_a_changed_sentence_is_listed_and_what_all_runs_differ_in_is_not(
+    tmp_path, change, moved
+):
     for name, values in (("old", SAME), ("new", SAME | change)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "lab.html").write_text(PAGE.format_map(values))
-    found = list(changed_sentences(tmp_path / "old", tmp_path / "new", ("1.0", "9.9.9")))
+    found = list(
+        changed_sentences(tmp_path / "old", tmp_path / "new", ("1.0", "9.9.9"))
+    )
     assert found == [("lab", *pair) for pair in moved]
 
 
-def test_a_page_of_one_build_alone_is_listed_and_what_each_build_changes_never(tmp_path):
+def test_a_page_of_one_build_alone_is_listed_and_what_each_build_changes_never(
+    tmp_path,
+):
     assert Path(f"{LEDGER}.html") in refresh.LEFT_OUT
-    assert all((project.BOOK / path.with_suffix(".md")).is_file() for path in refresh.LEFT_OUT)
+    assert all(
+        (project.BOOK / path.with_suffix(".md")).is_file() for path in refresh.LEFT_OUT
+    )
     for name in (*refresh.LEFT_OUT, "more.html"):
         page = tmp_path / "new" / name
         page.parent.mkdir(parents=True, exist_ok=True)
         page.write_text("<p>New.</p>")
-    found = list(changed_sentences(tmp_path / "old", tmp_path / "new", ("1.0", "9.9.9")))
+    found = list(
+        changed_sentences(tmp_path / "old", tmp_path / "new", ("1.0", "9.9.9"))
+    )
     assert found == [("more", "", "New.")]

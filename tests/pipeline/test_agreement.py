@@ -13,7 +13,11 @@ from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.pipeline.agreement import agree
 from robo_genesis.pipeline.pages.folder import RECORD, Record
 
-FILES = {"outputs/cpu/arrays/a.npz": b"a", "outputs/shape.npz": b"s", "outputs/cpu/log.txt": b"1"}
+FILES = {
+    "outputs/cpu/arrays/a.npz": b"a",
+    "outputs/shape.npz": b"s",
+    "outputs/cpu/log.txt": b"1",
+}
 LAB = "lessons/l04-joint-control/lab"
 
 
@@ -24,8 +28,19 @@ def executed(folder, docname, files: dict[str, bytes], run_id, fingerprint="f") 
     for name, content in files.items():
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_bytes(content)
-    of_page = {"docname": docname, "lesson": None, "page": None, "engine": None, "files": {}}
-    of_run = {"fingerprint": fingerprint, "code": "0" * 64, "run_id": run_id, "seconds": 1.0}
+    of_page = {
+        "docname": docname,
+        "lesson": None,
+        "page": None,
+        "engine": None,
+        "files": {},
+    }
+    of_run = {
+        "fingerprint": fingerprint,
+        "code": "0" * 64,
+        "run_id": run_id,
+        "seconds": 1.0,
+    }
     record = Record(**of_page, **of_run, cell_seconds=[])
     (place / RECORD).write_text(record.model_dump_json())
     return place
@@ -45,11 +60,27 @@ def machines(tmp_path):
 @pytest.mark.parametrize(
     ("files", "run", "said"),
     [
-        (FILES | {"outputs/shape.npz": b"t"}, {}, r"1 of 2 archives differ\. .*shape\.npz m"),
-        ({"outputs/shape.npz": b"s"}, {}, r"cpu/arrays/a\.npz must be equal on a processor w"),
+        (
+            FILES | {"outputs/shape.npz": b"t"},
+            {},
+            r"1 of 2 archives differ\. .*shape\.npz m",
+        ),
+        (
+            {"outputs/shape.npz": b"s"},
+            {},
+            r"cpu/arrays/a\.npz must be equal on a processor w",
+        ),
         (FILES | {"outputs/b.npz": b"b"}, {}, r"1 of 3 archives .* outputs/b\.npz"),
-        (FILES, {"run_id": "1" * 32}, "lessons/lab: both are run 11111111, expected two"),
-        (FILES, {"fingerprint": "g"}, "lessons/lab: their fingerprints are f and g, expected"),
+        (
+            FILES,
+            {"run_id": "1" * 32},
+            "lessons/lab: both are run 11111111, expected two",
+        ),
+        (
+            FILES,
+            {"fingerprint": "g"},
+            "lessons/lab: their fingerprints are f and g, expected",
+        ),
         (None, {}, r"lessons/lab is not in .*/second\. Execute it: make"),
     ],
 )
@@ -74,11 +105,15 @@ def test_folders_without_arrays_and_a_page_twice_are_refused(machines, tmp_path)
 def test_make_finds_equal_arrays_at_any_depth_whatever_the_logs_contain(machines):
     first, second = f"FIRST={machines[0]}", f"SECOND={machines[1]}"
     said = make(ROOT, "agree", first, second)
-    assert "Pages with arrays that are equal to the last bit: 1 of 1." in said.splitlines()
+    assert (
+        "Pages with arrays that are equal to the last bit: 1 of 1." in said.splitlines()
+    )
     assert "SECOND='' is not a folder." in make(ROOT, "agree", first, fails=True)
 
 
-other_cpu = both(part("host", cpu="B"), part("backend", device_name="B"), log("[a CPU]", "[B]"))
+other_cpu = both(
+    part("host", cpu="B"), part("backend", device_name="B"), log("[a CPU]", "[B]")
+)
 one_ulp = measured_elsewhere  # in an array of each case
 flipped_check = check(0, passed=False)
 impossible = rewrite("G2", internal_force=lambda force: force + 1)
@@ -97,7 +132,9 @@ def twice(folder, tmp_path):
         other = Path(shutil.copytree(folder, tmp_path / "other" / "cpu"))
         both(one_ulp, *spoilers, seal)(other)
         for name, bundle in (("first", folder), ("second", other)):
-            place = executed(tmp_path / name, LAB, {}, read_manifest(bundle).predicate.run_id)
+            place = executed(
+                tmp_path / name, LAB, {}, read_manifest(bundle).predicate.run_id
+            )
             shutil.copytree(bundle, place / "outputs" / "cpu")
             for shape in bundle.parent.glob("*.npz"):
                 shutil.copy(shape, place / "outputs")
@@ -122,9 +159,15 @@ def test_rounding_on_another_processor_is_accepted_and_the_largest_is_named(twic
     ("spoilers", "said"),
     [
         ([], r"lab: 4 of 4 archives differ\. .*G1\.npz must be equal on a CPU\. "),
-        ([other_cpu, other_shape], r"1 of 5 .* outputs/shape\.npz must be equal on B and a"),
+        (
+            [other_cpu, other_shape],
+            r"1 of 5 .* outputs/shape\.npz must be equal on B and a",
+        ),
         ([other_cpu, impossible], r"lab: motion: .*G2: internal_force"),
-        ([other_cpu, flipped_check], rf"lab: B and a CPU .*{CHECKS[0]}: passed → FAILED"),
+        (
+            [other_cpu, flipped_check],
+            rf"lab: B and a CPU .*{CHECKS[0]}: passed → FAILED",
+        ),
     ],
 )
 def test_any_other_difference_is_refused_by_name(twice, spoilers, said):
@@ -140,5 +183,7 @@ def test_another_processor_must_stay_within_the_tolerances(twice, monkeypatch):
 
 def test_another_backend_is_not_a_second_execution(twice):
     folders = twice(other_cpu, part("backend", actual="cuda", actual_at_end="cuda"))
-    with pytest.raises(ProjectError, match=r"(?s)but they differ more.*backend cpu → cuda"):
+    with pytest.raises(
+        ProjectError, match=r"(?s)but they differ more.*backend cpu → cuda"
+    ):
         agree(*folders, verify=lambda *of: None)

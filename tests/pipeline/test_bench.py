@@ -13,7 +13,10 @@ bench = SimpleNamespace(**runpy.run_path(str(ROOT / "build_scripts" / "bench.py"
 @pytest.mark.parametrize(
     ("pairs", "said"),
     [
-        ([(3, 2), (9, 7), (4, 4)], "1.00, limit 1.5; course 3.00 4.00 9.00 s, bare 2.00 4.00 7"),
+        (
+            [(3, 2), (9, 7), (4, 4)],
+            "1.00, limit 1.5; course 3.00 4.00 9.00 s, bare 2.00 4.00 7",
+        ),
         ([(3, 2), (9, 1), (4, 4)], "2.00, ABOVE its limit 1.5; course "),
     ],
 )
@@ -28,7 +31,9 @@ def test_a_row_has_the_times_of_both_sides_and_the_ratio_of_their_medians(pairs,
         *(("", runs, f"RUNS='{runs}' is not valid") for runs in ("0", "-1", "many")),
     ],
 )
-def test_unknown_rows_and_numbers_that_are_not_positive_are_refused(monkeypatch, rows, runs, said):
+def test_unknown_rows_and_numbers_that_are_not_positive_are_refused(
+    monkeypatch, rows, runs, said
+):
     monkeypatch.setenv("ROWS", rows)
     monkeypatch.setenv("RUNS", runs)
     with pytest.raises((ProjectError, SystemExit), match=said):

@@ -9,7 +9,18 @@ from types import SimpleNamespace
 import psutil
 import pytest
 from loading import ENGINE, JUPYTER, run_watched
-from tiny_book import accept, cell, fails, lab, make_book, notebook, old_site, refuse, start, wait
+from tiny_book import (
+    accept,
+    cell,
+    fails,
+    lab,
+    make_book,
+    notebook,
+    old_site,
+    refuse,
+    start,
+    wait,
+)
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ProjectError
@@ -29,7 +40,10 @@ FORGED_LAB = LAB + cell(FORGED)
 
 
 def build(folder: Path, said: list[str] | None = None, **settings) -> list[str]:
-    settings = {"verify": accept, "say": (said if said is not None else []).append} | settings
+    settings = {
+        "verify": accept,
+        "say": (said if said is not None else []).append,
+    } | settings
     return run_build(Build(book=folder / "book", cache=folder / "cache", **settings))
 
 
@@ -75,17 +89,26 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
 def test_a_build_without_work_repeats_the_last_lines_and_loads_no_heavy_package(built):
     arguments = ("--book", str(built.folder / "book"))
     said, loaded = run_watched("book.py", *arguments, RENDER="1", RELEASE="0")
-    assert said.splitlines() == ["Nothing changed: the site is up to date.", *built.again]
+    assert said.splitlines() == [
+        "Nothing changed: the site is up to date.",
+        *built.again,
+    ]
     assert not loaded & {*ENGINE, *JUPYTER, "numpy"}
 
 
-def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built, monkeypatch):
+def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(
+    built, monkeypatch
+):
     monkeypatch.setattr("robo_genesis.pipeline.stages.unclean", lambda root: [])
     reasons = ["l04 requires evidence"]
-    monkeypatch.setattr("robo_genesis.pipeline.stages.missing_for_release", lambda *given: reasons)
+    monkeypatch.setattr(
+        "robo_genesis.pipeline.stages.missing_for_release", lambda *given: reasons
+    )
     site, said = built.folder / "book/_build/html/index.html", []
     before = site.stat()
-    with pytest.raises(BuildError, match=r"RELEASE=1 cannot be met\.\nl04 requires evidence"):
+    with pytest.raises(
+        BuildError, match=r"RELEASE=1 cannot be met\.\nl04 requires evidence"
+    ):
         build(built.folder, said, release=True)
     assert sum("  executed in " in line for line in said) == 2
     assert site.stat() == before
@@ -94,20 +117,56 @@ def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built
 @pytest.mark.parametrize(
     ("page", "settings", "error", "said"),
     [
-        (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
+        (
+            LAB,
+            {"verify": refuse},
+            BuildError,
+            "lab: the bundle .* is refused: metrics: metrics.js",
+        ),
         (NO_CAMERA, {}, BuildError, "render.mode is skip, expected camera"),
-        (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: number of measured outputs is 1"),
-        ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
-        (LAB, {"executed": Path()}, ProjectError, r"lab is not among them\.\nExecute these pages"),
-        (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
+        (
+            FORGED_LAB,
+            {},
+            BuildError,
+            "shown: lab, code cell 2: number of measured outputs is 1",
+        ),
+        (
+            "# A\n\n<script src='https://example.org/a.js'></script>\n",
+            {},
+            BuildError,
+            "third p",
+        ),
+        (
+            LAB,
+            {"executed": Path()},
+            ProjectError,
+            r"lab is not among them\.\nExecute these pages",
+        ),
+        (
+            LAB,
+            {"release": True},
+            BuildError,
+            r"RELEASE=1 cannot be met\.\n.* 1 changed file",
+        ),
     ],
-    ids=["bundle", "another contract", "output", "site", "missing page", "changed tree"],
+    ids=[
+        "bundle",
+        "another contract",
+        "output",
+        "site",
+        "missing page",
+        "changed tree",
+    ],
 )
-def test_a_refused_build_leaves_the_old_site(tmp_path, monkeypatch, page, settings, error, said):
+def test_a_refused_build_leaves_the_old_site(
+    tmp_path, monkeypatch, page, settings, error, said
+):
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
     stages = "robo_genesis.pipeline.stages"
-    monkeypatch.setattr(f"{stages}.unclean", lambda root: ["The tree has 1 changed file"])
+    monkeypatch.setattr(
+        f"{stages}.unclean", lambda root: ["The tree has 1 changed file"]
+    )
     monkeypatch.setattr(f"{stages}.missing_for_release", lambda *given: [])
     marker = old_site(make_book(tmp_path, lab=page))
     with pytest.raises(error, match=said):
@@ -122,7 +181,11 @@ def test_failed_and_refused_pages_are_named_at_once_and_reported_together(tmp_pa
         said: list[str] = []
         with pytest.raises(BuildError, match=report):
             build(tmp_path, said, verify=refuse, jobs=1)
-        for event in (first, "lab  refused: metrics: metr", r"broken  failed in \d+ s: ZeroDiv"):
+        for event in (
+            first,
+            "lab  refused: metrics: metr",
+            r"broken  failed in \d+ s: ZeroDiv",
+        ):
             assert any(re.search(f"execute  {event}", line) for line in said), event
 
 
@@ -185,20 +248,31 @@ DEAF = "signal.signal(signal.SIGINT, signal.SIG_IGN)"
 @pytest.mark.parametrize(
     ("sent", "to", "status"),
     [
-        (signal.SIGINT, os.killpg, 130),  # as a terminal sends Ctrl-C: to all of its processes
+        (
+            signal.SIGINT,
+            os.killpg,
+            130,
+        ),  # as a terminal sends Ctrl-C: to all of its processes
         (signal.SIGINT, os.kill, 130),
         (signal.SIGTERM, os.kill, 130),
         (signal.SIGKILL, os.kill, -9),
     ],
 )
-def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, to, status):
+def test_an_end_by_signal_leaves_the_old_site_and_no_process(
+    tmp_path, sent, to, status
+):
     pids = {tmp_path / "one.pid": "", tmp_path / "two.pid": DEAF}
-    pages = (notebook(cell(WAITS.format(file=str(f), before=b))) for f, b in pids.items())
+    pages = (
+        notebook(cell(WAITS.format(file=str(f), before=b))) for f, b in pids.items()
+    )
     book = make_book(tmp_path, **dict(zip(("one", "two"), pages, strict=True)))
     marker = old_site(book)
     process = start("book.py", tmp_path, own_group=True, JOBS="2")
     wait(process, *pids)
-    below = {child.pid: child for child in psutil.Process(process.pid).children(recursive=True)}
+    below = {
+        child.pid: child
+        for child in psutil.Process(process.pid).children(recursive=True)
+    }
     kernels = [below[int(path.read_text())] for path in pids]
     scratch = Path(kernels[0].cwd()).parent
     assert scratch.name.startswith("robo-")
@@ -213,7 +287,9 @@ def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, to,
     assert marker.read_text() == "the old site"
 
 
-def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left(tmp_path):
+def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left(
+    tmp_path,
+):
     """The kernel kills with SIGKILL when memory is short. Sphinx waits in a pipe that is a page."""
     text = "# Text\n\n```{literalinclude} pipe\n```\n"
     book = make_book(tmp_path, text=text, page=notebook(cell("1")))
@@ -243,13 +319,28 @@ def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left
     ("settings", "said"),
     [
         ({"RENDER": "yes"}, "RENDER='yes' is not valid. Choices: 0, 1."),
-        ({"SOLUTIONS": "no"}, "'no' is not valid: 0 leaves solutions out. Choices: 0, 1."),
-        ({"ROBO_GENESIS_BACKEND": "auto"}, "records accelerators. Unset it. Choices: cpu."),
+        (
+            {"SOLUTIONS": "no"},
+            "'no' is not valid: 0 leaves solutions out. Choices: 0, 1.",
+        ),
+        (
+            {"ROBO_GENESIS_BACKEND": "auto"},
+            "records accelerators. Unset it. Choices: cpu.",
+        ),
         ({"JOBS": "0"}, "JOBS='0' is not valid. Give a number"),
         ({"RELEASE": "1", "RENDER": "0"}, "RENDER='0' is not valid with RELEASE=1"),
-        ({"RELEASE": "1"}, "is not valid with RELEASE=1, which builds the commit's book."),
-        ({"SECOND": "a"}, "SECOND is valid only with EXECUTED, whose pages it has once more."),
-        ({"SITE_URL": "example.org/course"}, "SITE_URL='example.org/course' is not valid. Give an"),
+        (
+            {"RELEASE": "1"},
+            "is not valid with RELEASE=1, which builds the commit's book.",
+        ),
+        (
+            {"SECOND": "a"},
+            "SECOND is valid only with EXECUTED, whose pages it has once more.",
+        ),
+        (
+            {"SITE_URL": "example.org/course"},
+            "SITE_URL='example.org/course' is not valid. Give an",
+        ),
     ],
 )
 def test_invalid_settings_are_refused_before_any_page(tmp_path, settings, said):
@@ -266,16 +357,24 @@ def test_a_bad_source_is_refused_before_any_page(tmp_path, script):
     assert not (tmp_path / "cache" / "pages").exists()
 
 
-def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monkeypatch):
+def test_another_installed_engine_stops_the_build_before_any_page(
+    tmp_path, monkeypatch
+):
     make_book(tmp_path, page=notebook(cell("1")))
-    monkeypatch.setattr("robo_genesis.core.project.installed_version", lambda name: "0.0.1")
+    monkeypatch.setattr(
+        "robo_genesis.core.project.installed_version", lambda name: "0.0.1"
+    )
     said: list[str] = []
-    with pytest.raises(ProjectError, match=r"Installed is genesis-world 0\.0\.1, the course needs"):
+    with pytest.raises(
+        ProjectError, match=r"Installed is genesis-world 0\.0\.1, the course needs"
+    ):
         build(tmp_path, said)
     assert said == []
 
 
-def test_a_second_build_at_the_same_time_is_refused_with_the_first_one_s_process(tmp_path):
+def test_a_second_build_at_the_same_time_is_refused_with_the_first_one_s_process(
+    tmp_path,
+):
     make_book(tmp_path)
     said = rf"runs here \(process {os.getpid()}\)\. Wait .* `kill {os.getpid()}`"
     with build_lock(tmp_path / "cache"), pytest.raises(ProjectError, match=said):

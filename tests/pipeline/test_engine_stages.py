@@ -1,6 +1,7 @@
 """A page of the course executed alone and beside another, in a clone with caches of its own.
 
-The clone has a small book: the cells of the L04 lab without its prose, and a ball that falls.
+The clone has a small book: the cells of the L04 lab without its prose, and a ball that
+    falls.
 """
 
 import re
@@ -35,7 +36,9 @@ def clone(folder: Path, name: str) -> Path:
     shutil.rmtree(work / "book")
     (work / ".cache").mkdir()
     (work / ".cache" / "npm").symlink_to(npm.packages().parents[1])
-    _, front, body = (BOOK / "lessons/l04-joint-control/lab.md").read_text().split("---\n", 2)
+    _, front, body = (
+        (BOOK / "lessons/l04-joint-control/lab.md").read_text().split("---\n", 2)
+    )
     lab = f"---\n{front}---\n# Lab\n\n" + "\n\n".join(CELLS.findall(body))
     make_book(work, lab=lab, ball=notebook(cell(BALL), title="Ball"))
     return work

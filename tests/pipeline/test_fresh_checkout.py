@@ -59,7 +59,11 @@ def hidden_changes(root, monkeypatch):
     (root / "course.py").write_text("VALUE = 2\n")
     (root / ".git" / "info" / "exclude").write_text("new.md\n")
     left = root / ".cache" / FOLDER / "checkout"  # by a release that failed
-    for path in (root / "new.md", left / "left.md", root / ".cache" / "pages" / "forged"):
+    for path in (
+        root / "new.md",
+        left / "left.md",
+        root / ".cache" / "pages" / "forged",
+    ):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.touch()
 
@@ -107,7 +111,13 @@ def user_settings(root, monkeypatch):
     monkeypatch.setenv("HOME", str(home))
 
 
-SPOILS = [hidden_changes, stale_bytecode, other_repository, replaced_object, user_settings]
+SPOILS = [
+    hidden_changes,
+    stale_bytecode,
+    other_repository,
+    replaced_object,
+    user_settings,
+]
 
 
 @pytest.mark.parametrize("spoil", SPOILS)
@@ -119,7 +129,9 @@ def test_a_release_sees_the_files_of_its_commit_and_no_others(root, monkeypatch,
     assert not (root / ".cache" / FOLDER).exists()
 
 
-def test_a_release_reuses_compiled_kernels_and_gets_only_listed_variables(root, monkeypatch):
+def test_a_release_reuses_compiled_kernels_and_gets_only_listed_variables(
+    root, monkeypatch
+):
     (root / ".cache" / "engine" / "kernels").mkdir(parents=True)
     monkeypatch.setenv("SECRET", "a")
     monkeypatch.setenv("SITE_URL", "https://example.org/")
@@ -146,18 +158,24 @@ def test_a_release_that_fails_leaves_its_checkout_for_the_report(root, monkeypat
 def test_a_changed_tree_is_refused(root, monkeypatch, spoil):
     (root / "page.md").write_text("changed\n")
     spoil(root, monkeypatch)
-    with pytest.raises(ProjectError, match=r"RELEASE=1 cannot be met\.\n.* 1 changed .*page\.md"):
+    with pytest.raises(
+        ProjectError, match=r"RELEASE=1 cannot be met\.\n.* 1 changed .*page\.md"
+    ):
         release([], root / ".cache", root)
 
 
-def test_a_release_of_executed_pages_runs_nothing_and_shows_their_output(tmp_path, monkeypatch):
+def test_a_release_of_executed_pages_runs_nothing_and_shows_their_output(
+    tmp_path, monkeypatch
+):
     """Each run of the page prints another number."""
     root = copy_checkout(tmp_path / "root")
     shutil.rmtree(root / "book")
     book = make_book(root, page=notebook(cell("import uuid\nprint(uuid.uuid4())")))
     commit(root)
     executed, cache = tmp_path / "executed", root / ".cache"
-    run_in(root, "env", "PAGE=page", f"TO={executed}", "python", "build_scripts/execute.py")
+    run_in(
+        root, "env", "PAGE=page", f"TO={executed}", "python", "build_scripts/execute.py"
+    )
     [ran] = executed.rglob("executed.ipynb")
     [said] = json.loads(ran.read_text())["cells"][0]["outputs"][0]["text"]
     (cache / "npm").symlink_to(npm.packages().parents[1])  # which a release fetches

@@ -21,7 +21,9 @@ def checkout(tmp_path) -> Path:
     return root
 
 
-def test_each_lock_has_a_folder_of_its_own_and_is_fetched_once(checkout, tmp_path, monkeypatch):
+def test_each_lock_has_a_folder_of_its_own_and_is_fetched_once(
+    checkout, tmp_path, monkeypatch
+):
     calls = []
     monkeypatch.setattr(npm, "_install", calls.append)
     found = [npm.packages(checkout, tmp_path), npm.packages(checkout, tmp_path)]
@@ -38,7 +40,9 @@ def test_a_lock_that_does_not_fit_is_refused_and_leaves_nothing(checkout, tmp_pa
     with pytest.raises(ProjectError, match="npm ci failed"):
         npm.packages(checkout, tmp_path / "cache")
     assert list((tmp_path / "cache" / "npm").iterdir()) == []
-    assert "resolved" not in (ROOT / "package-lock.json").read_text("utf8")  # no registry
+    assert "resolved" not in (ROOT / "package-lock.json").read_text(
+        "utf8"
+    )  # no registry
 
 
 @pytest.fixture
@@ -52,12 +56,18 @@ def fetched(checkout, monkeypatch):
         (folder / "node_modules" / "a.js").write_bytes(state.content)
 
     monkeypatch.setattr(npm, "_install", install)
-    monkeypatch.setattr(npm, "PUBLISHED", {"a.js": hashlib.sha256(b"locked").hexdigest()})
+    monkeypatch.setattr(
+        npm, "PUBLISHED", {"a.js": hashlib.sha256(b"locked").hexdigest()}
+    )
     return state
 
 
-@pytest.mark.parametrize("spoil", [lambda file: file.write_bytes(b"forged"), Path.unlink])
-def test_a_changed_file_of_the_cache_is_fetched_anew(checkout, tmp_path, fetched, capsys, spoil):
+@pytest.mark.parametrize(
+    "spoil", [lambda file: file.write_bytes(b"forged"), Path.unlink]
+)
+def test_a_changed_file_of_the_cache_is_fetched_anew(
+    checkout, tmp_path, fetched, capsys, spoil
+):
     cache = tmp_path / "cache"
     assert npm.published("a.js", checkout, cache) == b"locked"
     assert capsys.readouterr().out == ""
@@ -70,6 +80,8 @@ def test_a_changed_file_of_the_cache_is_fetched_anew(checkout, tmp_path, fetched
 
 def test_a_fetched_file_without_its_digest_is_refused(checkout, tmp_path, fetched):
     fetched.content = b"of another version"
-    with pytest.raises(ProjectError, match=r"a\.js has the digest .* write its digest into"):
+    with pytest.raises(
+        ProjectError, match=r"a\.js has the digest .* write its digest into"
+    ):
         npm.published("a.js", checkout, tmp_path / "cache")
     assert fetched.fetches == 2

@@ -38,7 +38,9 @@ def recorded_at(folder: Path, commit: str | None, dirty: bool = False) -> None:
 
 def missing(book: Path, built: dict[str, Path | None], root: Path) -> list[str]:
     manifests = {f"{name}/lab": read_manifest(at) for name, at in built.items() if at}
-    return missing_for_release(book, built, manifests, git(root, "rev-parse", "HEAD").strip())
+    return missing_for_release(
+        book, built, manifests, git(root, "rev-parse", "HEAD").strip()
+    )
 
 
 @pytest.fixture
@@ -49,7 +51,9 @@ def book(tmp_path, courses_pages) -> Path:
 def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, book):
     assert unclean(checkout) == []
     assert missing(book, built, checkout) == []
-    git(checkout, "config", "status.showUntrackedFiles", "no")  # whatever the user's git shows
+    git(
+        checkout, "config", "status.showUntrackedFiles", "no"
+    )  # whatever the user's git shows
     (checkout / "new.md").write_text("New.\n")
     assert "new.md" in unclean(checkout)[0]
 
@@ -58,11 +62,21 @@ def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, boo
     ("hardware", "has_lab", "said"),
     [
         ("cpu", False, "l04 has no lab in the table of contents"),
-        ("cpu", True, "l04 requires evidence of its minimum hardware, cpu, which is stale: "),
-        ("amdgpu", True, "l04 requires evidence of its minimum hardware, amdgpu, which is missing"),
+        (
+            "cpu",
+            True,
+            "l04 requires evidence of its minimum hardware, cpu, which is stale: ",
+        ),
+        (
+            "amdgpu",
+            True,
+            "l04 requires evidence of its minimum hardware, amdgpu, which is missing",
+        ),
     ],
 )
-def test_lacking_evidence_is_named(checkout, built, book, monkeypatch, hardware, has_lab, said):
+def test_lacking_evidence_is_named(
+    checkout, built, book, monkeypatch, hardware, has_lab, said
+):
     monkeypatch.setattr(l04, "MINIMUM_HARDWARE", hardware)
     if hardware == "cpu":
         spoil_stale(built["l04"])
@@ -78,14 +92,18 @@ def test_lacking_evidence_is_named(checkout, built, book, monkeypatch, hardware,
         (None, False, "recorded outside a git checkout"),
     ],
 )
-def test_evidence_of_another_state_of_the_tree_is_named(checkout, built, book, commit, dirty, said):
+def test_evidence_of_another_state_of_the_tree_is_named(
+    checkout, built, book, commit, dirty, said
+):
     recorded_at(built["l04"], commit, dirty)
     [line] = missing(book, built, checkout)
     assert line.startswith("l04/lab, this build: ")
     assert said in line
 
 
-def test_of_recordings_only_those_of_a_changed_tree_stop_a_release(checkout, built, book):
+def test_of_recordings_only_those_of_a_changed_tree_stop_a_release(
+    checkout, built, book
+):
     recorded = shutil.copytree(built["l04"], book / "evidence" / "l04" / "cpu")
     recorded_at(recorded, "1" * 40)
     assert missing(book, built, checkout) == []

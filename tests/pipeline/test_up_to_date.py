@@ -46,7 +46,11 @@ def digest(root: Path, **more: str) -> str:
 
 
 def files(root: Path) -> list[Path]:
-    return [p for p in root.rglob("*") if p.is_file() and ".git" not in p.relative_to(root).parts]
+    return [
+        p
+        for p in root.rglob("*")
+        if p.is_file() and ".git" not in p.relative_to(root).parts
+    ]
 
 
 def test_the_same_inputs_have_the_same_digest_whatever_their_times(root):
@@ -77,12 +81,20 @@ def test_each_file_that_is_edited_or_removed_is_work(root):
 INSTALLED, UPGRADED = (f"../packages/genesis-{n}.dist-info" for n in (1, 2))
 CHANGES: dict[str, Callable[[Path], None]] = {
     "a new page": lambda root: (root / "book" / "new.md").write_text(""),
-    "a new file that git ignores": lambda root: (root / "book" / "new.tmp").write_text(""),
+    "a new file that git ignores": lambda root: (root / "book" / "new.tmp").write_text(
+        ""
+    ),
     "a new module": lambda root: (root / "robo_genesis" / "new.py").write_text(""),
-    "an edit committed": lambda root: git(root, "commit", "--allow-empty", "-m", "second"),
-    "another version of a package": lambda root: (root / INSTALLED).rename(root / UPGRADED),
+    "an edit committed": lambda root: git(
+        root, "commit", "--allow-empty", "-m", "second"
+    ),
+    "another version of a package": lambda root: (root / INSTALLED).rename(
+        root / UPGRADED
+    ),
     "a package installed again": lambda root: os.utime(root / INSTALLED, (1, 1)),
-    "a file behind a link": lambda root: (root.parent / "elsewhere" / "new.json").touch(),
+    "a file behind a link": lambda root: (
+        root.parent / "elsewhere" / "new.json"
+    ).touch(),
     "no history": lambda root: shutil.rmtree(root / ".git"),
 }
 
@@ -97,11 +109,15 @@ def test_each_other_change_is_work(root, change):
 def test_links_without_end_are_refused(root):
     for name in ("one", "two"):
         (root / "book" / "evidence" / name).symlink_to("..")
-    with pytest.raises(ProjectError, match=r"/(one|two) links to a folder that contains it"):
+    with pytest.raises(
+        ProjectError, match=r"/(one|two) links to a folder that contains it"
+    ):
         digest(root)
 
 
-def test_each_variable_that_decides_the_site_and_another_python_is_work(root, monkeypatch):
+def test_each_variable_that_decides_the_site_and_another_python_is_work(
+    root, monkeypatch
+):
     names = [*up_to_date.VARIABLES, "ROBO_GENESIS_RENDER", "QD_ARCH"]
     found = {digest(root), *(digest(root, **{name: "0"}) for name in names)}
     monkeypatch.setattr(sys, "executable", "/another/python")
@@ -111,7 +127,12 @@ def test_each_variable_that_decides_the_site_and_another_python_is_work(root, mo
 @pytest.fixture
 def published(tmp_path) -> Path:
     folder = tmp_path / "_build"
-    for name in ("html/index.html", "html/_static/a.css", "evidence/l04/cpu/log.txt", "pages/a"):
+    for name in (
+        "html/index.html",
+        "html/_static/a.css",
+        "evidence/l04/cpu/log.txt",
+        "pages/a",
+    ):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(name)
     up_to_date.record(folder, "inputs", "inputs", ["the last lines"])
@@ -129,10 +150,14 @@ def test_a_site_stands_as_long_as_inputs_and_site_are_what_they_were(published):
         ("html/index.html", Path.unlink),
         ("evidence/l04/cpu/log.txt", lambda path: path.write_text("new")),
         ("pages/a", lambda path: path.with_name("new").touch()),
-        *((up_to_date.RECORD, lambda path, text=text: path.write_text(text))
-          for text in ("", "[]", "{}", '{"inputs": "inputs"}')),
+        *(
+            (up_to_date.RECORD, lambda path, text=text: path.write_text(text))
+            for text in ("", "[]", "{}", '{"inputs": "inputs"}')
+        ),
     ],
-)  # fmt: skip
-def test_each_change_of_the_site_and_a_record_that_cannot_be_read_is_work(published, name, change):
+)
+def test_each_change_of_the_site_and_a_record_that_cannot_be_read_is_work(
+    published, name, change
+):
     change(published / name)
     assert up_to_date.recorded_lines(published, "inputs") == []

@@ -40,9 +40,14 @@ class arange_sum(int):
         return self
 """
 TOLD = {
-    "version": "2.13.0+rocm7.1", "hip": "7.1.2", "cuda": None, "count": 1, "codes": ["gfx942"],
-    "kernel": "", "numbers": None,
-}  # fmt: skip
+    "version": "2.13.0+rocm7.1",
+    "hip": "7.1.2",
+    "cuda": None,
+    "count": 1,
+    "codes": ["gfx942"],
+    "kernel": "",
+    "numbers": None,
+}
 CUDA = {"version": "2.13.0+cu130", "hip": None, "cuda": "13.0"}
 CPU = {"version": "2.13.0+cpu", "hip": None, "count": 0}
 LLD = "opt/rocm/llvm/bin/ld.lld"
@@ -54,7 +59,11 @@ class Synthetic:
 
     def __init__(self, root: Path):
         self.root, self.closed = root, ()
-        self.environ = {"PATH": "", "PYTHONPATH": str(root), "LD_LIBRARY_PATH": str(root / "lib")}
+        self.environ = {
+            "PATH": "",
+            "PYTHONPATH": str(root),
+            "LD_LIBRARY_PATH": str(root / "lib"),
+        }
         for path in ("dev/kfd", "dev/dri/renderD128", LLD):
             self.write(path, "")
         self.write("sys/module/amdgpu/version", "6.16\n")
@@ -81,8 +90,14 @@ class Synthetic:
         self.write(f"sys/class/kfd/kfd/topology/nodes/{node}/properties", text)
 
     def loaded(self, *files: str) -> None:
-        lines = [f"7f00-7f01 r-xp 00000000 08:01 {n} {file}\n" for n, file in enumerate(files)]
-        self.write("proc/self/maps", "".join(["7f00-7f01 rw-p 00000000 00:00 0 \n", *lines * 2]))
+        lines = [
+            f"7f00-7f01 r-xp 00000000 08:01 {n} {file}\n"
+            for n, file in enumerate(files)
+        ]
+        self.write(
+            "proc/self/maps",
+            "".join(["7f00-7f01 rw-p 00000000 00:00 0 \n", *lines * 2]),
+        )
 
     def removed(self, *paths: str) -> None:
         for path in paths:
@@ -94,11 +109,17 @@ class Synthetic:
     def close(self, *names: str) -> None:
         self.closed = names
 
-    def probe(self, expected: str | None = "amdgpu") -> tuple[str, dict[str, str], dict[str, str]]:
+    def probe(
+        self, expected: str | None = "amdgpu"
+    ) -> tuple[str, dict[str, str], dict[str, str]]:
         """Return the backend that is found, and state and words by step."""
         with patch("os.access", lambda path, mode: Path(path).name not in self.closed):
             backend, steps = probe(ProbedMachine(self.environ, self.root), expected)
-        return backend, {s.step: s.state for s in steps}, {s.step: s.found for s in steps}
+        return (
+            backend,
+            {s.step: s.state for s in steps},
+            {s.step: s.found for s in steps},
+        )
 
 
 def loadable() -> Path:
@@ -139,35 +160,111 @@ RAISES = "raise RuntimeError('HIP error: out of memory\\nmore')"
 @pytest.mark.parametrize(
     ("change", "given", "step", "state", "words"),
     [
-        (M.removed, ["dev/kfd", "dev/dri/renderD128"], "devices", "broken",
-         "/dev/kfd and /dev/dri/renderD* missing, expected both. Load the driver"),
-        (M.close, ["kfd"], "devices", "broken", "open renderD128, expected kfd and a renderD"),
+        (
+            M.removed,
+            ["dev/kfd", "dev/dri/renderD128"],
+            "devices",
+            "broken",
+            "/dev/kfd and /dev/dri/renderD* missing, expected both. Load the driver",
+        ),
+        (
+            M.close,
+            ["kfd"],
+            "devices",
+            "broken",
+            "open renderD128, expected kfd and a renderD",
+        ),
         (M.close, ["renderD128"], "devices", "broken", "usermod -aG render,video"),
-        (M.removed, ["sys/module/amdgpu/version"], "driver", "ok", "amdgpu of the kernel "),
+        (
+            M.removed,
+            ["sys/module/amdgpu/version"],
+            "driver",
+            "ok",
+            "amdgpu of the kernel ",
+        ),
         (M.card, [0], "card", "broken", "names no card"),
         (M.card, [90010], "card", "ok", "gfx90a"),
         (M.card, [120001], "card", "ok", "gfx1201"),
-        (M.removed, [LLD], "linker", "broken", "in llvm/bin of ROCM_PATH (unset) or /opt/rocm"),
+        (
+            M.removed,
+            [LLD],
+            "linker",
+            "broken",
+            "in llvm/bin of ROCM_PATH (unset) or /opt/rocm",
+        ),
         (M.variables, ["1", "ROCR"], "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
         (M.variables, ["1", "HIP"], "visibility", "warning", "set it alone"),
         (M.variables, ["0", *EVERY], "visibility", "warning", "set it alone"),
         (M.variables, ["", "HIP"], "visibility", "broken", "is set and empty"),
-        (M.variables, ["1", *EVERY], "visibility", "broken", "in all three hides the card"),
-        (M.told, CUDA, "torch", "broken", "built for CUDA 13.0, expected a build for amdgpu"),
-        (M.told, {"count": 0}, "device", "broken", "Torch finds no device, expected one."),
-        (M.told, {"codes": ["gfx1100"]}, "device_code", "warning",
-         "for gfx1100, expected gfx942. Install Torch with it: torch[device-gfx942]"),
-        (M.told, {"codes": [], "kernel": RAISES}, "device_code", "broken", "no card, expected"),
-        (M.loaded, [OWN, OTHER], "hip_runtime", "warning",
-         f"2 are loaded: {OWN}, {OTHER}; expected Torch's. Link {RUNTIME} in a folder to {OWN}"),
-        (M.removed, [f"lib/{RUNTIME}"], "hip_runtime", "broken", "opens, cannot be loaded"),
-        (M.told, {"kernel": RAISES}, "kernel", "broken",
-         "an answer: RuntimeError: HIP error: out of memory. Repair that environment"),
-        (M.told, {"kernel": "os.kill(os.getpid(), 11)"}, "kernel", "broken", "killed by SIGSEGV"),
+        (
+            M.variables,
+            ["1", *EVERY],
+            "visibility",
+            "broken",
+            "in all three hides the card",
+        ),
+        (
+            M.told,
+            CUDA,
+            "torch",
+            "broken",
+            "built for CUDA 13.0, expected a build for amdgpu",
+        ),
+        (
+            M.told,
+            {"count": 0},
+            "device",
+            "broken",
+            "Torch finds no device, expected one.",
+        ),
+        (
+            M.told,
+            {"codes": ["gfx1100"]},
+            "device_code",
+            "warning",
+            "for gfx1100, expected gfx942. Install Torch with it: torch[device-gfx942]",
+        ),
+        (
+            M.told,
+            {"codes": [], "kernel": RAISES},
+            "device_code",
+            "broken",
+            "no card, expected",
+        ),
+        (
+            M.loaded,
+            [OWN, OTHER],
+            "hip_runtime",
+            "warning",
+            f"2 are loaded: {OWN}, {OTHER}; expected Torch's. Link {RUNTIME} in a folder to {OWN}",
+        ),
+        (
+            M.removed,
+            [f"lib/{RUNTIME}"],
+            "hip_runtime",
+            "broken",
+            "opens, cannot be loaded",
+        ),
+        (
+            M.told,
+            {"kernel": RAISES},
+            "kernel",
+            "broken",
+            "an answer: RuntimeError: HIP error: out of memory. Repair that environment",
+        ),
+        (
+            M.told,
+            {"kernel": "os.kill(os.getpid(), 11)"},
+            "kernel",
+            "broken",
+            "killed by SIGSEGV",
+        ),
         (M.told, {"numbers": [1, 2, 3]}, "kernel", "broken", "is 14, expected 140"),
     ],
-)  # fmt: skip
-def test_one_thing_that_is_wrong_is_named_with_the_fix(machine, change, given, step, state, words):
+)
+def test_one_thing_that_is_wrong_is_named_with_the_fix(
+    machine, change, given, step, state, words
+):
     change(machine, **given) if isinstance(given, dict) else change(machine, *given)
     _, states, found = machine.probe()
     assert words in found[step]
@@ -179,9 +276,15 @@ def test_one_thing_that_is_wrong_is_named_with_the_fix(machine, change, given, s
 
 
 def test_ld_lld_is_looked_for_where_the_compiler_looks(machine):
-    places = [machine.write(f"{folder}/{LLD[9:]}", "") for folder in ("mine", "opt/rocm-6.0.0")]
+    places = [
+        machine.write(f"{folder}/{LLD[9:]}", "")
+        for folder in ("mine", "opt/rocm-6.0.0")
+    ]
     on_path = machine.write("bin/ld.lld", "")
-    machine.environ |= {"ROCM_PATH": str(machine.root / "mine"), "PATH": str(on_path.parent)}
+    machine.environ |= {
+        "ROCM_PATH": str(machine.root / "mine"),
+        "PATH": str(on_path.parent),
+    }
     for place in (places[0], machine.root / LLD, places[1], on_path):
         assert machine.probe()[2]["linker"] == str(place)
         place.unlink()
@@ -189,9 +292,14 @@ def test_ld_lld_is_looked_for_where_the_compiler_looks(machine):
 
 @pytest.mark.parametrize(
     ("expected", "loaded", "state", "driver"),
-    [(None, True, "ok", "nvidia 580.1"), ("cuda", False, "warning", "modprobe nvidia.")],
+    [
+        (None, True, "ok", "nvidia 580.1"),
+        ("cuda", False, "warning", "modprobe nvidia."),
+    ],
 )
-def test_a_cuda_machine_is_fine_with_a_named_driver(machine, expected, loaded, state, driver):
+def test_a_cuda_machine_is_fine_with_a_named_driver(
+    machine, expected, loaded, state, driver
+):
     machine.told(**CUDA)
     if loaded:
         machine.write("sys/module/nvidia/version", "580.1\n")
@@ -200,16 +308,22 @@ def test_a_cuda_machine_is_fine_with_a_named_driver(machine, expected, loaded, s
     assert states == {"driver": state, "torch": "ok", "device": "ok", "kernel": "ok"}
     assert found["driver"].endswith(driver)
     assert (found["torch"], found["device"]) == (
-        "2.13.0+cu130, built for CUDA 13.0", "a card, device 0 of 1",
-    )  # fmt: skip
+        "2.13.0+cu130, built for CUDA 13.0",
+        "a card, device 0 of 1",
+    )
 
 
-@pytest.mark.parametrize(("expected", "wanted"), [("cuda", "cuda"), (None, "amdgpu or cuda")])
+@pytest.mark.parametrize(
+    ("expected", "wanted"), [("cuda", "cuda"), (None, "amdgpu or cuda")]
+)
 def test_a_torch_for_the_cpu_alone_is_named(machine, expected, wanted):
     machine.told(**CPU)
     backend, states, found = machine.probe(expected)
     assert (backend, states["torch"]) == ("cpu", "broken")
-    assert f"built for the CPU alone, expected a build for {wanted}. Name" in found["torch"]
+    assert (
+        f"built for the CPU alone, expected a build for {wanted}. Name"
+        in found["torch"]
+    )
 
 
 @pytest.mark.parametrize(
@@ -217,11 +331,16 @@ def test_a_torch_for_the_cpu_alone_is_named(machine, expected, wanted):
     [
         ("raise ImportError('libamdhip64.so')", "ImportError: libamdhip64.so"),
         ("import os; os._exit(3)", "status 3"),
-        ("import os, sys; sys.stderr.write('a\\nb\\n'); sys.stderr.flush(); os._exit(1)", "r: b."),
+        (
+            "import os, sys; sys.stderr.write('a\\nb\\n'); sys.stderr.flush(); os._exit(1)",
+            "r: b.",
+        ),
         ("import time; print('hangs', flush=True); time.sleep(60)", "no answer in 1 s"),
     ],
 )
-def test_a_torch_that_does_not_answer_is_named_with_the_fix(machine, monkeypatch, torch, said):
+def test_a_torch_that_does_not_answer_is_named_with_the_fix(
+    machine, monkeypatch, torch, said
+):
     monkeypatch.setattr(accelerator, "PROBE_SECONDS", 1)
     machine.write("torch.py", torch)
     backend, states, found = machine.probe()
@@ -233,5 +352,7 @@ def test_a_torch_that_does_not_answer_is_named_with_the_fix(machine, monkeypatch
 
 def test_the_probe_loads_neither_engine_nor_course(machine):
     modules = ["genesis", "quadrants", "robo_genesis", "numpy"]
-    machine.told(kernel=f"import sys; assert not {{*sys.modules}} & set({modules}), 'loaded'")
+    machine.told(
+        kernel=f"import sys; assert not {{*sys.modules}} & set({modules}), 'loaded'"
+    )
     assert machine.probe()[1]["kernel"] == "ok"

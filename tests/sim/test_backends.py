@@ -15,7 +15,9 @@ def agrees(actual, arch, device, build, torch="2.13.0"):
     hip, cuda = build
     reported = {"torch_version": torch, "torch_device": device}
     reported |= {"hip_version": hip, "cuda_version": cuda}
-    return not any(contradictions(SimpleNamespace(actual=actual, arch=arch, **reported)))
+    return not any(
+        contradictions(SimpleNamespace(actual=actual, arch=arch, **reported))
+    )
 
 
 def test_one_backend_throughout_is_accepted_and_nothing_else():
@@ -34,7 +36,11 @@ def test_one_backend_throughout_is_accepted_and_nothing_else():
     [
         ("2.6.0+rocm6.4.1.git1ded221d", "6.4.43483-a187df25c", True),
         ("2.9.1+rocm7.2.1", "7.2.53211-e1a6bc5663", True),
-        ("2.13.0+rocm10.0.0", "7.14.60850", True),  # HIP has a version of its own since ROCm 7
+        (
+            "2.13.0+rocm10.0.0",
+            "7.14.60850",
+            True,
+        ),  # HIP has a version of its own since ROCm 7
         ("2.10.0a0+rocmsdk20251118", "7.2.0", True),
         ("2.13.0+rocm6.4", "6.3.42131", False),
         ("2.13.0+rocm7.1", "7.2.0", False),

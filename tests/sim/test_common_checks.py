@@ -17,7 +17,9 @@ def problems(findings):
 def test_the_times_of_every_run_are_judged(experiment):
     """A page of L04 has runs beside the four that its lab compares."""
     longer = replace(experiment.cases["G1"], steps=2 * experiment.cases["G1"].steps)
-    page = replace(experiment.page, runs={**experiment.page.runs, "longer": Run(longer, False)})
+    page = replace(
+        experiment.page, runs={**experiment.page.runs, "longer": Run(longer, False)}
+    )
     traces = {**experiment.traces, "longer": experiment.traces["G1"]}
     run = replace(experiment, page=page, traces=traces)
     assert problems(common_checks.stamps(run)) == ["longer.steps"]
@@ -37,8 +39,12 @@ def test_the_times_of_every_run_are_judged(experiment):
         (("view",), ("view",), False, ["frames"]),
     ],
 )
-def test_frames_are_both_ends_and_the_declared_views(experiment, names, declared, rendered, found):
-    pictures = {name: experiment.frames.get(name, experiment.frames["final"]) for name in names}
+def test_frames_are_both_ends_and_the_declared_views(
+    experiment, names, declared, rendered, found
+):
+    pictures = {
+        name: experiment.frames.get(name, experiment.frames["final"]) for name in names
+    }
     page = replace(experiment.page, frames=("initial", "final", *declared))
     run = replace(experiment, page=page, frames=pictures, rendered=rendered)
     assert problems(common_checks.posture(run)) == found

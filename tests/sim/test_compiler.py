@@ -71,7 +71,9 @@ class Searched(ModuleType):
         raise AttributeError(name)
 
 
-def test_a_declaration_s_caller_is_found_without_a_search_of_modules(spared, tmp_path, monkeypatch):
+def test_a_declaration_s_caller_is_found_without_a_search_of_modules(
+    spared, tmp_path, monkeypatch
+):
     """A module asks as the engine's compiler does where a kernel is declared."""
     monkeypatch.setitem(sys.modules, "searched", Searched("searched"))
     monkeypatch.syspath_prepend(tmp_path)
@@ -92,7 +94,9 @@ def test_a_declaration_s_caller_is_found_without_a_search_of_modules(spared, tmp
 )
 def test_a_line_is_wrapped_once_for_each_setting(spared, settings, expected):
     for _ in range(3):
-        found = textwrap.TextWrapper(**settings).wrap("\tplace of the hand and the fingers")
+        found = textwrap.TextWrapper(**settings).wrap(
+            "\tplace of the hand and the fingers"
+        )
         assert found == expected
         found.append("changed by the caller")
     assert spared["wrap"] == 1
@@ -113,10 +117,15 @@ def test_a_wrapper_of_another_class_is_left_alone(spared):
     assert Shouted().wrap("place of the hand") == ["PLACE OF THE HAND"]
 
 
-def test_the_source_of_a_function_is_searched_once_and_that_of_anything_else_each_time(spared):
+def test_the_source_of_a_function_is_searched_once_and_that_of_anything_else_each_time(
+    spared,
+):
     for _ in range(2):
         source, line = inspect.getsourcelines(textwrap.dedent)
-        assert (source[0], line) == ("def dedent(text):\n", textwrap.dedent.__code__.co_firstlineno)
+        assert (source[0], line) == (
+            "def dedent(text):\n",
+            textwrap.dedent.__code__.co_firstlineno,
+        )
         source.clear()
         assert inspect.getsource(Searched).startswith("class Searched")
     assert spared["lines"] == 3
@@ -134,9 +143,13 @@ def test_a_function_whose_code_was_replaced_is_read_again(spared):
     assert "return 2" in inspect.getsource(first)
 
 
-def test_equal_surfaces_are_covered_once_for_each_size_of_the_cubes_and_others_anew(spared):
+def test_equal_surfaces_are_covered_once_for_each_size_of_the_cubes_and_others_anew(
+    spared,
+):
     boxes = [creation.box((0.2, 0.1, width)) for width in (0.1, 0.1, 0.3)]
-    found = [box.voxelized(pitch=pitch).matrix for box in boxes for pitch in (0.02, 0.05)]
+    found = [
+        box.voxelized(pitch=pitch).matrix for box in boxes for pitch in (0.02, 0.05)
+    ]
     assert spared["covered"] == 4
     assert np.array_equal(found[0], found[2])
     assert np.array_equal(found[1], found[3])
@@ -157,9 +170,13 @@ def calls(depth):
     return calls(depth - 1) if depth else traceback.extract_stack()
 
 
-@pytest.mark.parametrize(("asks", "short"), [("a_page", False), ("quadrants.lang.util", True)])
+@pytest.mark.parametrize(
+    ("asks", "short"), [("a_page", False), ("quadrants.lang.util", True)]
+)
 def test_the_engine_alone_gets_the_last_calls_only(spared, monkeypatch, asks, short):
     monkeypatch.setitem(globals(), "__name__", asks)
     found = calls(20)
-    assert {(call.name, call.lineno) for call in found[-FRAMES:]} == {("calls", found[-1].lineno)}
+    assert {(call.name, call.lineno) for call in found[-FRAMES:]} == {
+        ("calls", found[-1].lineno)
+    }
     assert (len(found) == FRAMES) == short

@@ -20,7 +20,9 @@ def log():
 
 
 def test_the_log_drops_marks_and_keeps_everything_else_in_order(log):
-    log.logger.info("Adding ~<RigidEntity>~ for ~~~<panda.xml>~~~, ~~~~<%s>~~~~ ~ 2 > 1", "twice")
+    log.logger.info(
+        "Adding ~<RigidEntity>~ for ~~~<panda.xml>~~~, ~~~~<%s>~~~~ ~ 2 > 1", "twice"
+    )
     for level, text in (("warning", "b"), ("debug", "c"), ("error", "d")):
         getattr(log.logger, level)(text)
     assert log.kept.warnings == ["b", "d"]

@@ -15,11 +15,17 @@ def test_it_prints_with_the_changed_environment():
     ("code", "message"),
     [
         ("", "exit status 0, expected 0 or 2 and some output"),
-        ("print('begun'); nothing", r"status 1, expected 0 or 2 (.|\n)*begun\n(.|\n)*NameError"),
+        (
+            "print('begun'); nothing",
+            r"status 1, expected 0 or 2 (.|\n)*begun\n(.|\n)*NameError",
+        ),
     ],
 )
 def test_another_status_or_no_output_is_an_error_with_the_last_lines(code, message):
-    assert run_python(["-c", "print('broken'); raise SystemExit(2)"], {}, (0, 2)) == "broken\n"
+    assert (
+        run_python(["-c", "print('broken'); raise SystemExit(2)"], {}, (0, 2))
+        == "broken\n"
+    )
     with pytest.raises(StartError, match=message):
         run_python(["-c", code], {}, (0, 2))
 
@@ -27,7 +33,9 @@ def test_another_status_or_no_output_is_an_error_with_the_last_lines(code, messa
 def test_a_process_that_hangs_is_an_error(monkeypatch):
     monkeypatch.setattr(fresh_process, "TIMEOUT", 1)
     hanging = "import time; print('waits', flush=True); time.sleep(60)"
-    with pytest.raises(StartError, match=r"not ended after 1 s and was killed[^:]*:\nwaits"):
+    with pytest.raises(
+        StartError, match=r"not ended after 1 s and was killed[^:]*:\nwaits"
+    ):
         run_python(["-c", hanging], {})
 
 

@@ -35,7 +35,10 @@ def codes(breaches):
         (rules.copied(RUN, {"same": falling(1.0)}, ()), ["second-engine"]),
         (apart("a", "x", np.array([1.0, np.nan]), np.zeros(()), 2.0), ["a"]),
         (apart("a", "x", np.array([1.0, 2.0]), np.zeros(()), np.array([1.0, 2.0])), []),
-        (apart("a", "x", np.array([1.0, 2.1]), np.zeros(()), np.array([1.0, 2.0])), ["a"]),
+        (
+            apart("a", "x", np.array([1.0, 2.1]), np.zeros(()), np.array([1.0, 2.0])),
+            ["a"],
+        ),
         (apart("a", "x", np.zeros((0, 3)), np.zeros(()), 0.0), []),
     ],
 )
@@ -46,7 +49,9 @@ def test_a_breach_has_the_code_of_its_rule(breaches, found):
 def test_a_check_names_the_first_law_that_a_run_breaks_and_the_entry_farthest_off():
     rows = np.array([[0.0, 0.2], [0.5, 0.0]])
     (wrong,) = kept("G1", apart("law", "effort [N·m]", rows, np.zeros(()), 0.1))
-    assert wrong.problem == "G1: effort [N·m] at index [1, 0] is 0.5, expected 0.0 ± 0.1"
+    assert (
+        wrong.problem == "G1: effort [N·m] at index [1, 0] is 0.5, expected 0.0 ± 0.1"
+    )
     assert (wrong.code, wrong.passed, wrong.recorded) == ("law", False, False)
     (right,) = kept("G1", apart("law", "effort [N·m]", rows, np.zeros(()), 0.5))
     assert right.passed

@@ -14,22 +14,41 @@ import pytest
 from robo_genesis.core import project
 from robo_genesis.sim import session
 from robo_genesis.sim.engine_log import EngineLog
-from robo_genesis.sim.session import Backend, Contract, EngineError, read_contract, start
+from robo_genesis.sim.session import (
+    Backend,
+    Contract,
+    EngineError,
+    read_contract,
+    start,
+)
 
-BACKEND, RENDER, OUTPUTS = (f"ROBO_GENESIS_{name}" for name in ("BACKEND", "RENDER", "OUTPUTS_DIR"))
+BACKEND, RENDER, OUTPUTS = (
+    f"ROBO_GENESIS_{name}" for name in ("BACKEND", "RENDER", "OUTPUTS_DIR")
+)
 
 
 @pytest.mark.parametrize(
     ("environ", "backend", "render", "folder"),
     [
         ({}, "cpu", True, "outputs"),
-        ({BACKEND: "auto", RENDER: "0", OUTPUTS: "deep/outputs"}, "auto", False, "deep/outputs"),
+        (
+            {BACKEND: "auto", RENDER: "0", OUTPUTS: "deep/outputs"},
+            "auto",
+            False,
+            "deep/outputs",
+        ),
     ],
 )
-def test_the_environment_has_the_contract(tmp_path, monkeypatch, environ, backend, render, folder):
+def test_the_environment_has_the_contract(
+    tmp_path, monkeypatch, environ, backend, render, folder
+):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(session.os, "environ", environ)
-    assert read_contract() == read_contract(environ) == Contract(backend, render, tmp_path / folder)
+    assert (
+        read_contract()
+        == read_contract(environ)
+        == Contract(backend, render, tmp_path / folder)
+    )
     assert list((tmp_path / folder).iterdir()) == []
 
 
@@ -56,7 +75,9 @@ def test_a_value_that_is_not_valid_is_refused(tmp_path, monkeypatch, environ, me
 def test_a_start_without_the_engine_names_what_installs_it(tmp_path, monkeypatch):
     monkeypatch.setattr(session.ctypes, "CDLL", Mock())
     monkeypatch.setitem(sys.modules, "genesis", None)  # as if it were not installed
-    with pytest.raises(EngineError, match=r"Genesis cannot be imported: .* requirements\.lock"):
+    with pytest.raises(
+        EngineError, match=r"Genesis cannot be imported: .* requirements\.lock"
+    ):
         start(Contract("cpu", True, tmp_path))
 
 
@@ -72,7 +93,15 @@ class FakeEngine(SimpleNamespace):
 
     cpu, gpu, __version__, _initialized = "cpu", "gpu", "1.3.3", False
 
-    def init(self, *, backend, seed, precision="32", use_deterministic_algorithms=False, **log):
+    def init(
+        self,
+        *,
+        backend,
+        seed,
+        precision="32",
+        use_deterministic_algorithms=False,
+        **log,
+    ):
         self._initialized, self.SEED = True, seed
         self.backend = SimpleNamespace(name=backend)
         self.np_float = {"32": np.float32, "64": np.float64}[precision]
@@ -83,21 +112,29 @@ class FakeEngine(SimpleNamespace):
 
 @pytest.fixture
 def fake_engine(monkeypatch):
-    for name in [name for name in os.environ if name.startswith(project.ENGINE_PREFIXES)]:
+    for name in [
+        name for name in os.environ if name.startswith(project.ENGINE_PREFIXES)
+    ]:
         monkeypatch.delenv(name)
     engine = FakeEngine()
     found = Backend("cpu", "cpu", "x64", "cpu", "2.13.0", None, None, "a CPU")
     monkeypatch.setattr(session, "import_engine", lambda: engine)
-    monkeypatch.setitem(sys.modules, "genesis", SimpleNamespace(__file__="/packages/genesis/x"))
+    monkeypatch.setitem(
+        sys.modules, "genesis", SimpleNamespace(__file__="/packages/genesis/x")
+    )
     monkeypatch.setitem(sys.modules, "quadrants", SimpleNamespace(__version__=(1, 2)))
-    monkeypatch.setattr(session, "probe", lambda requested: replace(found, requested=requested))
+    monkeypatch.setattr(
+        session, "probe", lambda requested: replace(found, requested=requested)
+    )
     monkeypatch.setitem(sys.modules, "genesis.styles", SimpleNamespace())
     for kept in ("handlers", "filters"):
         monkeypatch.setattr(logging.getLogger("genesis"), kept, [])
     return engine
 
 
-def test_a_start_keeps_the_log_and_the_user_s_switches(fake_engine, tmp_path, monkeypatch):
+def test_a_start_keeps_the_log_and_the_user_s_switches(
+    fake_engine, tmp_path, monkeypatch
+):
     monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
     monkeypatch.setenv("QD_ENABLE_PYBUF", "1")  # as the import of the real engine does
     engine = start(Contract("cpu", True, tmp_path))
@@ -112,14 +149,28 @@ KEPT = {"logging_level": "info"}
 @pytest.mark.parametrize(
     ("asked", "given", "message"),
     [
-        (True, VALID | KEPT | {"seed": None}, "'seed': None.*valid is .*'seed': 0.*Restart the"),
-        (True, VALID | KEPT | {"precision": "64"}, "'precision': '64'.*valid is .*: '32'"),
-        (True, VALID | KEPT | {"use_deterministic_algorithms": False}, "algorithms': False"),
+        (
+            True,
+            VALID | KEPT | {"seed": None},
+            "'seed': None.*valid is .*'seed': 0.*Restart the",
+        ),
+        (
+            True,
+            VALID | KEPT | {"precision": "64"},
+            "'precision': '64'.*valid is .*: '32'",
+        ),
+        (
+            True,
+            VALID | KEPT | {"use_deterministic_algorithms": False},
+            "algorithms': False",
+        ),
         (True, VALID, r"its log was not kept. Restart the kernel .*\*\*rg.PLAIN_LOG"),
         (False, VALID | KEPT, "its log was not kept"),
     ],
 )
-def test_an_engine_with_other_arguments_is_refused(fake_engine, tmp_path, asked, given, message):
+def test_an_engine_with_other_arguments_is_refused(
+    fake_engine, tmp_path, asked, given, message
+):
     contract = Contract("cpu", True, tmp_path)
     backend = session.requested_backend(contract) if asked else "cpu"
     fake_engine.init(backend=backend, **given)
@@ -136,10 +187,17 @@ def test_a_second_attempt_to_start_keeps_one_log(fake_engine, tmp_path):
 
 @pytest.mark.parametrize(
     ("where", "name"),
-    [("on ~~<[A [fast] CPU]>~~ with backend ~~<gs.cpu>~~. Memory: 8 GB.", "A [fast] CPU"),
-     ("somewhere.", "as the engine finds it")],
-)  # fmt: skip
-def test_the_device_has_the_name_in_the_log_or_is_asked_for(fake_engine, tmp_path, where, name):
+    [
+        (
+            "on ~~<[A [fast] CPU]>~~ with backend ~~<gs.cpu>~~. Memory: 8 GB.",
+            "A [fast] CPU",
+        ),
+        ("somewhere.", "as the engine finds it"),
+    ],
+)
+def test_the_device_has_the_name_in_the_log_or_is_asked_for(
+    fake_engine, tmp_path, where, name
+):
     asked = SimpleNamespace(get_device=lambda backend: (None, "as the engine finds it"))
     session.requested_backend(Contract("cpu", True, tmp_path))
     logging.getLogger("genesis").warning(f"Running {where}")
@@ -173,7 +231,9 @@ def test_a_disagreement_names_the_remedy_or_the_known_backends(change, message):
 
 
 @pytest.mark.parametrize(("newer", "name"), [(True, "raw"), (False, "dumb")])
-def test_the_theme_without_colours_has_the_name_that_the_engine_gives_it(monkeypatch, newer, name):
+def test_the_theme_without_colours_has_the_name_that_the_engine_gives_it(
+    monkeypatch, newer, name
+):
     styles = SimpleNamespace(**({"THEME": object} if newer else {}))
     monkeypatch.setitem(sys.modules, "genesis.styles", styles)
     assert session.plain_theme() == name

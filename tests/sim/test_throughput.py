@@ -23,12 +23,23 @@ def test_scenes_are_timed_in_turn_after_their_warm_up():
     calls = {name: (lambda n=name: made.append(n), lambda: None) for name in "ab"}
     used = [0, 2, 2, 8, 8, 18, 18, 20, 20, 24, 24, 26]
     unused = 2 * [0]  # begin and end of a warm-up
-    ticks = iter([t for pair in zip(used[::2], used[1::2], strict=True) for t in (*unused, *pair)])
+    ticks = iter(
+        [
+            t
+            for pair in zip(used[::2], used[1::2], strict=True)
+            for t in (*unused, *pair)
+        ]
+    )
     found = throughput.in_turn(calls, 1, 2, 3, ticks.__next__)
     assert "".join(made) == 3 * "aaabbb"
     assert found == {
-        "step_a": 2, "fastest_a": 1, "slowest_a": 5, "step_b": 1, "fastest_b": 1, "slowest_b": 3,
-    }  # fmt: skip
+        "step_a": 2,
+        "fastest_a": 1,
+        "slowest_a": 5,
+        "step_b": 1,
+        "fastest_b": 1,
+        "slowest_b": 3,
+    }
 
 
 def test_each_repeat_has_an_order_of_its_own():
@@ -54,6 +65,8 @@ def test_a_fit_finds_the_model_that_made_the_times_and_minimises_relative_errors
     assert (found.fixed, found.each) == pytest.approx((model.fixed, model.each))
     sizes, times = np.array([1, 1, 1000]), np.array([0.9, 1.1, 1000])
     found = throughput.fit(sizes, times)
-    near = [throughput.Model(found.fixed * k, found.each * (1.01 / k)) for k in (1, 1.01)]
+    near = [
+        throughput.Model(found.fixed * k, found.each * (1.01 / k)) for k in (1, 1.01)
+    ]
     errors = [((m.step_time(sizes) / times - 1) ** 2).sum() for m in (found, *near)]
     assert errors[0] < min(errors[1:])

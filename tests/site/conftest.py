@@ -18,7 +18,9 @@ def built(tmp_path, monkeypatch):
 
     def tell(outputs):
         (tmp_path / "told").mkdir()
-        for name, value in BuiltPages(outputs=outputs).write(tmp_path / "told/pages").items():
+        for name, value in (
+            BuiltPages(outputs=outputs).write(tmp_path / "told/pages").items()
+        ):
             monkeypatch.setenv(name, value)
 
     return tell
@@ -56,15 +58,16 @@ def browser_3d():
 def open_block(browser_3d, tmp_path):
     """Return a function that opens the block of a directive alone, from disk, in some window.
 
-    The errors of the page's scripts are its `problems`, and there may be none at the end; what it
-    asks for is its `asked`.
-    """
+    The errors of the page's scripts are its `problems`, and there may be none at the
+    end; what it asks for is its `asked`."""
     opened = []
 
     def open_it(block, of=browser_3d, **window):
         page = of.new_page(**{"viewport": {"width": 480, "height": 700}} | window)
         page.problems, page.asked = errors(page), []
-        page.on("request", lambda request: page.asked.append(request.url.rpartition("/")[2]))
+        page.on(
+            "request", lambda request: page.asked.append(request.url.rpartition("/")[2])
+        )
         page.goto(page_of(block, tmp_path).as_uri())
         page.locator(".panel").first.wait_for()
         opened.append(page)

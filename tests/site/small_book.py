@@ -24,7 +24,12 @@ MAP = [
     {"id": "L01", "title": "One"},
     {"id": "L02", "title": "Two", "needs": []},
     {"id": "L04", "title": "Four", "needs": ["L01", "L02"], **PUBLISHED},
-    {"id": "L06", "title": "Six", "page": "lessons/l06-six/lecture", "outcomes": ["walk"]},
+    {
+        "id": "L06",
+        "title": "Six",
+        "page": "lessons/l06-six/lecture",
+        "outcomes": ["walk"],
+    },
 ]
 CARDS = "```{course-map}\n```\n"
 FEATURED = paragraphs(
@@ -82,7 +87,9 @@ def draft_of(book: Path, folder: Path, results: list[PageResult]) -> Draft:
 def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Path:
     """Render a book whose executed pages took these times, pack the site and return its folder."""
     store, pages = folder / "store", find_pages(book)
-    results = [as_executed(page, store / page.docname, seconds[page.docname]) for page in pages]
+    results = [
+        as_executed(page, store / page.docname, seconds[page.docname]) for page in pages
+    ]
     draft = draft_of(book, folder, results)
     pack(draft.html)
     return draft.html
@@ -93,9 +100,19 @@ def render_small_book(folder: Path) -> Path:
     for name in ("l02-two", "l06-six"):
         (folder / "book" / "lessons" / name).mkdir(parents=True)
     (folder / "book" / "lessons" / "l06-six" / "worksheet.md").touch()
-    pages = {"page": "Page", "lessons/l02-two/lecture": "Two", "cards": f"Map\n\n{CARDS}"}
-    pages |= {"featured": f"Map\n\n{FEATURED}", "lessons/l06-six/lecture": f"Six\n\n{WORDS}"}
-    pages |= {f"lessons/l06-six/{name}": f"Six\n\n{WORDS}" for name in ("lab", "deeper", "more")}
+    pages = {
+        "page": "Page",
+        "lessons/l02-two/lecture": "Two",
+        "cards": f"Map\n\n{CARDS}",
+    }
+    pages |= {
+        "featured": f"Map\n\n{FEATURED}",
+        "lessons/l06-six/lecture": f"Six\n\n{WORDS}",
+    }
+    pages |= {
+        f"lessons/l06-six/{name}": f"Six\n\n{WORDS}"
+        for name in ("lab", "deeper", "more")
+    }
     pages |= {"times": "Times\n\n```{cell-times}\n```\n"}
     texts = {name: f"# {text}\n\nText.\n" for name, text in pages.items()}
     texts |= {"glossary": GLOSSARY, "terms": TERMS, "described": DESCRIBED}

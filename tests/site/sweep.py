@@ -7,10 +7,12 @@ from typing import Any
 from playwright.sync_api import Browser, Page
 from watching import SCRIPTS, call, drawn, foreign, settle, violations, watch
 
-# Largest first visit before the reader asks for the viewer [bytes, compressed]. A page contains its
-# drawings.
+# Largest first visit before the reader asks for the viewer [bytes, compressed]. A page
+# contains its drawings.
 BUDGET = 490_000
-MEASURE = 40  # Longest line of running text, in letter heights; one holds about two letters
+MEASURE = (
+    40  # Longest line of running text, in letter heights; one holds about two letters
+)
 MIDDLE_ROWS = "tr:nth-child(n+11):nth-last-child(n+11)"
 """Neither gone through by Tab nor looked at by axe-core: a table shows with the ten rows at either
 end how it takes the focus, and what its cells are like."""
@@ -18,17 +20,32 @@ STILL = 0.01  # Largest cumulative layout shift; browsers call up to 0.1 good
 AXE = {
     "runOnly": {
         "type": "tag",
-        "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"],
+        "values": [
+            "wcag2a",
+            "wcag2aa",
+            "wcag21a",
+            "wcag21aa",
+            "wcag22aa",
+            "best-practice",
+        ],
     },
     "rules": {"target-size": {"enabled": True}},  # WCAG 2.2 AA, and off by default
-    "preload": False,  # what it fetches again cannot be fetched from disk, and no rule needs it
+    # what it fetches again cannot be fetched from disk, and no rule needs it
+    "preload": False,
     "resultTypes": ["violations"],
 }
 COLOURS = AXE | {"runOnly": ["color-contrast", "link-in-text-block"]}
 SHAPES = AXE | {"runOnly": ["scrollable-region-focusable", "target-size"]}
 
 IN_EVERY_COLOUR = ("axe", "foreign hosts", "images", "messages", "motion", "theme")
-IN_EVERY_SHAPE = ("focus", "layout shift", "lines", "scroll boxes", "tab order", "width")
+IN_EVERY_SHAPE = (
+    "focus",
+    "layout shift",
+    "lines",
+    "scroll boxes",
+    "tab order",
+    "width",
+)
 SERVED = ("blocking scripts", "weight")
 """Of what comes from disk, the browser tells neither compressed size nor blocking."""
 RULES = (*IN_EVERY_COLOUR, *IN_EVERY_SHAPE, *SERVED)
@@ -60,17 +77,21 @@ class Kind:
 WIDTHS = (768, 1280, 1920, 3840)
 ON_DISK = (*IN_EVERY_COLOUR, *IN_EVERY_SHAPE)
 KINDS = {
-    "light": Kind(RULES, "light", (1280, 800), 1280, {1280: AXE}, WIDTHS, large_text=True),
-    "phone": Kind(ON_DISK, "dark", (390, 700), 320, {320: SHAPES, 1280: COLOURS}, (390, 320)),
+    "light": Kind(
+        RULES, "light", (1280, 800), 1280, {1280: AXE}, WIDTHS, large_text=True
+    ),
+    "phone": Kind(
+        ON_DISK, "dark", (390, 700), 320, {320: SHAPES, 1280: COLOURS}, (390, 320)
+    ),
 }
 """The phone reads from disk, in the dark. Shape does not depend on the scheme, so the desktop looks
 at it at widths that the phone does not have. Nothing in an article is hidden on the phone alone, so
 axe-core looks there only at what depends on the shape. Colours hardly do, so the dark ones are
 looked at where the phone's page has been made as wide as a desktop."""
 
-# Pages on which axe-core looks for everything with closed folds and with large text, too (it skips
-# what a closed fold hides). On the desktop, these alone are gone through by Tab: all pages have the
-# same menus.
+# Pages on which axe-core looks for everything with closed folds and with large text,
+# too (it skips what a closed fold hides). On the desktop, these alone are gone through
+# by Tab: all pages have the same menus.
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
 
 
@@ -86,7 +107,10 @@ class Visit:
         self.wrong: dict[str, list[str]] = {rule: [] for rule in kind.rules}
         size = dict(zip(("width", "height"), kind.size, strict=True))
         page = browser.new_page(viewport=size, color_scheme=kind.scheme)
-        self.wrong["messages"], self.wrong["foreign hosts"] = watch(page), foreign(page, base)
+        self.wrong["messages"], self.wrong["foreign hosts"] = (
+            watch(page),
+            foreign(page, base),
+        )
         page.add_init_script(path=SCRIPTS / "watch_shifts.js")
         page.goto(f"{base}/{name}")
         if "?q=" in name:
@@ -103,7 +127,9 @@ class Visit:
 
     def note(self, rule: str, complaints: Iterable[str], state: str = "") -> None:
         if rule in self.wrong:
-            self.wrong[rule] += [f"{state}: {text}" if state else text for text in complaints]
+            self.wrong[rule] += [
+                f"{state}: {text}" if state else text for text in complaints
+            ]
 
     def _resize(self, page: Page, width: int) -> None:
         page.set_viewport_size({"width": width, "height": self.kind.size[1]})
@@ -119,8 +145,13 @@ class Visit:
         weights = {entry["name"]: entry["bytes"] for entry in loaded}
         self.note("weight", [str(weights)] if sum(weights.values()) > BUDGET else [])
         blocking = [entry["name"] for entry in loaded if entry["blocking"]]
-        self.note("blocking scripts", [file for file in blocking if not file.endswith(".css")])
-        self.note("blocking scripts", [] if blocking else ["not even a style sheet: is it told?"])
+        self.note(
+            "blocking scripts", [file for file in blocking if not file.endswith(".css")]
+        )
+        self.note(
+            "blocking scripts",
+            [] if blocking else ["not even a style sheet: is it told?"],
+        )
         if "layout shift" in self.wrong:
             call(page, "read")
             shifts = page.evaluate("allShifts()")
@@ -149,8 +180,12 @@ class Visit:
             page.evaluate("document.documentElement.style.fontSize = '100%'")
 
     def _with_open_folds(self, page: Page) -> None:
-        page.evaluate("document.querySelectorAll('details').forEach(fold => { fold.open = true; })")
-        for _ in range(5):  # on a busy machine the browser tells the page late that a box has grown
+        page.evaluate(
+            "document.querySelectorAll('details').forEach(fold => { fold.open = true; })"
+        )
+        for _ in range(
+            5
+        ):  # on a busy machine the browser tells the page late that a box has grown
             settle(page)
             if not (unmarked := call(page, "scroll_boxes")):
                 break
@@ -159,10 +194,16 @@ class Visit:
             page.set_viewport_size({"width": width, "height": self.kind.size[1]})
             drawn(page)
             layout = call(page, "layout", MEASURE)
-            self.note("width", ["wider than the window"] if layout["wide"] else [], f"{width} px")
+            self.note(
+                "width",
+                ["wider than the window"] if layout["wide"] else [],
+                f"{width} px",
+            )
             self.note("width", layout["out"], f"{width} px")
             self.note("lines", layout["long"], f"{width} px")
-        page.eval_on_selector_all(MIDDLE_ROWS, "rows => rows.forEach(row => row.remove())")
+        page.eval_on_selector_all(
+            MIDDLE_ROWS, "rows => rows.forEach(row => row.remove())"
+        )
         for width, options in self.kind.axe.items():
             self._resize(page, width)
             self.note("axe", violations(page, **options), f"{width} px")
@@ -181,7 +222,9 @@ def focus_complaints(page: Page) -> list[str]:
     stops = page.evaluate("stops")
     page.evaluate("document.activeElement.blur()")
     page.evaluate("scrollTo({ top: 0, behavior: 'instant' })")
-    complaints = [stop["what"] for stop in stops if not (stop["outlined"] and stop["seen"])]
+    complaints = [
+        stop["what"] for stop in stops if not (stop["outlined"] and stop["seen"])
+    ]
     if len(stops) < 5 or "Skip to main content" not in stops[0]["what"]:
         complaints.append(f"begins with {stops[:1]}, and has {len(stops)} stops")
     return complaints

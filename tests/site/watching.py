@@ -7,7 +7,9 @@ from playwright.sync_api import Page, Request
 
 from robo_genesis.pipeline import npm
 
-SCRIPTS = Path(__file__).with_name("scripts")  # Functions that tests call in a page, a file each
+SCRIPTS = Path(__file__).with_name(
+    "scripts"
+)  # Functions that tests call in a page, a file each
 
 RUN_AXE = """([part, options]) => axe.run(part, options).then(({ violations, passes }) => [
   violations.flatMap(rule => rule.nodes.map(node => `${rule.id}: ${node.target.join(" ")}`)),
@@ -43,11 +45,16 @@ def watch(page: Page) -> list[str]:
     found = errors(page)
 
     def note(request: Request) -> None:
-        if request.failure != "net::ERR_ABORTED":  # as a request of the page that was left is
+        if (
+            request.failure != "net::ERR_ABORTED"
+        ):  # as a request of the page that was left is
             found.append(f"failed: {request.url}, {request.failure}")
 
     page.on("requestfailed", note)
-    page.on("response", lambda r: found.append(f"{r.status}: {r.url}") if r.status >= 400 else None)
+    page.on(
+        "response",
+        lambda r: found.append(f"{r.status}: {r.url}") if r.status >= 400 else None,
+    )
     return found
 
 
@@ -88,7 +95,9 @@ def violations(page: Page, part: str = "html", **options: Any) -> list[str]:
 
 def readout(page: Page, block: str, values: str = "dd") -> dict[str, str]:
     """Return the terms and values that a block shows."""
-    terms, found = (page.locator(f"{block} {tag}").all_inner_texts() for tag in ("dt", values))
+    terms, found = (
+        page.locator(f"{block} {tag}").all_inner_texts() for tag in ("dt", values)
+    )
     return dict(zip(terms, found, strict=True))
 
 

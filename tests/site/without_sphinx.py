@@ -68,7 +68,9 @@ def page_of(block: nodes.Node, folder: Path) -> Path:
 
 def box(link, size=0.2, rgb=(200, 80, 0), at=(0, 0, 0)) -> Part:
     """A cube as the shape of a link; its width and the place of its middle are in [m]."""
-    mesh = trimesh.creation.box((size, size, size), trimesh.transformations.translation_matrix(at))
+    mesh = trimesh.creation.box(
+        (size, size, size), trimesh.transformations.translation_matrix(at)
+    )
     return Part(link, rgb, mesh.vertices.astype(np.float32), mesh.faces)
 
 

@@ -35,7 +35,9 @@ def fall(run: Callable[..., Any], scene: Any, sphere: Any) -> Iterator[Finding]:
     """Check `run(scene, sphere, steps)`: the last height [m] after a reset, twice and shorter."""
     case = spec.BASELINE
     for name, steps in (("first", case.steps), ("again", case.steps), ("shorter", 5)):
-        expected = case.height - float(summed_drop(case.h, steps * case.substeps, case.gravity))
+        expected = case.height - float(
+            summed_drop(case.h, steps * case.substeps, case.gravity)
+        )
         found = float(run(scene, sphere, steps))
         yield within(f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE)
         now = float(to_numpy(sphere.get_pos())[2])

@@ -23,9 +23,12 @@ DOCTOR, TIMES = "doctor", "times"
 
 # Parts of a start, and their words in a figure.
 PARTS = {
-    "import": "import", "init": "gs.init", "scene": "scene, entities", "build": "scene.build",
+    "import": "import",
+    "init": "gs.init",
+    "scene": "scene, entities",
+    "build": "scene.build",
     "first_step": "first step",
-}  # fmt: skip
+}
 
 # A process that finds no compiled kernels, and one that finds those of the first.
 STARTS = ("first", "second")
@@ -34,7 +37,9 @@ TIMED = [f"{start}_{part}" for start in STARTS for part in PARTS]
 # No machine of today makes a step in less than 0.1 ms.
 READINGS = {
     DOCTOR: counts(STEPS),
-    TIMES: Readings(dict.fromkeys(TIMED, "s"), "performance", dict.fromkeys(TIMED, (1e-4, 600.0))),
+    TIMES: Readings(
+        dict.fromkeys(TIMED, "s"), "performance", dict.fromkeys(TIMED, (1e-4, 600.0))
+    ),
 }
 
 SCRIPT = f"""\
@@ -93,8 +98,12 @@ def measure_starts() -> dict[str, float]:
     """
     found: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder:
-        changed = project.engine_cache_environment(cache=Path(folder)) | {project.BACKEND: "cpu"}
+        changed = project.engine_cache_environment(cache=Path(folder)) | {
+            project.BACKEND: "cpu"
+        }
         for start in STARTS:
             times = last_value(run_python(["-c", SCRIPT], changed))
-            found |= {f"{start}_{part}": t for part, t in zip(PARTS, times, strict=True)}
+            found |= {
+                f"{start}_{part}": t for part, t in zip(PARTS, times, strict=True)
+            }
     return found

@@ -15,12 +15,16 @@ class FallMetrics(CaseMetrics):
 
     duration: float = metric("s", "duration", "t_s")
     final_height: float = metric("m", "height at the end", "link_pos_m")
-    asked_height: float = metric("m", f"height after {ASKED_STEPS} outer steps", "link_pos_m")
+    asked_height: float = metric(
+        "m", f"height after {ASKED_STEPS} outer steps", "link_pos_m"
+    )
     drop: float = metric("m", "distance fallen", "link_pos_m")
     formula_error: float = metric(
         "m", "largest distance from the computed height", "link_pos_m", "t_s"
     )
-    school_gap: float = metric("m", "additional fall beyond g t² / 2", "link_pos_m", "t_s")
+    school_gap: float = metric(
+        "m", "additional fall beyond g t² / 2", "link_pos_m", "t_s"
+    )
 
 
 def fall_metrics(trace: BodyTrace, case: Drop) -> FallMetrics:

@@ -14,7 +14,11 @@ MEASURES = False
 
 def height(run: Experiment) -> Figure:
     """Draw the measured heights on the computed ones, and the height on the ground."""
-    (figure, ax), case, trace = plotting.axes(3.2), run.cases["baseline"], run.traces["baseline"]
+    (figure, ax), case, trace = (
+        plotting.axes(3.2),
+        run.cases["baseline"],
+        run.traces["baseline"],
+    )
     solver_steps = [case.substeps * k for k in range(trace.steps + 1)]
     computed = case.height - summed_drop(case.h, solver_steps, case.gravity)
     ax.plot(trace.t, computed, label="computed beforehand", **look("target"))

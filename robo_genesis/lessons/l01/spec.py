@@ -1,6 +1,7 @@
 """Specification of lesson L01: a sphere that falls, and what a start of the engine needs.
 
-The module is data and computes nothing. `parameters()` has the values that decide what runs.
+The module is data and computes nothing. `parameters()` has the values that decide what
+runs.
 """
 
 from typing import Any
@@ -25,7 +26,14 @@ ASKED_STEPS = 15  # Outer steps after which the lab asks for the height
 LINK = "sphere_baselink"  # The engine's name of the sphere's only link
 
 # `entities` counts those of the scene with the ground, the others belong to the sphere.
-EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
+EXPECTED_MODEL = {
+    "entities": 2,
+    "links": 1,
+    "geoms": 1,
+    "joints": 1,
+    "dofs": 6,
+    "qpos": 7,
+}
 
 # Tolerance of a float32 position of half a metre against the exact sum [m].
 FORMULA_TOLERANCE = 1e-6
@@ -38,9 +46,12 @@ RESOLUTION = {"m": 1e-6, "s": DT / 2, "1": 0.5}
 
 # By unit or array, (atol, rtol) of one value between engine versions or backends.
 TOLERANCES = {
-    "m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "rad/s": (1e-6, 0.0), "s": (0.0, 0.0),
+    "m": (2e-6, 0.0),
+    "m/s": (2e-5, 0.0),
+    "rad/s": (1e-6, 0.0),
+    "s": (0.0, 0.0),
     "link_quat_wxyz": (1e-6, 0.0),
-}  # fmt: skip
+}
 
 # A single run claims no ordering.
 RELATIONS = ()

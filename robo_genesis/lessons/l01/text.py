@@ -8,14 +8,20 @@ from robo_genesis.lessons.l01 import spec
 
 MEASURES = False
 
-COLUMNS = 42  # Longest line of printed text that a phone shows without scrolling [characters]
+COLUMNS = (
+    42  # Longest line of printed text that a phone shows without scrolling [characters]
+)
 
 
 def doctor_lines(steps: list[dict[str, str]]) -> str:
     """Return what the steps of a report found, in lines of at most `COLUMNS` characters."""
     ran = [step for step in steps if step["state"] != "not run"]
-    lines = [f"{n:2}  {s['step']}: {s['state']}; {s['found']}" for n, s in enumerate(ran, 1)]
-    return "\n".join(textwrap.fill(line, COLUMNS, subsequent_indent="    ") for line in lines)
+    lines = [
+        f"{n:2}  {s['step']}: {s['state']}; {s['found']}" for n, s in enumerate(ran, 1)
+    ]
+    return "\n".join(
+        textwrap.fill(line, COLUMNS, subsequent_indent="    ") for line in lines
+    )
 
 
 def metric_table(run: Experiment) -> str:

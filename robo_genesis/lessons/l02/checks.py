@@ -4,7 +4,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, equal, masses, model_counts, noted
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    equal,
+    masses,
+    model_counts,
+    noted,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.falling import free_fall
@@ -25,7 +33,10 @@ def mass(run: Experiment) -> Iterator[Finding]:
 def falls(run: Experiment) -> Iterator[Finding]:
     """The box is lower after every step than before it, and faster."""
     for name, trace in run.traces.items():
-        lower, faster = np.diff(fallen(trace)) > 0, np.diff(-trace.link_vel[:, 0, 2]) > 0
+        lower, faster = (
+            np.diff(fallen(trace)) > 0,
+            np.diff(-trace.link_vel[:, 0, 2]) > 0,
+        )
         yield equal(f"{name}.steps_not_lower", int((~lower).sum()), 0)
         yield equal(f"{name}.steps_not_faster", int((~faster).sum()), 0)
 
@@ -40,7 +51,9 @@ def clear_of_ground(run: Experiment) -> Iterator[Finding]:
 def stepped_formula(run: Experiment) -> Iterator[Finding]:
     """At every sample the box has fallen g h² n (n + 1) / 2, to within float32."""
     for name, of in run.metrics.items():
-        yield at_most(f"{name}.formula_error_m", of.formula_error, spec.FORMULA_TOLERANCE)
+        yield at_most(
+            f"{name}.formula_error_m", of.formula_error, spec.FORMULA_TOLERANCE
+        )
 
 
 def speed(run: Experiment) -> Iterator[Finding]:
@@ -61,10 +74,21 @@ def straight_down(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.sideways_m", of.sideways, spec.AT_REST)
         yield at_most(f"{name}.turning_rad_s", of.turning, spec.AT_REST)
         yield at_most(f"{name}.quaternion_length_error", length_error, spec.AT_REST)
-        yield at_most(f"{name}.quaternion_change", np.abs(quat - quat[0]).max(), spec.AT_REST)
+        yield at_most(
+            f"{name}.quaternion_change", np.abs(quat - quat[0]).max(), spec.AT_REST
+        )
 
 
 CHECKS = (
-    structure, mass, start, stamps, falls, clear_of_ground, stepped_formula, speed, straight_down,
-    free_fall, posture,
-)  # fmt: skip
+    structure,
+    mass,
+    start,
+    stamps,
+    falls,
+    clear_of_ground,
+    stepped_formula,
+    speed,
+    straight_down,
+    free_fall,
+    posture,
+)

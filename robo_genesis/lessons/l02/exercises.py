@@ -43,7 +43,9 @@ def scene(make: Callable[..., Any], gs: Any, case: Drop) -> Iterator[Finding]:
 
 
 @as_test
-def record(read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace) -> Iterator[Finding]:
+def record(
+    read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace
+) -> Iterator[Finding]:
     """Check `read(scene, box, steps)`: heights [m] and speeds along z [m/s] of a run.
 
     Args:

@@ -11,7 +11,8 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.spec import AFTER, BEFORE
 
-# Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused it.
+# Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused
+# it.
 GROUP = "life_cycle"
 
 REFUSAL = "GenesisException"  # The exception with which the engine refuses a call
@@ -43,7 +44,8 @@ def try_both_sides(scene: Any, box: Any, camera: Any, morph: Any) -> Attempts:
     Args:
         scene: a scene that is not built yet; the calls spoil it.
         box: one of its entities.
-        camera: one of its cameras, None where rendering is off; then rendering is not tried.
+        camera: one of its cameras, None where rendering is off; then rendering is not
+            tried.
         morph: the morph of another entity.
     """
     tried = {
@@ -56,7 +58,9 @@ def try_both_sides(scene: Any, box: Any, camera: Any, morph: Any) -> Attempts:
         **({} if camera is None else {RENDER: camera.render}),
         "scene.build": scene.build,  # the last, because it changes the side
     }
-    return {(name, side): refusal(tried[name]) for side in (BEFORE, AFTER) for name in tried}
+    return {
+        (name, side): refusal(tried[name]) for side in (BEFORE, AFTER) for name in tried
+    }
 
 
 def rows(attempts: Attempts) -> list[dict[str, str]]:
@@ -83,7 +87,9 @@ def expected(rendered: bool) -> dict[str, bool]:
 
 def counts(attempts: Attempts) -> dict[str, int]:
     """Return 1 for each attempt that the engine accepted, 0 for each that it refused."""
-    return {f"{call} {side}": int(found is None) for (call, side), found in attempts.items()}
+    return {
+        f"{call} {side}": int(found is None) for (call, side), found in attempts.items()
+    }
 
 
 def sides_of_build(run: Experiment) -> Iterator[Finding]:

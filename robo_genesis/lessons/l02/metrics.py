@@ -21,7 +21,9 @@ class DropMetrics(CaseMetrics):
     formula_error: float = metric(
         "m", "largest distance from the stepped formula", "link_pos_m", "t_s"
     )
-    continuous_gap: float = metric("m", "farther than continuous free fall", "link_pos_m", "t_s")
+    continuous_gap: float = metric(
+        "m", "farther than continuous free fall", "link_pos_m", "t_s"
+    )
     sideways: float = metric("m", "largest sideways motion", "link_pos_m")
     turning: float = metric("rad/s", "largest angular speed", "link_ang_rad_s")
 
@@ -38,5 +40,7 @@ def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
         formula_error=formula_error(trace, case),
         continuous_gap=continuous_gap(trace, case),
         sideways=float(np.linalg.norm(xy - xy[0], axis=1).max()),
-        turning=float(np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max()),
+        turning=float(
+            np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max()
+        ),
     )

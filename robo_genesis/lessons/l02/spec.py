@@ -1,7 +1,8 @@
 """Specification of lesson L02: the dropped box, its expected values and its tolerances.
 
-The module is data and computes nothing. `parameters()` has the values that decide what runs and
-what is read; only a change there makes evidence stale. All other values only judge.
+The module is data and computes nothing. `parameters()` has the values that decide what
+runs and what is read; only a change there makes evidence stale. All other values only
+judge.
 """
 
 from dataclasses import replace
@@ -22,9 +23,12 @@ CASES = {"baseline": BASELINE}
 
 SUBSTEPS_STUDIED = (1, 2, 4, 10, 20)
 
-# These cases differ from the baseline in the solver step alone; each needs its own scene.
+# These cases differ from the baseline in the solver step alone; each needs its own
+# scene.
 SUBSTEP_CASES = {
-    f"substeps_{n}": replace(BASELINE, substeps=n) for n in SUBSTEPS_STUDIED if n != SUBSTEPS
+    f"substeps_{n}": replace(BASELINE, substeps=n)
+    for n in SUBSTEPS_STUDIED
+    if n != SUBSTEPS
 }
 
 # Words of a reader for runs: number and length of the solver steps in an outer step.
@@ -36,19 +40,28 @@ LABELS = {
 LINK = "box_baselink"  # The engine's name of the box's only link
 
 # `entities` counts those of the scene with the ground, the others belong to the box.
-EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
+EXPECTED_MODEL = {
+    "entities": 2,
+    "links": 1,
+    "geoms": 1,
+    "joints": 1,
+    "dofs": 6,
+    "qpos": 7,
+}
 
 # Tolerance of a float32 position of half a metre against the exact sum [m].
 FORMULA_TOLERANCE = 1e-6
 
-# Sideways motion [m], angular speed [rad/s] and a change of the unit quaternion up to this value
-# count as zero.
+# Sideways motion [m], angular speed [rad/s] and a change of the unit quaternion up to
+# this value count as zero.
 AT_REST = 1e-6
 
-SPEED_SHARE = 1e-5  # Tolerance of a speed against g t, as a share of the last speed: float32
+SPEED_SHARE = (
+    1e-5  # Tolerance of a speed against g t, as a share of the last speed: float32
+)
 
-# Relative tolerance of a measured gap against g h t / 2: at the smallest step the gap is small and
-# the rounding of float32 shows.
+# Relative tolerance of a measured gap against g h t / 2: at the smallest step the gap
+# is small and the rounding of float32 shows.
 FIRST_ORDER_SHARE = 0.02
 
 BEFORE, AFTER = "before build", "after build"
@@ -68,40 +81,55 @@ BELONGS = {
 # The lesson's camera: closer than the robot's, with ground and box in the picture.
 VIEW = CAMERA | {"pos": (0.65, -0.65, 0.45), "lookat": (0.0, 0.0, 0.32), "fov": 36}
 
-# Height of a tray's rim and radius of the ball that falls into it [m]. The tray's mesh is 0.15 m
-# high, and its URDF file places it 5 mm lower.
+# Height of a tray's rim and radius of the ball that falls into it [m]. The tray's mesh
+# is 0.15 m high, and its URDF file places it 5 mm lower.
 RIM, BALL = 0.145, 0.03
 
 RESTING = 2e-3  # How far a body at rest may be from where it just touches [m]
 
 TRAYS = "trays"  # The camera frame of both trays
 
-# Tolerance of a further fall against the exact sum: float32 heights of up to a metre [m].
+# Tolerance of a further fall against the exact sum: float32 heights of up to a metre
+# [m].
 FURTHER_TOLERANCE = 1e-6
 
-# The further falls: start height [m], upward speed [m/s], factor of the mass, gravity [m/s²].
+# The further falls: start height [m], upward speed [m/s], factor of the mass, gravity
+# [m/s²].
 HIGHER, THROWN, HEAVIER, MOON = 1.0, 1.0, 4.0, 1.62
 
 # The entities whose visual and collision geometry is counted.
 SHAPES = ("box", "duck", "tray", "hammer")
 
-# A side of a box is two triangles, and a mesh is drawn as in its file. The engine reduces what
-# collides to at most 500 triangles.
-# Least and largest count of triangles that are drawn or collide, and of the geoms that collide.
+# A side of a box is two triangles, and a mesh is drawn as in its file. The engine
+# reduces what collides to at most 500 triangles. Least and largest count of triangles
+# that are drawn or collide, and of the geoms that collide.
 COUNTS = {
-    "box_seen": (12, 12), "box_felt": (12, 12), "box_pieces": (1, 1), "duck_seen": (3534, 3534),
-    "duck_felt": (4, 500), "duck_pieces": (1, 1), "tray_seen": (260, 260), "hammer_seen": (24, 24),
-    "tray_felt": (8, 500), "tray_pieces": (2, 20), "hammer_felt": (24, 24), "hammer_pieces": (2, 2),
-}  # fmt: skip
+    "box_seen": (12, 12),
+    "box_felt": (12, 12),
+    "box_pieces": (1, 1),
+    "duck_seen": (3534, 3534),
+    "duck_felt": (4, 500),
+    "duck_pieces": (1, 1),
+    "tray_seen": (260, 260),
+    "hammer_seen": (24, 24),
+    "tray_felt": (8, 500),
+    "tray_pieces": (2, 20),
+    "hammer_felt": (24, 24),
+    "hammer_pieces": (2, 2),
+}
 
 # By unit, the difference below which two values count as equal.
 RESOLUTION = {"m": 1e-6, "m/s": 1e-5, "rad/s": 1e-6, "s": DT / 2, "kg": 1e-6, "1": 0.5}
 
 # By unit or array, (atol, rtol) of one value between engine versions or backends.
 TOLERANCES = {
-    "m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "rad/s": (1e-6, 0.0), "s": (0.0, 0.0), "kg": (1e-6, 0.0),
+    "m": (2e-6, 0.0),
+    "m/s": (2e-5, 0.0),
+    "rad/s": (1e-6, 0.0),
+    "s": (0.0, 0.0),
+    "kg": (1e-6, 0.0),
     "link_quat_wxyz": (1e-6, 0.0),
-}  # fmt: skip
+}
 
 # A single run claims no ordering.
 RELATIONS = ()
@@ -119,5 +147,10 @@ def study_parameters() -> dict[str, Any]:
         "calls": list(BELONGS),
         "shapes": list(SHAPES),
         "trays": {"rim": RIM, "ball": BALL},
-        "further": {"height": HIGHER, "speed": THROWN, "mass": HEAVIER, "gravity": MOON},
+        "further": {
+            "height": HIGHER,
+            "speed": THROWN,
+            "mass": HEAVIER,
+            "gravity": MOON,
+        },
     }

@@ -30,7 +30,9 @@ def shrinks(run: Experiment) -> Iterator[Finding]:
     """The gap to continuous free fall is smaller with every smaller solver step."""
     for coarse, fine in itertools.pairwise(by_step(run)):
         larger, gap = (run.metrics[name].continuous_gap for name in (coarse, fine))
-        yield Finding(f"{fine}.gap_m", gap, 0 < gap < larger, f"between 0 and {larger:g}")
+        yield Finding(
+            f"{fine}.gap_m", gap, 0 < gap < larger, f"between 0 and {larger:g}"
+        )
 
 
 def first_order(run: Experiment) -> Iterator[Finding]:

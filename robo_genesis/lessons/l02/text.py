@@ -22,12 +22,16 @@ SENTENCES = {
     "straight_down": "The box did not move sideways and did not turn.",
 }
 
-ADVICE = "Look first at the times of the samples, the first state, gravity, and contacts."
+ADVICE = (
+    "Look first at the times of the samples, the first state, gravity, and contacts."
+)
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the baseline, or what the checks found in its place."""
-    values = {n: readable(value, unit) for n, value, unit in run.metrics["baseline"].items()}
+    values = {
+        n: readable(value, unit) for n, value, unit in run.metrics["baseline"].items()
+    }
     return bullets(
         tables.sentence_of(check, SENTENCES[check.name], values, ADVICE)
         for check in run.outcomes()
@@ -45,12 +49,16 @@ def readable(value: float | None, unit: str) -> str:
 
 def model_table(run: Experiment) -> str:
     """Return the engine's counts of the scene and the box, and the box's mass."""
-    return tables.markdown([{**run.readings["model"], "mass [kg]": run.readings["body"]["mass"]}])
+    return tables.markdown(
+        [{**run.readings["model"], "mass [kg]": run.readings["body"]["mass"]}]
+    )
 
 
 def metric_table(run: Experiment) -> str:
     """Return the metrics of the baseline."""
-    return tables.metric_table({spec.LABELS["baseline"]: run.metrics["baseline"]}, readable)
+    return tables.metric_table(
+        {spec.LABELS["baseline"]: run.metrics["baseline"]}, readable
+    )
 
 
 def three_drops(run: Experiment) -> str:
@@ -64,16 +72,26 @@ def three_drops(run: Experiment) -> str:
         "continuous, g t² / 2": continuous_drop(found.duration, case.gravity),
     }
     heads = {"distance [m]": 6, "against the measurement [mm]": 0}
-    rows = {name: (drop, signed(1000 * (drop - found.drop), 4)) for name, drop in drops.items()}
+    rows = {
+        name: (drop, signed(1000 * (drop - found.drop), 4))
+        for name, drop in drops.items()
+    }
     return tables.number_table("drop", heads, rows)
 
 
 def substep_table(run: Experiment) -> str:
     """Return the drops of all solver steps."""
-    names = ("h [ms]", "measured drop [m]", "farther than g t² / 2 [mm]", "g h t / 2 [mm]")
+    names = (
+        "h [ms]",
+        "measured drop [m]",
+        "farther than g t² / 2 [mm]",
+        "g h t / 2 [mm]",
+    )
     rows = {}
     for name in study.by_step(run):
         case, of = run.cases[name], run.metrics[name]
         gaps = 1000 * of.continuous_gap, 1000 * study.expected_gap(run, name)
         rows[f"{case.substeps}"] = f"{1000 * case.h:g}", of.drop, *gaps
-    return tables.number_table("substeps", dict(zip(names, (0, 6, 3, 3), strict=True)), rows)
+    return tables.number_table(
+        "substeps", dict(zip(names, (0, 6, 3, 3), strict=True)), rows
+    )

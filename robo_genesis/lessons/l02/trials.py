@@ -30,7 +30,9 @@ def count_shapes(entities: Mapping[str, Any]) -> dict[str, int]:
     found: dict[str, int] = {}
     for name, entity in entities.items():
         for what, geoms in (("seen", entity.vgeoms), ("felt", entity.geoms)):
-            found[f"{name}_{what}"] = sum(len(geom.get_trimesh().faces) for geom in geoms)
+            found[f"{name}_{what}"] = sum(
+                len(geom.get_trimesh().faces) for geom in geoms
+            )
         found[f"{name}_pieces"] = len(entity.geoms)
     return found
 
@@ -54,8 +56,8 @@ def shape_rows(entities: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def two_geometries(run: Experiment) -> Iterator[Finding]:
-    """The box collides with what is drawn; the duck collides with fewer triangles than are drawn,
-    the tray with several pieces for one drawn mesh.
+    """The box collides with what is drawn; the duck collides with fewer triangles than
+    are drawn, the tray with several pieces for one drawn mesh.
     """
     found = run.readings[SHAPES]
     yield equal("box_felt", found["box_felt"], found["box_seen"])
@@ -64,8 +66,8 @@ def two_geometries(run: Experiment) -> Iterator[Finding]:
 
 
 def invisible_lid(run: Experiment) -> Iterator[Finding]:
-    """A ball rests on the floor of a tray of several collision pieces, and on the rim of a tray
-    with a single one.
+    """A ball rests on the floor of a tray of several collision pieces, and on the rim
+    of a tray with a single one.
     """
     found = run.readings[TRAYS]
     yield within("ball_in_pieces_m", found[PIECES], spec.BALL, spec.RESTING)
@@ -81,15 +83,19 @@ def expected_falls() -> dict[str, float]:
     n = case.steps * case.substeps
     drop, moon = (float(summed_drop(case.h, n, g)) for g in (case.gravity, spec.MOON))
     seconds = case.steps * case.dt
-    return dict(zip(FALLS, (drop, drop - spec.THROWN * seconds, drop, moon), strict=True))
+    return dict(
+        zip(FALLS, (drop, drop - spec.THROWN * seconds, drop, moon), strict=True)
+    )
 
 
 def further_falls(run: Experiment) -> Iterator[Finding]:
-    """After build, another height, speed, mass and gravity are accepted, and the stepped formula
-    holds with each.
+    """After build, another height, speed, mass and gravity are accepted, and the
+    stepped formula holds with each.
     """
     for name, expected in expected_falls().items():
-        yield within(f"{name}_m", run.readings[FURTHER][name], expected, spec.FURTHER_TOLERANCE)
+        yield within(
+            f"{name}_m", run.readings[FURTHER][name], expected, spec.FURTHER_TOLERANCE
+        )
 
 
 CHECKS = (two_geometries, invisible_lid, further_falls)

@@ -12,7 +12,12 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.lessons.l03 import spec, theory
 from robo_genesis.lessons.l03.laws import laws_of_motion
-from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics, aligned
+from robo_genesis.lessons.l03.metrics import (
+    BounceMetrics,
+    LandingMetrics,
+    SlideMetrics,
+    aligned,
+)
 from robo_genesis.sim.bodies.contacts import SETTINGS, TOP
 from robo_genesis.sim.common_checks import posture, stamps
 
@@ -40,7 +45,9 @@ def settings(run: Experiment) -> Iterator[Finding]:
     for name in SETTINGS:
         read = run.readings.get(name, {})
         for case, value in read.items():
-            yield within(f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK)
+            yield within(
+                f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK
+            )
         yield above(f"number of cases with {name}", len(read), 0)
 
 
@@ -73,7 +80,9 @@ def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
     short, long = spec.EQUAL_STEP
     for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
         one, other = aligned(run.traces[short], run.traces[long], name)
-        yield at_most(f"{short}.{name}_against_{long}", np.abs(one - other).max(), spec.SAME_STATE)
+        yield at_most(
+            f"{short}.{name}_against_{long}", np.abs(one - other).max(), spec.SAME_STATE
+        )
 
 
 def settles(run: Experiment) -> Iterator[Finding]:
@@ -84,14 +93,18 @@ def settles(run: Experiment) -> Iterator[Finding]:
 
 def stops(run: Experiment) -> Iterator[Finding]:
     """Each pushed cube stops within the window by the declared rule."""
-    distances = {n: found.stop_distance for n, found in measured(run, SlideMetrics).items()}
+    distances = {
+        n: found.stop_distance for n, found in measured(run, SlideMetrics).items()
+    }
     return stopped(distances)
 
 
 def stopped(distances: Mapping[str, float | None]) -> Iterator[Finding]:
     """Require that each run has a stopping distance [m]."""
     for name, distance in distances.items():
-        yield Finding(f"{name}.stop_distance_m", distance, distance is not None, "a distance")
+        yield Finding(
+            f"{name}.stop_distance_m", distance, distance is not None, "a distance"
+        )
 
 
 def friction_orders(run: Experiment) -> Iterator[Finding]:
@@ -101,7 +114,10 @@ def friction_orders(run: Experiment) -> Iterator[Finding]:
 
 def orders_of_distances(run: Experiment, model: str) -> Iterator[Finding]:
     """Require the orders of stopping distances; `model` ends the names of the compared runs."""
-    names = [name + model for name in ("high_on_050", "low_on_050", "low_on_030", "high_on_030")]
+    names = [
+        name + model
+        for name in ("high_on_050", "low_on_050", "low_on_030", "high_on_030")
+    ]
     far = {name: run.metrics[name].stop_distance or np.nan for name in names}
     high, low, low_after, high_after = names
     for near, farther in ((high, low), (low, low_after)):
@@ -113,7 +129,10 @@ def orders_of_distances(run: Experiment, model: str) -> Iterator[Finding]:
 def near_coulomb(run: Experiment) -> Iterator[Finding]:
     """Each stopping distance is within 20 % of v² / (2 μ g) with the larger coefficient."""
     for name, found in measured(run, SlideMetrics).items():
-        expected, label = theory.coulomb_distance(run.cases[name]), f"{name}.stop_distance_m"
+        expected, label = (
+            theory.coulomb_distance(run.cases[name]),
+            f"{name}.stop_distance_m",
+        )
         yield nearly(label, found.stop_distance, expected, spec.COULOMB_SHARE)
 
 
@@ -126,22 +145,41 @@ def level_in_flight(run: Experiment) -> Iterator[Finding]:
 
 def energy_converges(run: Experiment) -> Iterator[Finding]:
     """The finest step keeps at the bounce the energy of a linear spring; a coarse one does not."""
-    kept = {name: found.first_kept for name, found in measured(run, BounceMetrics).items()}
+    kept = {
+        name: found.first_kept for name, found in measured(run, BounceMetrics).items()
+    }
     finest, *coarser = sorted(kept, key=lambda name: run.cases[name].h)
     expected = 100 * theory.kept_at_bounces(run.cases[finest].spring[1])
-    yield within(f"{finest}.first_kept_percent", kept[finest], expected, spec.FINE_SHARE)
+    yield within(
+        f"{finest}.first_kept_percent", kept[finest], expected, spec.FINE_SHARE
+    )
     for name in coarser:
         bounced = kept[name] is not None
         yield Finding(f"{name}.first_kept_percent", kept[name], bounced, "a share")
     errors = [abs(share - expected) for share in kept.values() if share is not None]
-    yield above("largest_difference_percent", max(errors, default=0.0), spec.COARSE_SHARE)
+    yield above(
+        "largest_difference_percent", max(errors, default=0.0), spec.COARSE_SHARE
+    )
 
 
 CHECKS = (
-    structure, mass, settings, stamps, one_factor, lands, reported_late,
-    equal_step_equal_states, settles, stops, friction_orders, near_coulomb, level_in_flight,
-    energy_converges, laws_of_motion, posture,
-)  # fmt: skip
+    structure,
+    mass,
+    settings,
+    stamps,
+    one_factor,
+    lands,
+    reported_late,
+    equal_step_equal_states,
+    settles,
+    stops,
+    friction_orders,
+    near_coulomb,
+    level_in_flight,
+    energy_converges,
+    laws_of_motion,
+    posture,
+)
 
 # The checks that the runs of every page must pass.
 OF_ALL_PAGES = (structure, mass, settings, stamps, laws_of_motion)

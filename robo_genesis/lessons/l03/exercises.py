@@ -27,8 +27,13 @@ def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> Iterator[Find
     yield equal("is_built", bool(built.is_built), True)
     yield within("dt_s", float(built.dt), case.dt, 1e-9)
     yield equal("substeps", int(built.substeps), case.substeps)
-    yield within("mass_of_the_cube_kg", float(cube.get_mass()), case.mass, 1e-3 * case.mass)
-    for name, body, mu in (("cube", cube, case.friction), ("table", table, case.surface_friction)):
+    yield within(
+        "mass_of_the_cube_kg", float(cube.get_mass()), case.mass, 1e-3 * case.mass
+    )
+    for name, body, mu in (
+        ("cube", cube, case.friction),
+        ("table", table, case.surface_friction),
+    ):
         found = built.rigid_solver.get_geoms_friction([body.geoms[0].idx])
         yield within(f"friction_of_the_{name}", float(to_numpy(found)[0]), mu, 1e-6)
     height = float(to_numpy(cube.get_pos())[2])
@@ -62,7 +67,9 @@ def push(
         push_cube(built, cube, case.speed, case.settle)
     yield equal("steps_before_the_push", step.call_count, round(case.settle / case.dt))
     velocity = np.append(to_numpy(cube.get_vel()), to_numpy(cube.get_ang()))
-    for name, value in zip(("v_x", "v_y", "v_z", "w_x", "w_y", "w_z"), velocity, strict=True):
+    for name, value in zip(
+        ("v_x", "v_y", "v_z", "w_x", "w_y", "w_z"), velocity, strict=True
+    ):
         yield within(name, float(value), case.speed if name == "v_x" else 0.0, 1e-3)
     moved = float(abs(to_numpy(cube.get_pos())[0] - before[0]))
     yield at_most("moved_before_the_push_m", moved, 1e-3)
@@ -101,13 +108,16 @@ class _Touching:
 
 @as_test
 def landing(
-    measure: Callable[..., Any], runs: Iterable[tuple[ContactTrace, ContactCase, LandingMetrics]]
+    measure: Callable[..., Any],
+    runs: Iterable[tuple[ContactTrace, ContactCase, LandingMetrics]],
 ) -> Iterator[Finding]:
     """Check `measure(clear)`: penetration and rebound [m] of a landing, from its clearance (n,)."""
     names = ("penetration", "rebound")
     for number, (trace, case, of) in enumerate(runs):
         found = measure(clearance(trace, case))
-        yield from compared(f"run_{number}", names, found, (of.penetration, of.rebound), TINY)
+        yield from compared(
+            f"run_{number}", names, found, (of.penetration, of.rebound), TINY
+        )
     for name, clear, expected in (
         ("never_lands", [0.3, 0.2, 0.1], (0.0, 0.0)),
         ("jumps", [0.2, 0.0, -0.001, 0.003, -0.004, 0.001], (0.004, 0.003)),
@@ -122,7 +132,9 @@ def stopping(
     """Check `measure(t, x, speed)`: stop time and distance by the rule with a hold, or None."""
     names = ("stop_time", "stop_distance")
     for number, (trace, of) in enumerate(runs):
-        x, speed = (a[:, 0, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
+        x, speed = (
+            a[:, 0, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel)
+        )
         found = measure(trace.t, x, speed)
         expected = of.stop_time, of.stop_distance
         yield from compared(f"run_{number}", names, found, expected, TINY)
@@ -133,4 +145,6 @@ def stopping(
     found = measure(t, x, back)
     yield from compared("rocks_back", names, found, (t[7], x[7] - x[0]), TINY)
     going = np.append(np.full(25, 0.5), np.zeros(5))
-    yield from compared("ends_too_early", names, measure(t, x, going), (None, None), TINY)
+    yield from compared(
+        "ends_too_early", names, measure(t, x, going), (None, None), TINY
+    )

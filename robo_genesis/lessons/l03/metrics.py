@@ -13,12 +13,15 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace, first_time, settled_from
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 
-CLEAR = 1e-4  # Clearance from which a body without contact points counts as separated [m]
+CLEAR = (
+    1e-4  # Clearance from which a body without contact points counts as separated [m]
+)
 
 # Half width of the band around the resting height in which a body has settled [m].
 RESTING_BAND = 5e-4
 
-# A body has stopped at the first sample from which it is slower [m/s] for this time [s].
+# A body has stopped at the first sample from which it is slower [m/s] for this time
+# [s].
 STOP_SPEED, STOP_HOLD = 0.01, 0.10
 
 BOUNCES_COUNTED = 4  # Number of bounces after which the remaining energy is measured
@@ -41,7 +44,9 @@ class LandingMetrics(CaseMetrics):
     separated: float = metric("s", "time separated", *FLIGHT)
     upward_speed: float = metric("m/s", "largest upward speed", *POSE, "link_vel_m_s")
     resting_time: float | None = metric("s", "settled at", "link_pos_m", "t_s")
-    resting_offset: float = metric("m", "height at the end against the ideal one", "link_pos_m")
+    resting_offset: float = metric(
+        "m", "height at the end against the ideal one", "link_pos_m"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +70,9 @@ class BounceMetrics(CaseMetrics):
 
     start_energy: float = metric("J", "energy at the start", *ENERGY)
     first_kept: float | None = metric("%", "energy kept at the first bounce", *ENERGY)
-    later_kept: float | None = metric("%", f"energy left after {BOUNCES_COUNTED} bounces", *ENERGY)
+    later_kept: float | None = metric(
+        "%", f"energy left after {BOUNCES_COUNTED} bounces", *ENERGY
+    )
     flight_drift: float | None = metric(
         "J", "largest change of the conserved energy in a flight", *ENERGY
     )
@@ -85,11 +92,17 @@ def total_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
 def conserved_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
     """Return E − m g h v_z / 2 at each state, (n+1,) [J], which semi-implicit Euler conserves.
 
-    In one free solver step v_z changes by −g h and z by h times the new v_z, so both the total
-    energy E and m g h v_z / 2 change by −m g² h² / 2. At the top of a flight v_z is zero and both
-    energies are equal.
+    In one free solver step v_z changes by −g h and z by h times the new v_z, so both
+    the total energy E and m g h v_z / 2 change by −m g² h² / 2. At the top of a flight
+    v_z is zero and both energies are equal.
     """
-    error = case.mass * case.gravity * case.h * trace.link_vel[:, 0, 2].astype(np.float64) / 2
+    error = (
+        case.mass
+        * case.gravity
+        * case.h
+        * trace.link_vel[:, 0, 2].astype(np.float64)
+        / 2
+    )
     return total_energy(trace, case) - error
 
 
@@ -106,7 +119,9 @@ def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
     return z - case.size / 2 * np.abs(upward).sum(axis=0) - TOP
 
 
-def aligned(fine: BodyTrace, coarse: BodyTrace, name: str) -> tuple[FloatArray, FloatArray]:
+def aligned(
+    fine: BodyTrace, coarse: BodyTrace, name: str
+) -> tuple[FloatArray, FloatArray]:
     """Return an array of two runs of one body, (k, …), at the states that both recorded."""
     every = round(coarse.dt / fine.dt)
     one, other = getattr(fine, name)[::every, 0], getattr(coarse, name)[:, 0]
@@ -163,7 +178,9 @@ def stopped_at(speed: FloatArray, dt: float) -> int | None:
     """
     hold = round(STOP_HOLD / dt)
     slow = np.abs(speed) < STOP_SPEED
-    return next((k for k in range(len(slow) - hold) if slow[k : k + hold + 1].all()), None)
+    return next(
+        (k for k in range(len(slow) - hold) if slow[k : k + hold + 1].all()), None
+    )
 
 
 def slide_metrics(trace: ContactTrace, case: ContactCase) -> SlideMetrics:
@@ -200,6 +217,10 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
         start_energy=float(total[0]),
         first_kept=share(1),
         later_kept=share(BOUNCES_COUNTED),
-        flight_drift=max((float(np.ptp(kept[flight])) for flight in in_air), default=None),
-        flight_change=max((float(np.ptp(total[flight])) for flight in in_air), default=None),
+        flight_drift=max(
+            (float(np.ptp(kept[flight])) for flight in in_air), default=None
+        ),
+        flight_change=max(
+            (float(np.ptp(total[flight])) for flight in in_air), default=None
+        ),
     )

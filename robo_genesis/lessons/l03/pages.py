@@ -7,9 +7,23 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, Run, counts, runs_of
+from robo_genesis.core.experiment import (
+    Experiment,
+    MeasuringPage,
+    Readings,
+    Run,
+    counts,
+    runs_of,
+)
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_checks, study_spec
+from robo_genesis.lessons.l03 import (
+    checks,
+    metrics,
+    spec,
+    study,
+    study_checks,
+    study_spec,
+)
 from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 
 MEASURES = False
@@ -18,15 +32,17 @@ MEASURES = False
 def readings(cases: Mapping[str, ContactCase]) -> dict[str, Readings]:
     """Return the engine's values of a page with these cases.
 
-    They are the counts of the cube's scene, the masses, the settings of the cases, and the time
-    constants of the scenes side by side.
+    They are the counts of the cube's scene, the masses, the settings of the cases, and
+    the time constants of the scenes side by side.
     """
     found = {
         "model": counts(spec.EXPECTED_MODEL),
         "mass": Readings(dict.fromkeys([case.shape for case in cases.values()], "kg")),
         **{name: Readings(dict.fromkeys(cases, "1")) for name in SETTINGS},
     }
-    if scenes := [scene for scene, row in study.ROWS.items() if row.keys() <= cases.keys()]:
+    if scenes := [
+        scene for scene, row in study.ROWS.items() if row.keys() <= cases.keys()
+    ]:
         found[study.GROUP] = Readings(dict.fromkeys(scenes, "s"))
     return found
 
@@ -42,7 +58,9 @@ CUBE = MeasuringPage(
 )
 
 
-def further(name: str, *own: Callable[[Experiment], Iterable[Finding]]) -> MeasuringPage:
+def further(
+    name: str, *own: Callable[[Experiment], Iterable[Finding]]
+) -> MeasuringPage:
     """Return a page with runs in Genesis and checks of its own, and without a camera."""
     cases = study_spec.CASES_OF[name]
     return replace(
@@ -70,15 +88,23 @@ LESSON = Lesson(
         **dict.fromkeys(spec.BOUNCES, metrics.BounceMetrics),
     },
     pages={
-        "lab": with_functions(CUBE, "make_scene", "read_contacts", "landing", "push", "stop"),
-        "lecture": replace(LECTURE, camera=True, frames=(*CUBE.frames, *study_spec.DEEPEST)),
+        "lab": with_functions(
+            CUBE, "make_scene", "read_contacts", "landing", "push", "stop"
+        ),
+        "lecture": replace(
+            LECTURE, camera=True, frames=(*CUBE.frames, *study_spec.DEEPEST)
+        ),
         "mistakes": further("mistakes"),
         "contact": replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO}),
         "energy": further("energy", *study_checks.ENERGY),
     },
     replays={
         "drops": Replay(
-            tuple(study_spec.DROPPED), spec.LINK, "cube", until=0.5, rest=spec.BASELINE.rest_height
+            tuple(study_spec.DROPPED),
+            spec.LINK,
+            "cube",
+            until=0.5,
+            rest=spec.BASELINE.rest_height,
         ),
         "slides": Replay(tuple(study_spec.HOPPED), spec.LINK, "cube", axes=("x", "z")),
     },

@@ -7,7 +7,13 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import LINE, body_schematic, legend_above, log_axis, look
+from robo_genesis.core.plotting import (
+    LINE,
+    body_schematic,
+    legend_above,
+    log_axis,
+    look,
+)
 from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_spec, theory
 from robo_genesis.sim.bodies.contacts import TOP
 
@@ -22,23 +28,36 @@ def styles(**marks: str) -> Styles:
     return {name: look(mark, label=spec.LABELS[name]) for name, mark in marks.items()}
 
 
-LANDINGS = styles(baseline="baseline", dt10_sub1="first", dt20_sub2="third", dt20_sub1="second")
+LANDINGS = styles(
+    baseline="baseline", dt10_sub1="first", dt20_sub2="third", dt20_sub1="second"
+)
 
-# Markers of the samples: two landings coincide, and one stays visible through the other's.
+# Markers of the samples: two landings coincide, and one stays visible through the
+# other's.
 SAMPLES: Styles = {name: {"marker": "o", "markersize": 3} for name in LANDINGS} | {
-    "dt20_sub2": {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8},
+    "dt20_sub2": {
+        "marker": "s",
+        "markersize": 7,
+        "markerfacecolor": "none",
+        "linewidth": 0.8,
+    },
     "dt20_sub1": {"marker": "^", "markersize": 3},
 }
 
-SLIDES = styles(low_on_050="first", high_on_050="second", low_on_030="third", high_on_030="other")
+SLIDES = styles(
+    low_on_050="first", high_on_050="second", low_on_030="third", high_on_030="other"
+)
 BOUNCES = styles(bounce_sub1="second", bounce_sub2="other", bounce_sub100="third")
 WINDOW = (0.18, 0.44)  # Around the landing of the lab [s]
 STEP_LABEL = "solver step h [ms]"
 
 # Marks of the palette by scene; the landing from the baseline's height is drawn.
 STEP_MARKS = {
-    "h_20000us": "second", "h_10000us": "third", "h_5000us": "baseline", "h_125us": "first",
-}  # fmt: skip
+    "h_20000us": "second",
+    "h_10000us": "third",
+    "h_5000us": "baseline",
+    "h_125us": "first",
+}
 
 
 def legend_below(figure: Figure) -> None:
@@ -59,8 +78,13 @@ def landings(run: Experiment) -> Figure:
         clear = 1000 * metrics.clearance(run.traces[name], run.cases[name])
         ax.plot(run.traces[name].t, clear, **style, **SAMPLES[name])
     ax.axhline(0, **LINE)
-    ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]",
-           title="Below zero, the cube is in the table")  # fmt: skip
+    ax.set(
+        xlim=WINDOW,
+        ylim=(-26, 32),
+        xlabel="time [s]",
+        ylabel="clearance [mm]",
+        title="Below zero, the cube is in the table",
+    )
     legend_below(figure)
     return figure
 
@@ -87,7 +111,10 @@ def pushed(run: Experiment) -> Figure:
     """Draw speed along x, clearance and angular speed of the lab's pushed cubes."""
     figure = plotting.figure(7)
     axes = figure.subplots(3, 1, sharex=True)
-    below = SLIDES["high_on_050"] | {"linewidth": 4.0, "alpha": 0.45}  # It lies below an equal one
+    below = SLIDES["high_on_050"] | {
+        "linewidth": 4.0,
+        "alpha": 0.45,
+    }  # It lies below an equal one
     for name, style in (SLIDES | {"high_on_050": below}).items():
         trace = run.traces[name]
         clear = 1000 * metrics.clearance(trace, run.cases[name])
@@ -125,11 +152,18 @@ def ball_energies(run: Experiment) -> Figure:
     axes = figure.subplots(2, 1, sharex=True)
     for name, style in BOUNCES.items():
         trace, case = run.traces[name], run.cases[name]
-        start, clear = metrics.total_energy(trace, case)[0], metrics.clearance(trace, case) > 0
-        for ax, energy in zip(axes, (metrics.total_energy, metrics.conserved_energy), strict=True):
+        start, clear = (
+            metrics.total_energy(trace, case)[0],
+            metrics.clearance(trace, case) > 0,
+        )
+        for ax, energy in zip(
+            axes, (metrics.total_energy, metrics.conserved_energy), strict=True
+        ):
             share = np.where(clear, 100 * energy(trace, case) / start, np.nan)
             ax.plot(trace.t, share, linewidth=1.5, **style)
-    for ax, title in zip(axes, ("Total energy", "Total energy − m g h v / 2"), strict=True):
+    for ax, title in zip(
+        axes, ("Total energy", "Total energy − m g h v / 2"), strict=True
+    ):
         ax.set(title=title, ylabel="share of the start [%]", ylim=(50, 108))
     axes[1].set_xlabel("time [s]")
     axes[1].legend(loc="lower left")
@@ -165,8 +199,13 @@ def landings_by_step(run: Experiment) -> Figure:
         clear = 1000 * metrics.clearance(trace, case)[::every]
         ax.plot(trace.t[::every], clear, label=f"h = {1000 * case.h:g} ms", **style)
     ax.axhline(0, **LINE)
-    ax.set(xlim=(0.2, 0.34), ylim=(-26, 14), xlabel="time [s]", ylabel="clearance [mm]",
-           title="Below zero: overlap")  # fmt: skip
+    ax.set(
+        xlim=(0.2, 0.34),
+        ylim=(-26, 14),
+        xlabel="time [s]",
+        ylabel="clearance [mm]",
+        title="Below zero: overlap",
+    )
     ax.legend(loc="lower right")
     return figure
 
@@ -182,16 +221,24 @@ def deepest(run: Experiment) -> Figure:
 def depths_by_step(run: Experiment) -> Figure:
     """Draw each depth as a share of v T / e by the solver step."""
     figure, ax = plotting.axes(3.8)
-    points = np.array([
-        (1000 * case.h, found.penetration / theory.depth(case), found.rebound > metrics.CLEAR)
-        for _, case, found in study.row(run, *study_spec.STEP_CASES)
-    ])  # fmt: skip
+    points = np.array(
+        [
+            (
+                1000 * case.h,
+                found.penetration / theory.depth(case),
+                found.rebound > metrics.CLEAR,
+            )
+            for _, case, found in study.row(run, *study_spec.STEP_CASES)
+        ]
+    )
     for label, rebounds, marker, size, mark in (
         ("stays down", False, "o", 4.5, "first"),
         ("leaves the surface again", True, "^", 6, "second"),
     ):
         h, shares, _ = points[points[:, 2] == rebounds].T
-        ax.plot(h, shares, marker, markersize=size, color=look(mark)["color"], label=label)
+        ax.plot(
+            h, shares, marker, markersize=size, color=look(mark)["color"], label=label
+        )
     ax.axhline(1, label="v T / e", **look("target"))
     log_axis(ax, points[:, 0], STEP_LABEL)
     ax.set_ylim(bottom=0)

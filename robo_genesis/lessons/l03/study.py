@@ -21,7 +21,9 @@ LANES = {"low": "low_on_050", "high": "high_on_050"}
 
 def row(run: Experiment, *scenes: str) -> list[tuple[str, ContactCase, LandingMetrics]]:
     """Return name, case and metrics of each landing of scenes, in the order of their heights."""
-    return [(n, case, run.metrics[n]) for scene in scenes for n, case in ROWS[scene].items()]
+    return [
+        (n, case, run.metrics[n]) for scene in scenes for n, case in ROWS[scene].items()
+    ]
 
 
 def case_of(scene: str) -> ContactCase:
@@ -37,12 +39,16 @@ def share_of_step(scene: str) -> float:
 
 def depth_shares(run: Experiment, scene: str) -> list[float]:
     """Return each depth as a share of v T / e, in the order of the heights."""
-    return [found.penetration / theory.depth(case) for _, case, found in row(run, scene)]
+    return [
+        found.penetration / theory.depth(case) for _, case, found in row(run, scene)
+    ]
 
 
 def clean(run: Experiment) -> list[str]:
     """Return the slides with the elliptic cone and the resolution that comes with it."""
-    return [n for n, c in run.cases.items() if c.cone == "elliptic" and c.resolution is None]
+    return [
+        n for n, c in run.cases.items() if c.cone == "elliptic" and c.resolution is None
+    ]
 
 
 def first_impulses(run: Experiment, name: str) -> tuple[float, float]:
@@ -50,9 +56,14 @@ def first_impulses(run: Experiment, name: str) -> tuple[float, float]:
 
     Both are an impulse of the contact divided by the mass.
     """
-    case, velocity = run.cases[name], run.traces[name].link_vel[:2, 0].astype(np.float64)
+    case, velocity = (
+        run.cases[name],
+        run.traces[name].link_vel[:2, 0].astype(np.float64),
+    )
     before, after = velocity
-    return float(before[0] - after[0]), float(after[2] - before[2] + case.gravity * case.dt)
+    return float(before[0] - after[0]), float(
+        after[2] - before[2] + case.gravity * case.dt
+    )
 
 
 def heights_apart(run: Experiment, one: str, other: str) -> float:
@@ -64,7 +75,8 @@ def heights_apart(run: Experiment, one: str, other: str) -> float:
 def distance_between(first: ContactTrace, second: ContactTrace) -> FloatArray:
     """Return the distance between the centres of two runs at each shared state, (n+1,) [m].
 
-    The distance of their starts is subtracted: some cubes lie side by side in one scene.
+    The distance of their starts is subtracted: some cubes lie side by side in one
+        scene.
     """
     difference = np.subtract(*aligned(first, second, "link_pos"), dtype=np.float64)
     return np.asarray(np.linalg.norm(difference - difference[0], axis=1))

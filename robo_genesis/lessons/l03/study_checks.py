@@ -4,7 +4,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    nearly,
+    noted,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics
@@ -16,15 +25,20 @@ def time_constants(run: Experiment) -> Iterator[Finding]:
     """The engine gives a contact a time constant of 10 ms, and never less than two solver steps."""
     for name, found in run.readings[study.GROUP].items():
         expected = theory.contact_seconds(study.case_of(name))
-        yield within(f"{name}.time_constant_s", found, expected, study_spec.TIME_CONSTANT)
+        yield within(
+            f"{name}.time_constant_s", found, expected, study_spec.TIME_CONSTANT
+        )
 
 
 def rebound_goes(run: Experiment) -> Iterator[Finding]:
-    """With the default time constant, all cubes rebound at the baseline's solver step; at all
-    smaller steps studied, none does from any of the nine heights.
+    """With the default time constant, all cubes rebound at the baseline's solver step;
+    at all smaller steps studied, none does from any of the nine heights.
     """
     for name in study_spec.STEP_CASES:
-        rebounds, step = [of.rebound for *_, of in study.row(run, name)], study.case_of(name).h
+        rebounds, step = (
+            [of.rebound for *_, of in study.row(run, name)],
+            study.case_of(name).h,
+        )
         limit = CLEAR if step < spec.BASELINE.h else np.inf
         yield at_most(f"{name}.highest_rebound_m", max(rebounds), limit)
         if step == spec.BASELINE.h:
@@ -38,24 +52,29 @@ def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
         shares = study.depth_shares(run, name)
         scatter, label = float(np.ptp(shares)), f"{name}.scatter_of_depth_share"
         coarse = above(label, scatter, study_spec.SCATTER_COARSE)
-        yield coarse if study.share_of_step(name) >= 0.5 else below(label, scatter, limit)
+        yield (
+            coarse if study.share_of_step(name) >= 0.5 else below(label, scatter, limit)
+        )
         limit = min(limit, scatter)
         yield noted(f"{name}.smallest_depth_share", min(shares))
     yield at_most("scatter_left", limit, study_spec.SCATTER_FINE)
 
 
 def first_step_decides(run: Experiment) -> Iterator[Finding]:
-    """With solver steps of 5 ms and 10 ms, half the time constant in force, the first sample in the
-    table is the deepest of each landing: its depth follows from the fall alone.
+    """With solver steps of 5 ms and 10 ms, half the time constant in force, the first
+    sample in the table is the deepest of each landing: its depth follows from the fall
+    alone.
     """
     for name, case, found in study.row(run, "h_5000us", "h_10000us"):
         depth = theory.first_depth(case)
-        yield within(f"{name}.depth_m", found.penetration, depth, study_spec.FIRST_DEPTH)
+        yield within(
+            f"{name}.depth_m", found.penetration, depth, study_spec.FIRST_DEPTH
+        )
 
 
 def depth_by_hand(run: Experiment) -> Iterator[Finding]:
-    """With fine steps, each cube sinks in by v T / e: within 10 % for a time constant of 10 ms, and
-    within 20 % for 2 ms.
+    """With fine steps, each cube sinks in by v T / e: within 10 % for a time constant
+    of 10 ms, and within 20 % for 2 ms.
     """
     for scene, share in study_spec.DEPTH_SHARES.items():
         for name, case, found in study.row(run, scene):
@@ -64,8 +83,8 @@ def depth_by_hand(run: Experiment) -> Iterator[Finding]:
 
 
 def release_speed(run: Experiment) -> Iterator[Finding]:
-    """With fine steps and time constants of 10, 5 and 2 ms, a contact releases a cube at e⁻² of its
-    impact speed, within 10 %.
+    """With fine steps and time constants of 10, 5 and 2 ms, a contact releases a cube
+    at e⁻² of its impact speed, within 10 %.
     """
     for name, case, found in study.row(run, *study_spec.RELEASE_CASES):
         expected, label = theory.release_speed(case), f"{name}.upward_speed_m_s"
@@ -73,8 +92,8 @@ def release_speed(run: Experiment) -> Iterator[Finding]:
 
 
 def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
-    """With 10 ms no cube rebounds; with 5 ms and 2 ms each rebounds as from a linear contact,
-    within 25 %.
+    """With 10 ms no cube rebounds; with 5 ms and 2 ms each rebounds as from a linear
+    contact, within 25 %.
     """
     for name, case, found in study.row(run, *study_spec.RELEASE_CASES):
         expected, label = theory.rebound(case), f"{name}.rebound_m"
@@ -97,13 +116,18 @@ def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
 def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
     """With the elliptic cone, a cube stops at v² / (2 μ g) − v h / 2: Coulomb's law in steps."""
     for name in study.clean(run):
-        found, expected = run.metrics[name].stop_distance, theory.stepped_distance(run.cases[name])
-        yield within(f"{name}.stop_distance_m", found, expected, study_spec.STEPPED_TOLERANCE)
+        found, expected = (
+            run.metrics[name].stop_distance,
+            theory.stepped_distance(run.cases[name]),
+        )
+        yield within(
+            f"{name}.stop_distance_m", found, expected, study_spec.STEPPED_TOLERANCE
+        )
 
 
 def clean_slides_order(run: Experiment) -> Iterator[Finding]:
-    """With less friction a cube with the elliptic cone travels farther; the smaller coefficient
-    changes nothing.
+    """With less friction a cube with the elliptic cone travels farther; the smaller
+    coefficient changes nothing.
     """
     return checks.orders_of_distances(run, "_elliptic")
 
@@ -115,7 +139,9 @@ def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
         apparent = theory.apparent_friction(case, distance + case.speed * case.h / 2)
         both = case.friction, case.surface_friction
         errors = {rule: abs(of(*both) - apparent) for rule, of in theory.RULES.items()}
-        fits = [rule for rule, error in errors.items() if error <= study_spec.RULE_TOLERANCE]
+        fits = [
+            rule for rule, error in errors.items() if error <= study_spec.RULE_TOLERANCE
+        ]
         expected = f"the larger of {both[0]:g} and {both[1]:g} and no other rule; "
         expected += f"it fits {' and '.join(fits) or 'none'}"
         yield Finding(f"{name}.friction", apparent, fits == ["the larger"], expected)
@@ -139,12 +165,14 @@ def by_formula(run: Experiment, name: str) -> Finding:
 
 
 def hop_follows_step(run: Experiment) -> Iterator[Finding]:
-    """From 10 ms to 2 ms the hop is that of the formula for one step, within 25 %; at smaller steps
-    at most 15 % of the hop at 5 ms is left.
+    """From 10 ms to 2 ms the hop is that of the formula for one step, within 25 %; at
+    smaller steps at most 15 % of the hop at 5 ms is left.
     """
     for step, cases in study_spec.HOP_STEP_CASES.items():
         for name in cases:
-            left = study_spec.HOP_LEFT * run.metrics[name.replace(step, "hop_5000us")].hop
+            left = (
+                study_spec.HOP_LEFT * run.metrics[name.replace(step, "hop_5000us")].hop
+            )
             fine = at_most(f"{name}.hop_m", run.metrics[name].hop, left)
             yield by_formula(run, name) if step in study_spec.HOP_APPLIES else fine
 
@@ -163,7 +191,10 @@ def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
 def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
     """The cube with the friction of the surface still stops near v² / (2 μ g)."""
     name = study.LANES["low"]
-    found, expected = run.metrics[name].stop_distance, theory.coulomb_distance(run.cases[name])
+    found, expected = (
+        run.metrics[name].stop_distance,
+        theory.coulomb_distance(run.cases[name]),
+    )
     yield nearly(f"{name}.stop_distance_m", found, expected, study_spec.NEARLY)
 
 
@@ -172,7 +203,9 @@ def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
     for name in study_spec.HOPPED:
         case, (lost, gained) = run.cases[name], study.first_impulses(run, name)
         mu = theory.pair_friction(case)
-        yield above(f"{name}.lost_m_s", lost, study_spec.BLOW * mu * case.gravity * case.dt)
+        yield above(
+            f"{name}.lost_m_s", lost, study_spec.BLOW * mu * case.gravity * case.dt
+        )
         label = f"{name}.mu_times_gained_m_s"
         yield nearly(label, mu * gained, lost, study_spec.RATIO_TOLERANCE)
 
@@ -184,26 +217,34 @@ def the_cone_alone_hops(run: Experiment) -> Iterator[Finding]:
 
 
 def half_the_step_contradicts(run: Experiment) -> Iterator[Finding]:
-    """The stopping distance of the cube with the higher coefficient changes by more than 5 % of
-    Coulomb's when the solver step of 5 ms is halved.
+    """The stopping distance of the cube with the higher coefficient changes by more
+    than 5 % of Coulomb's when the solver step of 5 ms is halved.
     """
     found = study.stops_of_lane(run, "high")
     yield from checks.stopped(found)
-    coarse, half = (found[name] or 0.0 for name in (study.LANES["high"], study_spec.HALF_THE_STEP))
-    change = abs(half - coarse) / theory.coulomb_distance(run.cases[study.LANES["high"]])
+    coarse, half = (
+        found[name] or 0.0 for name in (study.LANES["high"], study_spec.HALF_THE_STEP)
+    )
+    change = abs(half - coarse) / theory.coulomb_distance(
+        run.cases[study.LANES["high"]]
+    )
     yield above("change_at_half_the_step_share", change, study_spec.UNSETTLED)
 
 
 def one_stop_converges(run: Experiment) -> Iterator[Finding]:
-    """Over the steps of at most T / 10 the stopping distance of the cube with the low coefficient
-    changes by at most 5 % of Coulomb's.
+    """Over the steps of at most T / 10 the stopping distance of the cube with the low
+    coefficient changes by at most 5 % of Coulomb's.
     """
     for lane, coarsest in study.LANES.items():
         fine = [found or np.nan for found in study.stops_of_lane(run, lane).values()]
         spread = float(np.ptp(fine[-study_spec.FINEST :]))
         share = spread / theory.coulomb_distance(run.cases[coarsest])
         label = f"{lane}.spread_share"
-        yield at_most(label, share, study_spec.UNSETTLED) if lane == "low" else noted(label, share)
+        yield (
+            at_most(label, share, study_spec.UNSETTLED)
+            if lane == "low"
+            else noted(label, share)
+        )
 
 
 # The second engine
@@ -214,7 +255,9 @@ def engines_land_alike(run: Experiment) -> Iterator[Finding]:
     for name, other in study_spec.ENGINE_PAIRS.items():
         if name not in checks.measured(run, SlideMetrics):
             apart = study.heights_apart(run, name, other)
-            yield at_most(f"{name}.distance_to_{other}_m", apart, study_spec.ENGINES_APART)
+            yield at_most(
+                f"{name}.distance_to_{other}_m", apart, study_spec.ENGINES_APART
+            )
 
 
 def engines_hop_alike(run: Experiment) -> Iterator[Finding]:
@@ -227,16 +270,36 @@ def engines_hop_alike(run: Experiment) -> Iterator[Finding]:
 
 
 LECTURE = (
-    time_constants, rebound_goes, scatter_shrinks, first_step_decides, depth_by_hand,
-    clean_slides_stay_down, clean_slides_are_coulomb_s, clean_slides_order, larger_friction_rules,
-    default_cone_hops, hop_follows_step, hop_follows_speed,
-)  # fmt: skip
+    time_constants,
+    rebound_goes,
+    scatter_shrinks,
+    first_step_decides,
+    depth_by_hand,
+    clean_slides_stay_down,
+    clean_slides_are_coulomb_s,
+    clean_slides_order,
+    larger_friction_rules,
+    default_cone_hops,
+    hop_follows_step,
+    hop_follows_speed,
+)
 CONTACT = (
-    default_cone_hops, stops_nearly_right, hop_is_paid_by_friction, clean_slides_stay_down,
-    clean_slides_are_coulomb_s, larger_friction_rules, the_cone_alone_hops,
-    half_the_step_contradicts, one_stop_converges, engines_land_alike, engines_hop_alike,
-)  # fmt: skip
+    default_cone_hops,
+    stops_nearly_right,
+    hop_is_paid_by_friction,
+    clean_slides_stay_down,
+    clean_slides_are_coulomb_s,
+    larger_friction_rules,
+    the_cone_alone_hops,
+    half_the_step_contradicts,
+    one_stop_converges,
+    engines_land_alike,
+    engines_hop_alike,
+)
 ENERGY = (
-    time_constants, release_speed, stiff_contacts_rebound, checks.level_in_flight,
+    time_constants,
+    release_speed,
+    stiff_contacts_rebound,
+    checks.level_in_flight,
     checks.energy_converges,
-)  # fmt: skip
+)

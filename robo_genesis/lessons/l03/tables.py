@@ -9,7 +9,12 @@ from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.tables import as_table, metric_table
 from robo_genesis.core.text import NOT_OBSERVED, format_value
 from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, BounceMetrics, LandingMetrics, SlideMetrics
+from robo_genesis.lessons.l03.metrics import (
+    CLEAR,
+    BounceMetrics,
+    LandingMetrics,
+    SlideMetrics,
+)
 from robo_genesis.lessons.l03.text import millimetres, milliseconds, readable
 from robo_genesis.sim.bodies.contacts import ContactCase
 
@@ -75,7 +80,10 @@ def hops_by_step(run: Experiment) -> Iterator[Row]:
     """Return the hops by solver step for both coefficients, with the formula of one step."""
     for cases in study_spec.HOP_STEP_CASES.values():
         case = next(iter(cases.values()))
-        row = {"h": milliseconds(case.h), "h / T": f"{case.h / theory.contact_seconds(case):.3g}"}
+        row = {
+            "h": milliseconds(case.h),
+            "h / T": f"{case.h / theory.contact_seconds(case):.3g}",
+        }
         for name, of in cases.items():
             mu = theory.pair_friction(of)
             row[f"μ = {mu:g}"] = millimetres(run.metrics[name].hop)
@@ -100,7 +108,11 @@ def hops_by_speed(run: Experiment) -> Iterator[Row]:
 @as_table
 def settings_of_cones(run: Experiment) -> Iterator[Row]:
     """Return the pushed cubes by what the setting of the cone switches."""
-    kinds = (("", "convex", "1"), ("_convex", "convex", "1"), ("_elliptic", "signorini", "100"))
+    kinds = (
+        ("", "convex", "1"),
+        ("_convex", "convex", "1"),
+        ("_elliptic", "signorini", "100"),
+    )
     for suffix, resolution, impratio in kinds:
         for name in (f"{of}{suffix}" for of in study_spec.HOPPED):
             case, found = run.cases[name], run.metrics[name]
@@ -134,7 +146,10 @@ def stops_by_step(run: Experiment) -> Iterator[Row]:
 @as_table
 def engines(run: Experiment) -> Iterator[Row]:
     """Return how far each pair of runs is apart, and from when they are farther than 0.05 mm."""
-    for pair in (*study_spec.ENGINE_PAIRS.items(), ("baseline", study_spec.OWN_DEFAULTS)):
+    for pair in (
+        *study_spec.ENGINE_PAIRS.items(),
+        ("baseline", study_spec.OWN_DEFAULTS),
+    ):
         distance = study.distance_between(*(run.traces[name] for name in pair))
         excess = np.flatnonzero(distance > study_spec.ENGINES_APART)
         since, counts = "never", ["–", "–"]

@@ -58,19 +58,25 @@ SENTENCES = {
 }
 
 ADVICE = (
-    "Look first at the settings of the cases, the times of the samples, and contacts with the body."
+    "Look first at the settings of the cases, the times of the samples, "
+    "and contacts with the body."
 )
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs, or what a failed check found in their place."""
     values = {
-        name: SimpleNamespace(**{n: readable(value, unit) for n, value, unit in of.items()})
+        name: SimpleNamespace(
+            **{n: readable(value, unit) for n, value, unit in of.items()}
+        )
         for name, of in run.metrics.items()
     }
     checks = {check.name: check for check in run.outcomes()}
     said = {
-        title: [sentence_of(checks[name], of, values, ADVICE) for name, of in sentences.items()]
+        title: [
+            sentence_of(checks[name], of, values, ADVICE)
+            for name, of in sentences.items()
+        ]
         for title, sentences in SENTENCES.items()
     }
     return blocks(said)

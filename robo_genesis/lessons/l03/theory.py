@@ -1,8 +1,8 @@
 """Formulas of a contact as a linear spring and damper, and of Coulomb's friction on it.
 
 At a damping ratio of one, a contact with time constant T gives a body the acceleration
-−(2 / T) v − x / T², and it never pulls. Gravity is neglected while the two overlap. A sliding body
-has the speed v of its case and the friction coefficient μ of the pair.
+−(2 / T) v − x / T², and it never pulls. Gravity is neglected while the two overlap. A
+sliding body has the speed v of its case and the friction coefficient μ of the pair.
 """
 
 from collections.abc import Callable, Mapping
@@ -12,7 +12,8 @@ import numpy as np
 from robo_genesis.sim.bodies.contacts import ContactCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
-# The rules by which engines combine the coefficients of two surfaces, by their names in a text.
+# The rules by which engines combine the coefficients of two surfaces, by their names in
+# a text.
 RULES: Mapping[str, Callable[[float, float], float]] = {
     "the larger": max,
     "the smaller": min,
@@ -34,10 +35,11 @@ def coulomb_distance(case: ContactCase) -> float:
 def stepped_distance(case: ContactCase) -> float:
     """Return v² / (2 μ g) − v h / 2, the same distance in solver steps of length h [m].
 
-    Each step first takes μ g h from the speed and then moves the body with the new speed, as
-    semi-implicit Euler does. It is behind the continuous solution for a body that slows down, and
-    ahead of it for a body that falls. The formula is the exact sum where v / (μ g h) is a whole
-    number of steps; otherwise the sum is longer by up to μ g h² / 8.
+    Each step first takes μ g h from the speed and then moves the body with the new
+    speed, as semi-implicit Euler does. It is behind the continuous solution for a body
+    that slows down, and ahead of it for a body that falls. The formula is the exact sum
+    where v / (μ g h) is a whole number of steps; otherwise the sum is longer by up to μ
+    g h² / 8.
     """
     return coulomb_distance(case) - case.speed * case.h / 2
 
@@ -50,8 +52,9 @@ def apparent_friction(case: ContactCase, distance: float) -> float:
 def kept_at_bounces(damping_ratio: float) -> float:
     """Return the share of the energy that a linear spring with damping ratio ζ returns.
 
-    Half a period of x″ + 2 ζ ω x′ + ω² x = 0 multiplies the velocity by e^(−π ζ / √(1 − ζ²)), and
-    the energy by its square. The formula neglects gravity and lets the spring pull.
+    Half a period of x″ + 2 ζ ω x′ + ω² x = 0 multiplies the velocity by e^(−π ζ / √(1 −
+    ζ²)), and the energy by its square. The formula neglects gravity and lets the spring
+    pull.
     """
     return float(np.exp(-2 * np.pi * damping_ratio / np.sqrt(1 - damping_ratio**2)))
 
@@ -104,9 +107,9 @@ def rebound(case: ContactCase) -> float:
 def upward_blow(case: ContactCase) -> float:
     """Return the upward speed that one solver step gives a pushed body with the pyramid [m/s].
 
-    Of each contact's edges, the one against the motion has the speed −μ v. Its damper removes the
-    share 2 h / T of it in one step, along a direction in which a force changes the speed by
-    (1 + μ²) times the upward part.
+    Of each contact's edges, the one against the motion has the speed −μ v. Its damper
+    removes the share 2 h / T of it in one step, along a direction in which a force
+    changes the speed by (1 + μ²) times the upward part.
     """
     mu = pair_friction(case)
     return 2 * case.h / contact_seconds(case) * mu * case.speed / (1 + mu**2)

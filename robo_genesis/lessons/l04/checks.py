@@ -7,7 +7,15 @@ import numpy as np
 
 from robo_genesis.core import checks
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE, READ_BACK
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    nearly,
+    noted,
+)
 from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import format_value
@@ -27,7 +35,10 @@ def mapping(run: Experiment) -> Iterator[Finding]:
     yield from checks.model_counts(model, spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
     yield equal("joint_types", run.joints.types, spec.EXPECTED_TYPES)
-    for what, indices in (("dofs", run.joints.dofs_idx_local), ("qpos", run.joints.qs_idx_local)):
+    for what, indices in (
+        ("dofs", run.joints.dofs_idx_local),
+        ("qpos", run.joints.qs_idx_local),
+    ):
         inside = ((indices >= 0) & (indices < model[what])).all()
         distinct = len(set(indices)) == len(JOINT_NAMES)
         expected = f"nine different indices below {model[what]}"
@@ -37,12 +48,22 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 def configuration(run: Experiment) -> Iterator[Finding]:
     """Start, target, gains and limits have one finite value per joint; joint types have units."""
     fields = ("q_start", "q_target", "kp", "kv", "effort_limit")
-    chosen = {f"{n}.{name}": getattr(of, name) for n, of in spec.CASES.items() for name in fields}
-    limits = {f"limits.{name}": getattr(run.joints, name) for name in ("lower", "upper")}
+    chosen = {
+        f"{n}.{name}": getattr(of, name)
+        for n, of in spec.CASES.items()
+        for name in fields
+    }
+    limits = {
+        f"limits.{name}": getattr(run.joints, name) for name in ("lower", "upper")
+    }
     for name, values in (chosen | limits).items():
         recorded = name in limits
-        yield equal(f"{name}.shape", np.shape(values), (len(run.joints.names),), recorded)
-        yield equal(f"{name}.not_finite", int((~np.isfinite(values)).sum()), 0, recorded)
+        yield equal(
+            f"{name}.shape", np.shape(values), (len(run.joints.names),), recorded
+        )
+        yield equal(
+            f"{name}.not_finite", int((~np.isfinite(values)).sum()), 0, recorded
+        )
     unknown = set(run.joints.types) - (POSITION_UNIT.keys() & EFFORT_UNIT.keys())
     yield equal("joint_types_without_unit", sorted(unknown), [])
 
@@ -53,7 +74,9 @@ def target_limits(run: Experiment) -> Iterator[Finding]:
         q = getattr(spec.CASES[case], name)
         beyond = np.maximum(run.joints.lower - q, q - run.joints.upper)
         worst = run.joints.names[int(np.argmax(beyond))]
-        yield at_most(f"{case}.{name}.beyond_limit_of_{worst}", beyond.max(), LIMIT_TOLERANCE)
+        yield at_most(
+            f"{case}.{name}.beyond_limit_of_{worst}", beyond.max(), LIMIT_TOLERANCE
+        )
 
 
 def baseline_approaches(run: Experiment) -> Iterator[Finding]:
@@ -68,7 +91,9 @@ def same_start(run: Experiment) -> Iterator[Finding]:
     for name in ("G1", "G2", "G3"):
         trace = run.traces[name]
         links = np.abs(trace.link_pos[0] - first.link_pos[0]).max()
-        yield equal(f"{name}.joints_against_G1", np.abs(trace.q[0] - first.q[0]).max(), 0.0)
+        yield equal(
+            f"{name}.joints_against_G1", np.abs(trace.q[0] - first.q[0]).max(), 0.0
+        )
         yield equal(f"{name}.links_against_G1_m", links, 0.0)
         yield equal(f"{name}.start_speed", np.abs(trace.start_qd).max(), 0.0)
 
@@ -89,9 +114,13 @@ def not_observed(run: Experiment) -> Iterator[Finding]:
         risen = q - q[0] >= RISE_FRACTION * (q_target - q[0])
         inside = np.abs(q - q_target) <= SETTLING_BAND
         early = risen & (trace.t < (m.rise_time or 0.0))
-        late = ~inside & (trace.t >= (np.inf if m.settling_time is None else m.settling_time))
+        late = ~inside & (
+            trace.t >= (np.inf if m.settling_time is None else m.settling_time)
+        )
         yield equal(f"{name}.has_rise_time", m.rise_time is not None, bool(risen.any()))
-        yield equal(f"{name}.has_settling_time", m.settling_time is not None, bool(inside[-1]))
+        yield equal(
+            f"{name}.has_settling_time", m.settling_time is not None, bool(inside[-1])
+        )
         yield equal(f"{name}.samples_risen_before_rise_time", int(early.sum()), 0)
         yield equal(f"{name}.samples_off_band_after_settling_time", int(late.sum()), 0)
 
@@ -120,18 +149,24 @@ def saturation(run: Experiment) -> Iterator[Finding]:
     """The limit reads back as it was set, and saturated samples are counted against it."""
     for name, case in spec.CASES.items():
         trace, m = run.traces[name], run.metrics[name]
-        share = np.abs(trace.effort_limit - case.effort_limit) / np.abs(case.effort_limit)
+        share = np.abs(trace.effort_limit - case.effort_limit) / np.abs(
+            case.effort_limit
+        )
         yield at_most(f"{name}.limit_read_back_share", share.max(), READ_BACK)
         force = trace.control_force[:, spec.ENTRY].astype(np.float64)
         count = int(is_saturated(force, float(trace.effort_limit[spec.ENTRY])).sum())
         yield equal(f"{name}.saturation_samples", m.saturation_samples, count)
-        yield equal(f"{name}.saturation_duration_s", m.saturation_duration, count * case.dt)
+        yield equal(
+            f"{name}.saturation_duration_s", m.saturation_duration, count * case.dt
+        )
 
 
 # The compared cases, gravity and a longer window
 
 
-def orders(run: Experiment, engine: str, substeps: int = study.SUBSTEPS) -> Iterator[Finding]:
+def orders(
+    run: Experiment, engine: str, substeps: int = study.SUBSTEPS
+) -> Iterator[Finding]:
     """Require every ordering that the lesson claims of an engine's runs."""
     finer = f", {substeps} substeps" * (substeps != study.SUBSTEPS)
     for relation in spec.RELATIONS:
@@ -147,9 +182,10 @@ def claimed_orders(run: Experiment) -> Iterator[Finding]:
 
 
 def clipped_start(run: Experiment) -> Iterator[Finding]:
-    """G1 and G2 get the same clipped effort and move alike until G1 leaves its limit, which is
-    before G2 does. G2 and G3 get the same clipped effort until G2 leaves the limit, and then G3 is
-    slower. G2 also brakes at a limit. The effort of G3 first brakes farther from the target.
+    """G1 and G2 get the same clipped effort and move alike until G1 leaves its limit,
+    which is before G2 does. G2 and G3 get the same clipped effort until G2 leaves the
+    limit, and then G3 is slower. G2 also brakes at a limit. The effort of G3 first
+    brakes farther from the target.
     """
     g1, g2, g3 = (run.traces[case] for case in study_spec.COMPARED)
     until = [study.at_limit_until(trace) for trace in (g1, g2)]
@@ -164,7 +200,9 @@ def clipped_start(run: Experiment) -> Iterator[Finding]:
         slower[name] = float(one.qd[n - 1, spec.ENTRY] - other.qd[n - 1, spec.ENTRY])
     apart, noise = abs(slower["G1_and_G2"]), spec.RESOLUTION["rad/s"]
     yield at_most("G1_and_G2.speed_difference_rad_s", apart, noise)
-    yield above("G3.slower_than_G2_rad_s", slower["G2_and_G3"], spec.MARGINS["peak_speed"])
+    yield above(
+        "G3.slower_than_G2_rad_s", slower["G2_and_G3"], spec.MARGINS["peak_speed"]
+    )
     force, speed = g2.control_force[:, spec.ENTRY], g2.qd[:, spec.ENTRY]
     braking = is_saturated(force, g2.effort_limit[spec.ENTRY]) & (force * speed < 0)
     yield above("G2.braking_samples", int(braking.sum()), 0)
@@ -183,21 +221,28 @@ def gravity_support(run: Experiment) -> Iterator[Finding]:
         yield noted(f"{case}.final_velocity_rad_s", run.metrics[case].final_velocity)
         agrees = nearly(label, support, effort, study_spec.GRAVITY_AGREEMENT)
         yield agrees if case in at_rest else noted(label, support)
-    yield Finding("cases_at_rest", at_rest, bool(at_rest), "at least one", recorded=False)
+    yield Finding(
+        "cases_at_rest", at_rest, bool(at_rest), "at least one", recorded=False
+    )
 
 
 def ends_at_rest(run: Experiment) -> Iterator[Finding]:
     """The baseline and the compared cases end nearly at rest, inside the settling band."""
     for name in spec.CASES:
         m = run.metrics[name]
-        yield at_most(f"{name}.final_speed_rad_s", abs(m.final_velocity), study_spec.AT_REST)
+        yield at_most(
+            f"{name}.final_speed_rad_s", abs(m.final_velocity), study_spec.AT_REST
+        )
         yield below(f"{name}.share_of_band", m.final_error / SETTLING_BAND, 1.0)
 
 
 def same_beginning(run: Experiment) -> Iterator[Finding]:
     """The longer run of G2 begins with exactly the samples of G2."""
     short, long = run.traces["G2"], run.traces[study_spec.LONGER]
-    pairs = [[getattr(of, name) for of in (short, long)] for name in ("q", "qd", "control_force")]
+    pairs = [
+        [getattr(of, name) for of in (short, long)]
+        for name in ("q", "qd", "control_force")
+    ]
     same = all(np.array_equal(one, other[: len(one)]) for one, other in pairs)
     yield equal("same_samples", same and long.steps > short.steps, True, recorded=False)
 
@@ -206,17 +251,35 @@ def same_metrics(run: Experiment) -> Iterator[Finding]:
     """The longer run of G2 has the metrics of G2, in the digits that are shown."""
     longer = run.metrics[study_spec.LONGER]
     for name, value, unit in run.metrics["G2"].items():
-        found, expected = (format_value(of, unit) for of in (getattr(longer, name), value))
+        found, expected = (
+            format_value(of, unit) for of in (getattr(longer, name), value)
+        )
         yield equal(name, found, expected, recorded=False)
 
 
 CHECKS = (
-    mapping, configuration, target_limits, baseline_approaches, stamps, same_start, one_factor,
-    control_law, not_observed, measurements, saturation, laws_of_motion, posture,
-)  # fmt: skip
+    mapping,
+    configuration,
+    target_limits,
+    baseline_approaches,
+    stamps,
+    same_start,
+    one_factor,
+    control_law,
+    not_observed,
+    measurements,
+    saturation,
+    laws_of_motion,
+    posture,
+)
 WITHOUT_CAMERA = tuple(check for check in CHECKS if check is not posture)
 
 # Those that the lecture has besides.
 LECTURE = (
-    claimed_orders, clipped_start, gravity_support, ends_at_rest, same_beginning, same_metrics,
-)  # fmt: skip
+    claimed_orders,
+    clipped_start,
+    gravity_support,
+    ends_at_rest,
+    same_beginning,
+    same_metrics,
+)

@@ -36,7 +36,9 @@ RESPONSE = ("rise_time", "overshoot", "settling_time")
 
 
 @as_test
-def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> Iterator[Finding]:
+def resolver(
+    resolve: Callable[..., Any], robot: Any, joints: JointMap
+) -> Iterator[Finding]:
     """Check `resolve(robot, names)`: local DOFs in the order of the names, odd joints refused."""
     names = list(joints.names)
     yield equal("dofs", list(resolve(robot, names)), joints.dofs_idx_local.tolist())
@@ -59,20 +61,27 @@ def _joint(*dofs: int, qpos: int | None = None) -> SimpleNamespace:
     """Return a joint with these local DOFs, and other solver-level ones."""
     count = len(dofs)
     return SimpleNamespace(
-        n_dofs=count, n_qs=qpos or count + (count > 1), dofs_idx_local=list(dofs),
-        dofs_idx=[dof + 7 for dof in dofs], qs_idx_local=list(dofs),
-    )  # fmt: skip
+        n_dofs=count,
+        n_qs=qpos or count + (count > 1),
+        dofs_idx_local=list(dofs),
+        dofs_idx=[dof + 7 for dof in dofs],
+        qs_idx_local=list(dofs),
+    )
 
 
 @as_test
 def control_loop(
-    record: Callable[..., Any], scene: Any, robot: Any, joints: JointMap, case: ControlCase,
+    record: Callable[..., Any],
+    scene: Any,
+    robot: Any,
+    joints: JointMap,
+    case: ControlCase,
     trace: Trace,
-) -> Iterator[Finding]:  # fmt: skip
+) -> Iterator[Finding]:
     """Check `record(scene, robot, dofs, q_target, steps)` against a run of the same case.
 
-    Call it after a reset to the case. The function returns t (n+1,), q (n+1, d), qd (n, d) and the
-    control force (n, d).
+    Call it after a reset to the case. The function returns t (n+1,), q (n+1, d), qd (n,
+    d) and the control force (n, d).
     """
     dofs, name = joints.dofs_idx_local.tolist(), "control_dofs_position"
     with patch.object(robot, name, wraps=getattr(robot, name)) as command:
@@ -80,7 +89,9 @@ def control_loop(
     yield equal("number_of_commands", command.call_count, case.steps)
     expected = trace.t, trace.q, trace.qd, trace.control_force
     yield equal("number_of_arrays", len(found), len(expected))
-    for name, values, right in zip(("t", "q", "qd", "force"), found, expected, strict=True):
+    for name, values, right in zip(
+        ("t", "q", "qd", "force"), found, expected, strict=True
+    ):
         yield from same_array(f"{name}_against_the_recorded_run", values, right, TINY)
 
 
@@ -92,7 +103,10 @@ def pd_law(
     for number, (trace, case) in enumerate(traces):
         error, qd, force = case.q_target - trace.q[1:], trace.qd, trace.control_force
         constant = [float(of[ENTRY]) for of in (case.kp, case.kv, trace.effort_limit)]
-        found = [law(e, v, *constant) for e, v in zip(error[:, ENTRY], qd[:, ENTRY], strict=True)]
+        found = [
+            law(e, v, *constant)
+            for e, v in zip(error[:, ENTRY], qd[:, ENTRY], strict=True)
+        ]
         apart = np.abs(np.array(found, dtype=float) - force[:, ENTRY]).max()
         yield at_most(f"run_{number}.distance_to_control_force", apart, LAW)
     for sign in (1.0, -1.0):
@@ -106,12 +120,15 @@ def step_response(
 ) -> Iterator[Finding]:
     """Check `measure(t, q, q_target)`: rise time, overshoot, settling time; None if not observed.
 
-    The runs are measured ones; two invented responses never rise, and leave the band at the end.
+    The runs are measured ones; two invented responses never rise, and leave the band at
+    the end.
     """
     for number, (trace, of) in enumerate(runs):
         q, target = trace.q[:, ENTRY].astype(float), float(trace.target[0, ENTRY])
         expected = of.rise_time, of.overshoot, of.settling_time
-        yield from compared(f"run_{number}", RESPONSE, measure(trace.t, q, target), expected, TINY)
+        yield from compared(
+            f"run_{number}", RESPONSE, measure(trace.t, q, target), expected, TINY
+        )
     for name, q, expected in (
         ("never_rises", np.linspace(0.0, 0.1, 6), (None, 0.0, None)),
         ("leaves_at_the_end", np.array([0.0, *[0.25] * 4, 0.30]), (0.01, 0.05, None)),

@@ -14,24 +14,35 @@ from robo_genesis.core.tables import as_table
 from robo_genesis.core.text import decimal, format_value
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
-from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
+from robo_genesis.lessons.l04.study_spec import (
+    CASE_POINTS,
+    KP,
+    KV,
+    POINTS,
+    STEP_SIZES,
+    GridPoint,
+)
 from robo_genesis.lessons.l04.tables import NOUNS, UNITS, margin_text, share_text
 
 MEASURES = False
 
-# Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays.
+# Value of one unit of the packed integers [rad, N·m]. Metrics come from the full
+# arrays.
 PACKED = {"q": 1e-4, "force": 1e-2}
 
-UNTIL = 0.6  # End of the time axis of the curves [s]; after it, no run of the grid moves visibly
+# End of the time axis of the curves [s]; after it, no run of the grid moves visibly
+UNTIL = 0.6
 
 # The metrics shown for a run. The initial error is left out: it equals the step.
-LABELS = {n: label for n, label in StepMetrics.about("label").items() if n != "initial_error"}
+LABELS = {
+    n: label for n, label in StepMetrics.about("label").items() if n != "initial_error"
+}
 
 # Not in the table, because it is the number of saturated samples times the time step.
 REPEATED = "saturation_duration"
 
-# Factor, digits and unit of the number in a cell of the map, by metric. These metrics have a
-# declared margin, so a reader can be asked for the order of two runs.
+# Factor, digits and unit of the number in a cell of the map, by metric. These metrics
+# have a declared margin, so a reader can be asked for the order of two runs.
 CELLS = {
     "saturation_samples": (1, 0, "samples"),
     "rise_time": (1000, 0, "ms"),
@@ -44,7 +55,11 @@ NAMES = {point: name for name, point in CASE_POINTS.items()}
 
 def written(measured: StepMetrics) -> dict[str, str]:
     """Return the metrics shown for a run as texts."""
-    return {n: format_value(value, unit) for n, value, unit in measured.items() if n in LABELS}
+    return {
+        n: format_value(value, unit)
+        for n, value, unit in measured.items()
+        if n in LABELS
+    }
 
 
 def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
@@ -52,7 +67,11 @@ def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     name = f" (the case {NAMES[point]})" if point in NAMES else ""
     overshoot = f"{share_text(measured.overshoot / point.step)} of the step"
     count = measured.saturation_samples
-    force = f"Saturated: {count} of {samples} samples" if count else "Not saturated: no sample"
+    force = (
+        f"Saturated: {count} of {samples} samples"
+        if count
+        else "Not saturated: no sample"
+    )
     return (
         f"KP {point.kp:g}, KV {point.kv:g}, step {point.step:g} rad{name}. "
         f"Overshoot: {overshoot if measured.overshoot > 0 else 'none'}. {force} at the force limit."
@@ -73,15 +92,27 @@ def explored(run: Experiment) -> dict[str, Any]:
             "dt": first.dt,
             "until": UNTIL,
             "drawn": [
-                {"key": "q", "name": "Position", "title": "Position [rad], target dotted",
-                 "unit": PACKED["q"], "zero": float(first.q[0, ENTRY]), "first": 0},
-                {"key": "force", "name": "Control force", "unit": PACKED["force"], "zero": 0,
-                 "title": "Control force [N·m], limits dashed", "first": 1},
+                {
+                    "key": "q",
+                    "name": "Position",
+                    "title": "Position [rad], target dotted",
+                    "unit": PACKED["q"],
+                    "zero": float(first.q[0, ENTRY]),
+                    "first": 0,
+                },
+                {
+                    "key": "force",
+                    "name": "Control force",
+                    "unit": PACKED["force"],
+                    "zero": 0,
+                    "title": "Control force [N·m], limits dashed",
+                    "first": 1,
+                },
             ],
         },
         "without_script": "The explorer needs JavaScript. The table of all runs on the page about "
         "the grid shows the same.",
-    }  # fmt: skip
+    }
 
 
 def _map(run: Experiment, step: float) -> dict[str, Any]:
@@ -90,7 +121,9 @@ def _map(run: Experiment, step: float) -> dict[str, Any]:
     first = run.traces[POINTS[0].name]
     start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
     target, room = start + step, 0.08 * step
-    highest = max(start + PACKED["q"] * max(max(cell["q"]) for cell in cells.values()), target)
+    highest = max(
+        start + PACKED["q"] * max(max(cell["q"]) for cell in cells.values()), target
+    )
     return {
         "label": f"{step:g} rad",
         "setting": f"step {step:g} rad",
@@ -101,16 +134,27 @@ def _map(run: Experiment, step: float) -> dict[str, Any]:
             for kp in reversed(KP)
         ],
         "axes": {
-            "q": _axis((start, start + step / 2, target), (start - room, highest + room), 3,
-                       {target: "target"}),
-            "force": _axis((-limit, 0.0, limit), (-1.15 * limit, 1.15 * limit), 0,
-                           {-limit: "limit", limit: "limit"}),
+            "q": _axis(
+                (start, start + step / 2, target),
+                (start - room, highest + room),
+                3,
+                {target: "target"},
+            ),
+            "force": _axis(
+                (-limit, 0.0, limit),
+                (-1.15 * limit, 1.15 * limit),
+                0,
+                {-limit: "limit", limit: "limit"},
+            ),
         },
-    }  # fmt: skip
+    }
 
 
 def _axis(
-    ticks: Sequence[float], ends: Sequence[float], digits: int, levels: Mapping[float, str]
+    ticks: Sequence[float],
+    ends: Sequence[float],
+    digits: int,
+    levels: Mapping[float, str],
 ) -> dict[str, Any]:
     """Return the value axis of a curve; `levels` are marks of the palette by their value."""
     return {
@@ -152,7 +196,9 @@ def _cell(run: Experiment, point: GridPoint) -> dict[str, Any]:
             for name, value in numbers.items()
         ],
         "q": _integers(q[: drawn + 1] - q[0], PACKED["q"]),
-        "force": _integers(trace.control_force[:drawn, ENTRY].astype(float), PACKED["force"]),
+        "force": _integers(
+            trace.control_force[:drawn, ENTRY].astype(float), PACKED["force"]
+        ),
     }
 
 

@@ -1,7 +1,7 @@
 """Step-response metrics of one joint, from a trace alone, and their form in `metrics.json`.
 
-All of them describe a finite window with samples dt apart; none of them proves stability. A metric
-that was not observed is None.
+All of them describe a finite window with samples dt apart; none of them proves
+stability. A metric that was not observed is None.
 """
 
 from dataclasses import dataclass
@@ -16,12 +16,14 @@ RISE_FRACTION = 0.9  # Share of the step that counts as risen
 
 SETTLING_BAND = 0.01  # Half width of the settling band around the target [rad or m]
 
-# Share of the read-back limit from which a sample is called saturated. It detects saturation; the
-# engine clips at the full limit.
+# Share of the read-back limit from which a sample is called saturated. It detects
+# saturation; the engine clips at the full limit.
 SATURATION_THRESHOLD = 0.99
 
 
-def is_saturated(control_force: FloatArray | float, limit: FloatArray | float) -> np.ndarray:
+def is_saturated(
+    control_force: FloatArray | float, limit: FloatArray | float
+) -> np.ndarray:
     """Return where a control force of either sign reaches the saturation threshold of its limit."""
     return np.asarray(np.abs(control_force) >= SATURATION_THRESHOLD * limit)
 
@@ -43,7 +45,9 @@ class StepMetrics(CaseMetrics):
     final_velocity: float = metric("rad/s", "final velocity", "qd_rad_s_or_m_s")
     peak_speed: float = metric("rad/s", "peak speed", "qd_rad_s_or_m_s")
     peak_control: float = metric("N·m", "peak control", "control_force_Nm_or_N")
-    saturation_samples: int = metric("1", "saturation", *EFFORT, noun="number of saturated samples")
+    saturation_samples: int = metric(
+        "1", "saturation", *EFFORT, noun="number of saturated samples"
+    )
     saturation_duration: float = metric("s", "saturation, seconds", *EFFORT, "t_s")
 
 
@@ -60,14 +64,16 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
         entry: column of the joint in the trace's arrays.
 
     Raises:
-        ValueError: the step is zero or negative (rise and overshoot are one-sided), or the target
-            changes during the run.
+        ValueError: the step is zero or negative (rise and overshoot are one-sided), or
+            the target changes during the run.
         IndexError: the arrays have no column `entry`.
     """
     q = trace.q[:, entry].astype(np.float64)
     target = trace.target[:, entry].astype(np.float64)
     if not (target == target[0]).all():
-        raise ValueError("The target changes during the run. Measure a run with a constant target.")
+        raise ValueError(
+            "The target changes during the run. Measure a run with a constant target."
+        )
     q_target = float(target[0])
     step = q_target - q[0]
     if step <= 0:
@@ -76,7 +82,9 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
             "defined for a positive step. Measure the mirrored response, or choose a higher target."
         )
     control = np.abs(trace.control_force[:, entry].astype(np.float64))
-    saturation_samples = int(is_saturated(control, float(trace.effort_limit[entry])).sum())
+    saturation_samples = int(
+        is_saturated(control, float(trace.effort_limit[entry])).sum()
+    )
     qd = trace.qd[:, entry].astype(np.float64)
     return StepMetrics(
         initial_error=float(step),

@@ -35,14 +35,18 @@ ASSIGNED = Run(
 )
 LECTURE = STEPS.with_more(
     partial(study_spec.parameters, "lecture"),
-    runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES) | {study_spec.ASSIGNED: ASSIGNED},
+    runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES)
+    | {study_spec.ASSIGNED: ASSIGNED},
     {study.GROUP: Readings(study.GRAVITY)},
     (study_checks.study_factors, study_checks.same_model, *checks.LECTURE),
 )
 FORMULA = MISTAKES.with_more(
     partial(study_spec.parameters, "formula"),
     # A run that holds its start has no step, so it has no metrics.
-    {n: Run(case, not n.endswith("_hold")) for n, case in study_spec.STEP_CASES.items()},
+    {
+        n: Run(case, not n.endswith("_hold"))
+        for n, case in study_spec.STEP_CASES.items()
+    },
     {study.GROUP: Readings(study.AT_START | study.MASSES | study.GRAVITY)},
     study_checks.FORMULA,
 )

@@ -55,8 +55,15 @@ def assigned(run: Experiment) -> Figure:
     ax.axhline(float(commanded.target[0, ENTRY]), label="target", **LINE)
     crosses = look("other", linestyle="", marker="x", markersize=4)
     ax.plot(written.t[::4], written.q[::4, ENTRY], label="set_dofs_position", **crosses)
-    ax.plot(commanded.t, commanded.q[:, ENTRY], label="control_dofs_position", **look("baseline"))
-    plotting.finish(ax, f"Assigned or commanded, {STEPPED_JOINT}", "q [rad]", "lower right")
+    ax.plot(
+        commanded.t,
+        commanded.q[:, ENTRY],
+        label="control_dofs_position",
+        **look("baseline"),
+    )
+    plotting.finish(
+        ax, f"Assigned or commanded, {STEPPED_JOINT}", "q [rad]", "lower right"
+    )
     return figure
 
 
@@ -73,7 +80,8 @@ def compared(run: Experiment) -> Figure:
 def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figure:
     """Draw position, velocity and control force of the stepped joint up to `until` [s].
 
-    The position has the common target and its settling band, the force the limits read back.
+    The position has the common target and its settling band, the force the limits read
+    back.
     """
     figure, first = plotting.figure(height), next(iter(traces.values()))
     position, velocity, force = axes = figure.subplots(3, 1, sharex=True)
@@ -115,17 +123,38 @@ def defined(run: Experiment) -> Figure:
     ax.plot(trace.t, q, marker=".", markersize=6, **look("further"))
     for value, unit, time, name, height, start in (
         (m.rise_time, "s", m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
-        (m.settling_time, "s", m.settling_time,
-         "settling time, in the band\nfrom here on:", 0.42, (0.35, 1)),
+        (
+            m.settling_time,
+            "s",
+            m.settling_time,
+            "settling time, in the band\nfrom here on:",
+            0.42,
+            (0.35, 1),
+        ),
         (m.overshoot, "rad", trace.t[q.argmax()], "overshoot:", 0.94, (0, 0.5)),
         (m.final_error, "rad", START, "final error:", 0.62, (0.8, 1)),
-    ):  # fmt: skip
+    ):
         if time is not None:
             at = int(np.abs(trace.t - time).argmin())
-            arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9, "relpos": start}
-            text, place = f"{name} {format_value(value, unit)}", (float(trace.t[at]), float(q[at]))
-            ax.annotate(text, place, (0.98, height), textcoords="axes fraction", ha="right",
-                        va="center", arrowprops=arrow)  # fmt: skip
+            arrow = {
+                "arrowstyle": "->",
+                "color": LINE["color"],
+                "linewidth": 0.9,
+                "relpos": start,
+            }
+            text, place = (
+                f"{name} {format_value(value, unit)}",
+                (float(trace.t[at]), float(q[at])),
+            )
+            ax.annotate(
+                text,
+                place,
+                (0.98, height),
+                textcoords="axes fraction",
+                ha="right",
+                va="center",
+                arrowprops=arrow,
+            )
     ax.set_xlim(-0.005, START)
     plotting.finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]")
     return figure
@@ -143,14 +172,25 @@ def _target(ax: Axes, trace: Trace) -> None:
 
 def theory(run: Experiment) -> Figure:
     """Draw the compared cases over the ideal joint's response, one case on each axes."""
-    start, t, figure = spec.BASELINE.q_start[ENTRY], run.traces["G1"].t, plotting.figure(7)
+    start, t, figure = (
+        spec.BASELINE.q_start[ENTRY],
+        run.traces["G1"].t,
+        plotting.figure(7),
+    )
     axes = figure.subplots(len(study_spec.COMPARED), 1, sharex=True)
     for ax, name in zip(axes, study_spec.COMPARED, strict=True):
         ideal = start + spec.STEP * study.ideal(run, name).response(t)
         ax.axhline(start + spec.STEP, **LINE)
         ax.plot(t, ideal, label="ideal joint", **IDEAL)
-        ax.plot(t, run.traces[name].q[:, ENTRY], label="measured", **look(CASE_MARKS[name]))
-        ax.set(title=name, xlim=(0, 0.4), xlabel="time [s]", ylabel=f"q of {STEPPED_JOINT} [rad]")
+        ax.plot(
+            t, run.traces[name].q[:, ENTRY], label="measured", **look(CASE_MARKS[name])
+        )
+        ax.set(
+            title=name,
+            xlim=(0, 0.4),
+            xlabel="time [s]",
+            ylabel=f"q of {STEPPED_JOINT} [rad]",
+        )
         ax.legend(loc="lower right")
         ax.label_outer()
     return figure
@@ -192,8 +232,13 @@ def overshoot_by_step(run: Experiment) -> Figure:
             empty = style | {"linestyle": "", "markerfacecolor": PARTS["ground"].light}
             ax.plot(steps[hollow], values[hollow], label=f"{label}, unstable", **empty)
     ax.axvline(1000 * study.H, **LINE)
-    ax.annotate("the lesson's step", (1000 * study.H, 0), (-4, 4), textcoords="offset points",
-                ha="right")  # fmt: skip
+    ax.annotate(
+        "the lesson's step",
+        (1000 * study.H, 0),
+        (-4, 4),
+        textcoords="offset points",
+        ha="right",
+    )
     log_axis(ax, steps, "solver step h [ms]")
     ax.set_ylabel("overshoot of G2 [rad]")
     ax.set_ylim(0, 1.4 * ax.get_ylim()[1])  # space for the legend

@@ -1,8 +1,8 @@
 """Specification of lesson L04: cases, predictions, margins and tolerances.
 
-Pages, checks, verification and tests read the experiment here. The module is data and computes
-nothing. `parameters()` has the values that decide what runs and how a metric is computed; only a
-change there makes evidence stale. All other values only judge.
+Pages, checks, verification and tests read the experiment here. The module is data and
+computes nothing. `parameters()` has the values that decide what runs and how a metric
+is computed; only a change there makes evidence stale. All other values only judge.
 """
 
 from dataclasses import replace
@@ -12,7 +12,11 @@ import numpy as np
 
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import DT
-from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
+from robo_genesis.lessons.l04.metrics import (
+    RISE_FRACTION,
+    SATURATION_THRESHOLD,
+    SETTLING_BAND,
+)
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase
@@ -57,17 +61,23 @@ CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
 CASE_MARKS = {"baseline": "baseline", "G1": "first", "G2": "second", "G3": "third"}
 
 # The only entry that may differ between two compared cases.
-ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}
+ONE_FACTOR = {
+    ("G1", "G2"): [f"kp[{STEPPED_JOINT}]"],
+    ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"],
+}
 
-# An order counts as shown when the difference exceeds this margin. The margins are above
-# `RESOLUTION`, because a time or a count may fall one sample to either side.
+# An order counts as shown when the difference exceeds this margin. The margins are
+# above `RESOLUTION`, because a time or a count may fall one sample to either side.
 MARGINS = {
-    "rise_time": 1.5 * DT, "settling_time": 1.5 * DT, "peak_speed": 0.05, "overshoot": 1e-3,
+    "rise_time": 1.5 * DT,
+    "settling_time": 1.5 * DT,
+    "peak_speed": 0.05,
+    "overshoot": 1e-3,
     "saturation_samples": 1.5,
-}  # fmt: skip
+}
 
-# The lesson's predictions: how the second case of a pair compares with the first. They are not
-# fitted to a run, and a refreshed run must still show them.
+# The lesson's predictions: how the second case of a pair compares with the first. They
+# are not fitted to a run, and a refreshed run must still show them.
 RELATIONS = tuple(
     (pair, metric, order, MARGINS[metric])
     for pair, metric, order in (
@@ -81,13 +91,21 @@ RELATIONS = tuple(
     )
 )
 
-# By unit, or by metric or array: (atol, rtol) of a value between engine versions or backends. A
-# time on the grid of samples must not move at all; counts are exact.
+# By unit, or by metric or array: (atol, rtol) of a value between engine versions or
+# backends. A time on the grid of samples must not move at all; counts are exact.
 TOLERANCES = {
-    "rad": (1e-4, 1e-3), "rad/s": (1e-3, 1e-3), "s": (DT / 2, 0.0), "N·m": (1e-2, 1e-3),
-    "kg·m²": (1e-4, 1e-3), "N·m·s/rad": (1e-6, 0.0), "initial_error": (1e-6, 0.0),
-    "m": (1e-4, 1e-3), "m/s": (1e-3, 1e-3), "N": (1e-2, 1e-3), "link_quat_wxyz": (1e-4, 0.0),
-}  # fmt: skip
+    "rad": (1e-4, 1e-3),
+    "rad/s": (1e-3, 1e-3),
+    "s": (DT / 2, 0.0),
+    "N·m": (1e-2, 1e-3),
+    "kg·m²": (1e-4, 1e-3),
+    "N·m·s/rad": (1e-6, 0.0),
+    "initial_error": (1e-6, 0.0),
+    "m": (1e-4, 1e-3),
+    "m/s": (1e-3, 1e-3),
+    "N": (1e-2, 1e-3),
+    "link_quat_wxyz": (1e-4, 0.0),
+}
 
 LIMIT_EXCESS = 1e-3  # Tolerance of a control force above its limit [N·m or N]
 
@@ -95,8 +113,8 @@ LIMIT_EXCESS = 1e-3  # Tolerance of a control force above its limit [N·m or N]
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lesson as JSON values, for the evidence key.
 
-    Expected values, predictions, margins, tolerances and resolutions are not inputs: they judge the
-    measurement and do not change it.
+    Expected values, predictions, margins, tolerances and resolutions are not inputs:
+    they judge the measurement and do not change it.
     """
     return inputs(
         CASES,

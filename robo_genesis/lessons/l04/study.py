@@ -13,7 +13,12 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
 from robo_genesis.lessons.l04.spec import ENTRY
-from robo_genesis.lessons.l04.theory import IdealJoint, overshoot_share, step_share, stepped_joint
+from robo_genesis.lessons.l04.theory import (
+    IdealJoint,
+    overshoot_share,
+    step_share,
+    stepped_joint,
+)
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, run_case
@@ -29,13 +34,17 @@ SUBSTEPS, H = spec.G1.substeps, spec.G1.dt / spec.G1.substeps
 # Velocity gains of the compared cases [N·m·s/rad].
 COMPARED_KV = sorted({float(case.kv[ENTRY]) for case in study_spec.COMPARED.values()})
 
-# Group of a bundle's metrics: what the engines report of the stepped joint without a run.
+# Group of a bundle's metrics: what the engines report of the stepped joint without a
+# run.
 GROUP = "readings"
 
-# What Genesis reports of the start pose, with units. Gravity is the effort that holds it.
+# What Genesis reports of the start pose, with units. Gravity is the effort that holds
+# it.
 AT_START = {
-    "passive_damping": "N·m·s/rad", "inertia_Genesis": "kg·m²", "gravity_at_start_Genesis": "N·m",
-}  # fmt: skip
+    "passive_damping": "N·m·s/rad",
+    "inertia_Genesis": "kg·m²",
+    "gravity_at_start_Genesis": "N·m",
+}
 
 # Entry of the mass matrix at the start while a position is commanded with this KV.
 MASSES = {f"mass_KV_{kv:g}": "kg·m²" for kv in COMPARED_KV}
@@ -75,7 +84,9 @@ def read_gravity(
 ) -> dict[str, float]:
     """Read the gravity effort at the end state of each case, in Genesis."""
     ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES}
-    efforts = {n: dynamics.gravity_effort(scene, robot, joints, q) for n, q in ends.items()}
+    efforts = {
+        n: dynamics.gravity_effort(scene, robot, joints, q) for n, q in ends.items()
+    }
     return {name: float(of[ENTRY]) for name, of in efforts.items()}
 
 
@@ -85,7 +96,9 @@ def by_model(traces: Mapping[str, Trace]) -> dict[str, float]:
     inertia, gravity, damping = (float(of[ENTRY]) for of in start)
     found = dict(zip(AT_START, (damping, inertia, gravity), strict=True))
     found |= {f"mass_KV_{kv:g}": inertia + H * (damping + kv) for kv in COMPARED_KV}
-    ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES if name in traces}
+    ends = {
+        f"gravity_{name}": traces[name].q[-1] for name in spec.CASES if name in traces
+    }
     efforts = {name: mujoco_kinematics.gravity_effort(q) for name, q in ends.items()}
     return found | {name: float(of[ENTRY]) for name, of in efforts.items()}
 
@@ -135,14 +148,16 @@ def supports(run: Experiment, case: str) -> tuple[float, float]:
 def model_overshoot(run: Experiment, case: str, height: float) -> float:
     """Return the overshoot of the stepped model of one joint at the run's samples [rad].
 
-    A step of the lesson's height has the force limit and gravity: the mean of the efforts that hold
-    start and end of the case. A smaller step has neither.
+    A step of the lesson's height has the force limit and gravity: the mean of the
+    efforts that hold start and end of the case. A smaller step has neither.
     """
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
     limit, gravity = np.inf, 0.0
     if height >= spec.STEP:
         limit = float(gains.effort_limit[ENTRY])
-        gravity = (readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]) / 2
+        gravity = (
+            readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]
+        ) / 2
     passive, n = readings["passive_damping"], gains.steps * SUBSTEPS
     path = stepped_joint(ideal(run, case), passive, height, H, n, limit, gravity)
     return float(max(0.0, path[::SUBSTEPS].max()))
@@ -151,12 +166,17 @@ def model_overshoot(run: Experiment, case: str, height: float) -> float:
 def overshoots(run: Experiment, case: str, height: float) -> tuple[float, float, float]:
     """Return the overshoots [rad] of the ideal joint, of the stepped model and of Genesis.
 
-    The last is that of a difference of two runs for the small step, and the metric for the other.
+    The last is that of a difference of two runs for the small step, and the metric for
+    the other.
     """
     found = run.metrics[case].overshoot
     if height < spec.STEP:
         found = overshoot_share(share(run, case, "small")) * height
-    return ideal(run, case).overshoot * height, model_overshoot(run, case, height), found
+    return (
+        ideal(run, case).overshoot * height,
+        model_overshoot(run, case, height),
+        found,
+    )
 
 
 def leaves_ideal(run: Experiment, case: str) -> tuple[int, float]:
@@ -214,15 +234,22 @@ def by_engine(run: Experiment, case: str) -> dict[str, Trace]:
     return {engine: run.traces[run_name(engine, case)] for engine in ENGINES}
 
 
-def compared(run: Experiment, engine: str, substeps: int = SUBSTEPS) -> dict[str, StepMetrics]:
+def compared(
+    run: Experiment, engine: str, substeps: int = SUBSTEPS
+) -> dict[str, StepMetrics]:
     """Return the metrics of G1 to G3 in one engine."""
-    return {case: run.metrics[run_name(engine, case, substeps)] for case in study_spec.COMPARED}
+    return {
+        case: run.metrics[run_name(engine, case, substeps)]
+        for case in study_spec.COMPARED
+    }
 
 
 def unstable(run: Experiment, engine: str, substeps: int = SUBSTEPS) -> bool:
     """Return whether a run of an engine is unstable: of G1 to G3, or of G2 with other substeps."""
     cases = study_spec.COMPARED if substeps == SUBSTEPS else ("G2",)
-    return any(unstable_joints(run.traces[run_name(engine, case, substeps)]) for case in cases)
+    return any(
+        unstable_joints(run.traces[run_name(engine, case, substeps)]) for case in cases
+    )
 
 
 def overshoot_by_substeps(run: Experiment, engine: str) -> dict[int, float]:
@@ -234,7 +261,9 @@ def overshoot_by_substeps(run: Experiment, engine: str) -> dict[int, float]:
 def spread(run: Experiment, substeps: int) -> float:
     """Return how far the stable engines' overshoots of G2 differ [rad]."""
     stable = [engine for engine in ENGINES if not unstable(run, engine, substeps)]
-    return float(np.ptp([overshoot_by_substeps(run, engine)[substeps] for engine in stable]))
+    return float(
+        np.ptp([overshoot_by_substeps(run, engine)[substeps] for engine in stable])
+    )
 
 
 def relation_outcome(
@@ -243,5 +272,7 @@ def relation_outcome(
     """Return whether an engine's runs show one claimed ordering, and the two values."""
     cases, metric, *_ = relation
     unit, found = StepMetrics.about("unit")[metric], compared(run, engine, substeps)
-    values = {f"{case}.{metric}": Value(getattr(found[case], metric), unit) for case in cases}
+    values = {
+        f"{case}.{metric}": Value(getattr(found[case], metric), unit) for case in cases
+    }
     return outcome(values, relation)

@@ -6,7 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    nearly,
+    noted,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import checks, spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import is_saturated
@@ -25,7 +34,9 @@ def study_factors(run: Experiment) -> Iterator[Finding]:
         for name, case in ((n, c) for n, c in cases.items() if n in run.page.runs):
             compared = name.split("_")[0]
             found = differences(study_spec.COMPARED[compared], case, run.joints)
-            yield equal(f"difference of {compared} and {name}", found, [factor], recorded=False)
+            yield equal(
+                f"difference of {compared} and {name}", found, [factor], recorded=False
+            )
 
 
 def same_model(run: Experiment) -> Iterator[Finding]:
@@ -46,21 +57,25 @@ def small_step_unsaturated(run: Experiment) -> Iterator[Finding]:
 
 
 def theory_small_step(run: Experiment) -> Iterator[Finding]:
-    """The overshoot of each small step agrees with the formula within the declared margin, and its
-    curve is closer to the formula than that of the large step.
+    """The overshoot of each small step agrees with the formula within the declared
+    margin, and its curve is closer to the formula than that of the large step.
     """
     for case in study_spec.SMALL_STEPPED:
         ideal, found = study.ideal(run, case).overshoot, study.share(run, case, "small")
         allowed = study_spec.SMALL_STEP_TOLERANCE
-        yield within(f"{case}_small.overshoot_share", overshoot_share(found), ideal, allowed)
+        yield within(
+            f"{case}_small.overshoot_share", overshoot_share(found), ideal, allowed
+        )
         yield noted(f"{case}.ideal_overshoot_share", ideal)
-        off_small, off_large = (study.off_ideal(run, case, kind) for kind in ("small", ""))
+        off_small, off_large = (
+            study.off_ideal(run, case, kind) for kind in ("small", "")
+        )
         yield below(f"{case}_small.distance_to_theory", off_small, off_large)
 
 
 def stepped_model(run: Experiment) -> Iterator[Finding]:
-    """The overshoots of a one-joint model with the solver step agree with Genesis within the
-    declared margins.
+    """The overshoots of a one-joint model with the solver step agree with Genesis
+    within the declared margins.
     """
     small, allowed = study_spec.SMALL_STEP, study_spec.SMALL_STEP_TOLERANCE
     for case in study_spec.SMALL_STEPPED:
@@ -68,12 +83,18 @@ def stepped_model(run: Experiment) -> Iterator[Finding]:
         yield within(f"{case}_small.overshoot_share_of_model", model, found, allowed)
     for case in study_spec.COMPARED:
         _, model, found = study.overshoots(run, case, spec.STEP)
-        yield within(f"{case}.overshoot_of_model_rad", model, found, study_spec.ONE_JOINT_TOLERANCE)
+        yield within(
+            f"{case}.overshoot_of_model_rad",
+            model,
+            found,
+            study_spec.ONE_JOINT_TOLERANCE,
+        )
 
 
 def model_predicts(run: Experiment) -> Iterator[Finding]:
-    """The stepped model overshoots in the large steps in which Genesis does. In the small step of
-    G1 it is nearer to Genesis than the ideal joint, in that of G2 it is not.
+    """The stepped model overshoots in the large steps in which Genesis does. In the
+    small step of G1 it is nearer to Genesis than the ideal joint, in that of G2 it is
+    not.
     """
     margin = spec.MARGINS["overshoot"]
     for case in study_spec.COMPARED:
@@ -81,21 +102,27 @@ def model_predicts(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{case}.model_overshoots", model > margin, found > margin)
     for case, nearer in (("G1", True), ("G2", False)):
         ideal, model, found = study.overshoots(run, case, study_spec.SMALL_STEP)
-        off_model, off_ideal = np.abs(np.array([model, ideal]) - found) / study_spec.SMALL_STEP
+        off_model, off_ideal = (
+            np.abs(np.array([model, ideal]) - found) / study_spec.SMALL_STEP
+        )
         yield noted(f"{case}_small.model_off_share", off_model)
         yield noted(f"{case}_small.ideal_off_share", off_ideal)
         yield equal(f"{case}_small.model_nearer", bool(off_model < off_ideal), nearer)
 
 
 def clipped_before_parting(run: Experiment) -> Iterator[Finding]:
-    """Each compared case is too far from the ideal joint at the first sample after t = 0, and its
-    effort at t = 0 is clipped.
+    """Each compared case is too far from the ideal joint at the first sample after t =
+    0, and its effort at t = 0 is clipped.
     """
     for case in study_spec.COMPARED:
         trace, (sample, distance) = run.traces[case], study.leaves_ideal(run, case)
-        first, limit = (of[spec.ENTRY] for of in (trace.start_control_force, trace.effort_limit))
+        first, limit = (
+            of[spec.ENTRY] for of in (trace.start_control_force, trace.effort_limit)
+        )
         yield equal(f"{case}.first_sample_too_far", sample, 1)
-        yield equal(f"{case}.first_effort_clipped", bool(is_saturated(first, limit)), True)
+        yield equal(
+            f"{case}.first_effort_clipped", bool(is_saturated(first, limit)), True
+        )
         yield noted(f"{case}.largest_distance_rad", distance)
 
 
@@ -104,7 +131,9 @@ def convergence(run: Experiment) -> Iterator[Finding]:
     overshoot = study.overshoot_by_substeps(run, "Genesis")
     for coarse, fine in pairwise(overshoot):
         fall = overshoot[coarse] - overshoot[fine]
-        yield above(f"fall_from_{coarse}_to_{fine}_substeps_rad", fall, spec.RESOLUTION["rad"])
+        yield above(
+            f"fall_from_{coarse}_to_{fine}_substeps_rad", fall, spec.RESOLUTION["rad"]
+        )
 
 
 def one_limit(run: Experiment) -> Iterator[Finding]:
@@ -112,7 +141,9 @@ def one_limit(run: Experiment) -> Iterator[Finding]:
     steps = spec.G2.substeps, max(study_spec.SUBSTEPS_STUDIED)
     declared, finest = (study.spread(run, n) for n in steps)
     yield noted("spread_at_lesson_step_rad", declared)
-    yield at_most("spread_at_finest_step_rad", finest, study_spec.SPREAD_SHARE * declared)
+    yield at_most(
+        "spread_at_finest_step_rad", finest, study_spec.SPREAD_SHARE * declared
+    )
 
 
 def second_engine_order(run: Experiment) -> Iterator[Finding]:
@@ -124,19 +155,21 @@ def second_engine_order(run: Experiment) -> Iterator[Finding]:
 
 
 def order_at_finer_step(run: Experiment) -> Iterator[Finding]:
-    """Every ordering that the lesson claims also holds in Genesis with half the solver step, and
-    with a tenth.
+    """Every ordering that the lesson claims also holds in Genesis with half the solver
+    step, and with a tenth.
     """
     for substeps in study_spec.REFINED:
         yield from checks.orders(run, "Genesis", substeps)
 
 
 def stable_engines(run: Experiment) -> Iterator[Finding]:
-    """At the lesson's solver step, G1 to G3 are stable in Genesis and with implicitfast, and at
-    least one of them is unstable with Euler.
+    """At the lesson's solver step, G1 to G3 are stable in Genesis and with
+    implicitfast, and at least one of them is unstable with Euler.
     """
     for engine in study.ENGINES:
-        yield equal(f"{engine}.unstable", study.unstable(run, engine), engine == "Euler")
+        yield equal(
+            f"{engine}.unstable", study.unstable(run, engine), engine == "Euler"
+        )
     for case in ("G2", "G3"):
         above_two = np.flatnonzero(study.damping_ratio(case) > 2)
         yield noted(f"{case}.ratio_above_two", [run.joints.names[k] for k in above_two])
@@ -145,14 +178,16 @@ def stable_engines(run: Experiment) -> Iterator[Finding]:
 
 
 def first_step(run: Experiment) -> Iterator[Finding]:
-    """G2 and G3 have the same clipped effort before and after the first outer step. They move alike
-    in MuJoCo, while G3 is slower in Genesis.
+    """G2 and G3 have the same clipped effort before and after the first outer step.
+    They move alike in MuJoCo, while G3 is slower in Genesis.
     """
     noise = spec.RESOLUTION["rad/s"]
     fast, slow = (study.by_engine(run, case) for case in ("G2", "G3"))
     for engine in study.ENGINES:
         for case, trace in (("G2", fast[engine]), ("G3", slow[engine])):
-            efforts = np.array([trace.start_control_force, trace.control_force[0]])[:, spec.ENTRY]
+            efforts = np.array([trace.start_control_force, trace.control_force[0]])[
+                :, spec.ENTRY
+            ]
             clipped = is_saturated(efforts, trace.effort_limit[spec.ENTRY]).all()
             yield equal(f"{engine}.{case}_clipped", bool(clipped), True)
         slower = float(fast[engine].qd[0, spec.ENTRY] - slow[engine].qd[0, spec.ENTRY])
@@ -176,20 +211,24 @@ def grid_matches_cases(run: Experiment) -> Iterator[Finding]:
         alone, among = run.traces[name], run.traces[point.name]
         results: dict[tuple[str, str], list[Any]] = {
             ("position", "rad"): [of.q[:, spec.ENTRY] for of in (among, alone)],
-            ("control force", "N·m"): [of.control_force[:, spec.ENTRY] for of in (among, alone)],
+            ("control force", "N·m"): [
+                of.control_force[:, spec.ENTRY] for of in (among, alone)
+            ],
         }
         for metric, value, unit in run.metrics[point.name].items():
             results[metric, unit] = [value, getattr(run.metrics[name], metric)]
         for (what, unit), values in results.items():
-            a, b = (np.array(value, dtype=float) for value in values)  # None becomes NaN
+            a, b = (
+                np.array(value, dtype=float) for value in values
+            )  # None becomes NaN
             apart = np.where(np.isnan(a) & np.isnan(b), 0.0, np.abs(a - b)).max()
             label = f"{name}, difference of {what} ({unit})"
             yield at_most(label, apart, study_spec.AGREEMENT[unit])
 
 
 def grid_within_gains(run: Experiment) -> Iterator[Finding]:
-    """Every run of the grid stays within the compared cases' gains and step, and varies nothing
-    else.
+    """Every run of the grid stays within the compared cases' gains and step, and varies
+    nothing else.
     """
     varied = {f"{field}[{spec.STEPPED_JOINT}]" for field in ("kp", "kv", "q_target")}
     for name in study_spec.GRID_CASES:
@@ -197,7 +236,9 @@ def grid_within_gains(run: Experiment) -> Iterator[Finding]:
         point = study_spec.point_of(case)
         for axis, (low, high) in study_spec.BOUNDS.items():
             value, expected = getattr(point, axis), f"between {low:g} and {high:g}"
-            yield Finding(f"{name}, {axis}", value, low <= value <= high, expected, recorded=False)
+            yield Finding(
+                f"{name}, {axis}", value, low <= value <= high, expected, recorded=False
+            )
         others = sorted(set(differences(spec.G1, case, run.joints)) - varied)
         yield equal(f"{name}, other changes", others, [], recorded=False)
 
@@ -205,10 +246,22 @@ def grid_within_gains(run: Experiment) -> Iterator[Finding]:
 GRID_CHECKS = (grid_matches_cases, grid_within_gains)
 
 FORMULA = (
-    study_factors, same_model, implicit_term, clipped_before_parting, small_step_unsaturated,
-    theory_small_step, stepped_model, model_predicts,
-)  # fmt: skip
+    study_factors,
+    same_model,
+    implicit_term,
+    clipped_before_parting,
+    small_step_unsaturated,
+    theory_small_step,
+    stepped_model,
+    model_predicts,
+)
 INTEGRATOR = (
-    study_factors, same_model, stable_engines, first_step, convergence, one_limit,
-    second_engine_order, order_at_finer_step,
-)  # fmt: skip
+    study_factors,
+    same_model,
+    stable_engines,
+    first_step,
+    convergence,
+    one_limit,
+    second_engine_order,
+    order_at_finer_step,
+)

@@ -7,19 +7,29 @@ from typing import Any, NamedTuple
 from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import ENTRY, G1, G2, G3, START_OF_STEP, STEP, changed
+from robo_genesis.lessons.l04.spec import (
+    ENTRY,
+    G1,
+    G2,
+    G3,
+    START_OF_STEP,
+    STEP,
+    changed,
+)
 from robo_genesis.sim.arm.joint_control import ControlCase
 
 MEASURES = False
 
 COMPARED = {"G1": G1, "G2": G2, "G3": G3}
 
-# Height of a step whose demand stays below the effort limit with the gains of G1 and G2 [rad].
+# Height of a step whose demand stays below the effort limit with the gains of G1 and G2
+# [rad].
 SMALL_STEP = 0.005
 
 SMALL_STEPPED = ("G1", "G2")
 
-# Step size is the one factor: a small step, and no step, with the gains of a compared case.
+# Step size is the one factor: a small step, and no step, with the gains of a compared
+# case.
 STEP_CASES = {
     f"{name}_{kind}": changed(COMPARED[name], q_target=START_OF_STEP + height)
     for name in SMALL_STEPPED
@@ -28,7 +38,8 @@ STEP_CASES = {
 
 SUBSTEPS_STUDIED = (1, 2, 4, 10, 20, 50)
 
-# Numbers of substeps with which all compared cases run: half the solver step, and a tenth.
+# Numbers of substeps with which all compared cases run: half the solver step, and a
+# tenth.
 REFINED = (4, 20)
 
 # The solver's step is the one factor. Each number of substeps needs its own scene.
@@ -41,7 +52,8 @@ SUBSTEP_CASES = {
 
 EXAMPLE = "example"
 
-# Illustrates the metrics before the comparison: it overshoots, and is not one of the cases.
+# Illustrates the metrics before the comparison: it overshoots, and is not one of the
+# cases.
 EXAMPLE_CASES = {EXAMPLE: changed(G1, kv=50.0)}
 
 LONGER = "G2_longer"
@@ -49,7 +61,9 @@ LONGER = "G2_longer"
 # The length of the window is the one factor.
 LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
 
-ASSIGNED = "assigned"  # Name of the run whose states are assigned, without control and steps
+ASSIGNED = (
+    "assigned"  # Name of the run whose states are assigned, without control and steps
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +123,9 @@ POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
 
 # The runs of the grid: one batch, one environment for each.
 GRID_CASES = {
-    point.name: changed(G1, kp=point.kp, kv=point.kv, q_target=START_OF_STEP + point.step)
+    point.name: changed(
+        G1, kp=point.kp, kv=point.kv, q_target=START_OF_STEP + point.step
+    )
     for point in POINTS
 }
 
@@ -118,7 +134,9 @@ def point_of(case: ControlCase) -> GridPoint:
     """Return the grid point of a case."""
     step = float(case.q_target[ENTRY]) - START_OF_STEP
     gains = float(case.kp[ENTRY]), float(case.kv[ENTRY])
-    return GridPoint(round(step, 9), *gains)  # without rounding errors of the difference
+    return GridPoint(
+        round(step, 9), *gains
+    )  # without rounding errors of the difference
 
 
 # The points of the lesson's own cases.
@@ -126,28 +144,34 @@ CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}
 
 # What only judges
 
-PARTING_THRESHOLD = SETTLING_BAND  # Distance at which a position has left the ideal one [rad]
+PARTING_THRESHOLD = (
+    SETTLING_BAND  # Distance at which a position has left the ideal one [rad]
+)
 
-# Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone explain the
-# final error, so this selects the cases that `gravity_support` checks.
+# Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone
+# explain the final error, so this selects the cases that `gravity_support` checks.
 AT_REST = 0.01
 GRAVITY_AGREEMENT = 0.01  # Share within which KP × final error and gravity agree
 
-# Share within which the readings of the stepped joint agree with the model in MuJoCo; the largest
-# difference is 1.1e-4, of gravity at an end.
+# Share within which the readings of the stepped joint agree with the model in MuJoCo;
+# the largest difference is 1.1e-4, of gravity at an end.
 SAME_MODEL = 3e-4
-# Largest difference in overshoot between a model of one joint and a small unsaturated step, as a
-# share of the step.
+# Largest difference in overshoot between a model of one joint and a small unsaturated
+# step, as a share of the step.
 SMALL_STEP_TOLERANCE = 0.03
 ONE_JOINT_TOLERANCE = 0.015  # The same of the stepped model and a large step [rad]
-CHATTER_SHARE = 0.5  # A run is unstable if a joint's effort is clipped in a larger share of samples
-SPREAD_SHARE = 0.2  # Largest spread of the engines at the finest step, by that at the lesson's step
+CHATTER_SHARE = (
+    0.5  # A run is unstable if a joint's effort is clipped in a larger share of samples
+)
+# Largest spread of the engines at the finest step, by that at the lesson's step
+SPREAD_SHARE = 0.2
 
-# Smallest and largest value of each axis: no point is more violent than the compared cases.
+# Smallest and largest value of each axis: no point is more violent than the compared
+# cases.
 BOUNDS = {"step": (0.0, STEP), "kp": (3500.0, 7000.0), "kv": (100.0, 300.0)}
 
-# By unit: largest difference between a run in the batch and the same case run alone. Times and
-# counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m.
+# By unit: largest difference between a run in the batch and the same case run alone.
+# Times and counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m.
 AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
 
 
@@ -160,6 +184,8 @@ def parameters(page: str) -> dict[str, Any]:
             "cases": case_inputs(SUBSTEP_CASES),
             "second_runs": case_inputs(SECOND_RUNS),
         },
-        "batch": {"grid": {"step_rad": list(STEP_SIZES), "kp": list(KP), "kv": list(KV)}},
+        "batch": {
+            "grid": {"step_rad": list(STEP_SIZES), "kp": list(KP), "kv": list(KV)}
+        },
     }
     return {"studies": own[page]}

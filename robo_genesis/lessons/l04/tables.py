@@ -14,7 +14,8 @@ from robo_genesis.lessons.l04.metrics import StepMetrics
 MEASURES = False
 
 ENGINE_LABELS = {
-    engine: engine if engine == "Genesis" else f"MuJoCo {engine}" for engine in study.ENGINES
+    engine: engine if engine == "Genesis" else f"MuJoCo {engine}"
+    for engine in study.ENGINES
 }
 
 Row = dict[str, Any]
@@ -108,7 +109,9 @@ def _said(run: Experiment, relation: Relation) -> str:
 def _change(found: Mapping[str, StepMetrics], relation: Relation) -> str:
     """Write the metric of an ordering for its two cases: `0.12 s → 0.11 s`."""
     cases, metric, *_ = relation
-    return " → ".join(format_value(getattr(found[of], metric), UNITS[metric]) for of in cases)
+    return " → ".join(
+        format_value(getattr(found[of], metric), UNITS[metric]) for of in cases
+    )
 
 
 @as_table
@@ -134,7 +137,10 @@ def mass_table(run: Experiment) -> Iterator[Row]:
     yield {head: "without effort, less h · d", unit: readings["inertia_Genesis"]}
     for kv in study.COMPARED_KV:
         term = f"that, less h (d + KV) = {study.implicit_term(run, kv):g}"
-        yield {head: f"position commanded, KV = {kv:g}", unit: readings[f"mass_KV_{kv:g}"]}
+        yield {
+            head: f"position commanded, KV = {kv:g}",
+            unit: readings[f"mass_KV_{kv:g}"],
+        }
         yield {head: term, unit: study.without_term(run, kv)}
 
 
@@ -156,11 +162,16 @@ def ideal_table(run: Experiment) -> Iterator[Row]:
 def stepped_table(run: Experiment) -> Iterator[Row]:
     """Return the overshoots of the ideal joint, of the stepped model and of the engine."""
     heads, small = ("ideal joint", "stepped model", "Genesis"), study_spec.SMALL_STEP
-    for height, cases in ((small, study_spec.SMALL_STEPPED), (spec.STEP, study_spec.COMPARED)):
+    for height, cases in (
+        (small, study_spec.SMALL_STEPPED),
+        (spec.STEP, study_spec.COMPARED),
+    ):
         for case in cases:
             found = study.overshoots(run, case, height)
             yield {"run": f"{case}, +{height:g} rad"} | {
-                head: share_text(of / height) if height == small else format_value(of, "rad")
+                head: share_text(of / height)
+                if height == small
+                else format_value(of, "rad")
                 for head, of in zip(heads, found, strict=True)
             }
 
@@ -186,7 +197,9 @@ def relation_table(run: Experiment) -> Iterator[Row]:
         for engine, label in ENGINE_LABELS.items():
             state, _ = study.relation_outcome(run, engine, relation)
             values = _change(study.compared(run, engine), relation)
-            row[label] = f"{'unstable' if study.unstable(run, engine) else state}: {values}"
+            row[label] = (
+                f"{'unstable' if study.unstable(run, engine) else state}: {values}"
+            )
         yield row
 
 

@@ -7,7 +7,11 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import comparison_sentence, prediction_sentence
 from robo_genesis.core.text import blocks, format_value
 from robo_genesis.lessons.l04 import spec
-from robo_genesis.lessons.l04.metrics import SATURATION_THRESHOLD, SETTLING_BAND, StepMetrics
+from robo_genesis.lessons.l04.metrics import (
+    SATURATION_THRESHOLD,
+    SETTLING_BAND,
+    StepMetrics,
+)
 from robo_genesis.lessons.l04.study_spec import AT_REST, COMPARED
 from robo_genesis.sim.arm.joint_control import differences
 
@@ -40,17 +44,22 @@ def conclusions(run: Experiment) -> str:
     kp_pair, kv_pair = spec.ONE_FACTOR
     limit = float(run.traces["G1"].effort_limit[spec.ENTRY])
     found = {name: run.metrics[name] for name in COMPARED}
-    errors = [line for name, m in found.items() for line in final_error_sentences(name, m)]
+    errors = [
+        line for name, m in found.items() for line in final_error_sentences(name, m)
+    ]
     cost = COSTS[compared(run, kv_pair, "rise_time").order]
     cost = cost.format(first=kv_pair[0], second=kv_pair[1])
     said: dict[str, Iterable[str]] = {
         "1. {} → {}: the effect of KP".format(*kp_pair): pair_sentences(run, kp_pair),
         "2. {} → {}: the effect of KV, and its cost".format(*kv_pair): [
-            *pair_sentences(run, kv_pair), cost,
+            *pair_sentences(run, kv_pair),
+            cost,
         ],
         "3. The final error, and its limits as evidence": [*errors, LIMITS_OF_ERROR],
-        "4. The actuator limit": [actuator_sentence(name, m, limit) for name, m in found.items()],
-    }  # fmt: skip
+        "4. The actuator limit": [
+            actuator_sentence(name, m, limit) for name, m in found.items()
+        ],
+    }
     return blocks(said)
 
 

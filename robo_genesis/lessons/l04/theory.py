@@ -57,13 +57,19 @@ class IdealJoint:
 
 
 def stepped_joint(
-    joint: IdealJoint, passive: float, step: float, h: float, steps: int,
-    limit: float = np.inf, gravity: float = 0.0,
-) -> FloatArray:  # fmt: skip
+    joint: IdealJoint,
+    passive: float,
+    step: float,
+    h: float,
+    steps: int,
+    limit: float = np.inf,
+    gravity: float = 0.0,
+) -> FloatArray:
     """Return the distance from the target (steps+1,) [rad] of one joint that a solver steps.
 
-    The integrator is semi-implicit: the damping acts at the velocity at the end of the step. The
-    damping of the controller stays in the equation while its effort is clipped, as in Genesis.
+    The integrator is semi-implicit: the damping acts at the velocity at the end of the
+    step. The damping of the controller stays in the equation while its effort is
+    clipped, as in Genesis.
 
     Args:
         joint: inertia, whole damping and KP.
@@ -89,11 +95,13 @@ def stepped_joint(
 def step_share(step: Trace, hold: Trace, entry: int) -> FloatArray:
     """Return (q_step − q_hold) / step (n+1,): a response without the effects common to both runs.
 
-    For a linear joint the two motions add up. Subtracting the run that holds its start therefore
-    removes gravity.
+    For a linear joint the two motions add up. Subtracting the run that holds its start
+    therefore removes gravity.
     """
     height = float(step.target[0, entry]) - float(hold.target[0, entry])
-    difference = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(np.float64)
+    difference = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(
+        np.float64
+    )
     return np.asarray(difference / height)
 
 

@@ -5,7 +5,16 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from robo_genesis.core import checks
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    nearly,
+    noted,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l05 import spec, study
@@ -36,15 +45,18 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 
 
 def acceptance(run: Experiment) -> Iterator[Finding]:
-    """The residual of the commanded answer is within both tolerances, as the engine reports it and
-    by forward kinematics of the command, and the fingertips are higher than the least clearance.
+    """The residual of the commanded answer is within both tolerances, as the engine
+    reports it and by forward kinematics of the command, and the fingertips are higher
+    than the least clearance.
     """
     found, limits = run.readings[study.GROUP], spec.IK.tolerances
     m = run.metrics["baseline"]
     by_fk = {"residual_m": m.command_distance, "residual_rad": m.command_angle}
     for (name, expected), most in zip(by_fk.items(), limits, strict=True):
         yield at_most(name, found[name], most)
-        yield within(f"{name}_by_forward_kinematics", found[name], expected, spec.SAME_RESIDUAL)
+        yield within(
+            f"{name}_by_forward_kinematics", found[name], expected, spec.SAME_RESIDUAL
+        )
     for name in ("baseline", "kp_doubled", "kp_doubled_ramp"):
         trace, m = run.traces[name], run.metrics[name]
         tip = kinematics.fingertip(kinematics.hand_pose(trace.target[-1]))
@@ -55,8 +67,8 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
 
 
 def forward_kinematics(run: Experiment) -> Iterator[Finding]:
-    """In every state of the reaches, our forward kinematics gives the engine's link poses within
-    5 µm and 5 µrad.
+    """In every state of the reaches, our forward kinematics gives the engine's link
+    poses within 5 µm and 5 µrad.
     """
     return same_links(run, kinematics.link_poses)
 
@@ -68,12 +80,14 @@ def second_engine(run: Experiment) -> Iterator[Finding]:
 
 
 def jacobians_agree(run: Experiment) -> Iterator[Finding]:
-    """The Jacobians of the engine, of MuJoCo and of central differences are ours within 5 · 10⁻⁶,
-    in three postures.
+    """The Jacobians of the engine, of MuJoCo and of central differences are ours within
+    5 · 10⁻⁶, in three postures.
     """
     for name, q in study.jacobian_postures(run.traces["baseline"]).items():
         found = (run.readings[study.JACOBIANS][name], *study.other_jacobians(q))
-        for other, apart in zip(("engine", "mujoco", "differences"), found, strict=True):
+        for other, apart in zip(
+            ("engine", "mujoco", "differences"), found, strict=True
+        ):
             yield at_most(f"{name}.{other}", apart, spec.SAME_POSE[0])
 
 
@@ -87,7 +101,9 @@ def stretched_is_singular(run: Experiment) -> Iterator[Finding]:
     yield below("nearly_stretched", float(values[2][4]), float(others) / 3)
 
 
-def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Iterator[Finding]:
+def same_links(
+    run: Experiment, poses: Callable[[FloatArray], Pose]
+) -> Iterator[Finding]:
     """Compare the links of the chain in every state of the runs with another computation.
 
     Args:
@@ -96,8 +112,12 @@ def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Iterator
     """
     for name in (case for case in spec.CASES if case in run.traces):
         trace = run.traces[name]
-        measured = (of[:, OF_CHAIN].astype(float) for of in (trace.link_pos, trace.link_quat))
-        apart, angle = kinematics.distances(kinematics.pose_error(Pose(*measured), poses(trace.q)))
+        measured = (
+            of[:, OF_CHAIN].astype(float) for of in (trace.link_pos, trace.link_quat)
+        )
+        apart, angle = kinematics.distances(
+            kinematics.pose_error(Pose(*measured), poses(trace.q))
+        )
         yield at_most(f"{name}.links_apart_m", float(apart.max()), spec.SAME_POSE[0])
         yield at_most(f"{name}.links_apart_rad", float(angle.max()), spec.SAME_POSE[1])
 
@@ -111,8 +131,8 @@ def arrived(run: Experiment) -> Iterator[Finding]:
 
 
 def sag_explains(run: Experiment) -> Iterator[Finding]:
-    """Gravity, KP and the Jacobian explain the displacement from the command's pose to the last
-    pose, except for at most 2 % of it, and the angle between them within 2 %.
+    """Gravity, KP and the Jacobian explain the displacement from the command's pose to
+    the last pose, except for at most 2 % of it, and the angle between them within 2 %.
     """
     for name, case in spec.CASES.items():
         *_, share, turn = study.sag_lengths(run.traces[name], case.kp)
@@ -124,17 +144,20 @@ def sag_explains(run: Experiment) -> Iterator[Finding]:
 def smaller_angles_explain_more(run: Experiment) -> Iterator[Finding]:
     """With KP doubled, gravity, KP and the Jacobian explain a larger share of the sag."""
     one, half = (
-        study.sag_lengths(run.traces[n], spec.CASES[n].kp)[2] for n in ("baseline", "kp_doubled")
+        study.sag_lengths(run.traces[n], spec.CASES[n].kp)[2]
+        for n in ("baseline", "kp_doubled")
     )
     yield below("unexplained_share_with_kp_doubled", half, one)
 
 
 def kp_has_a_price(run: Experiment) -> Iterator[Finding]:
-    """With KP doubled the hand swings past its target at least three times as far as before. With a
-    ramp it is never farther past it than at the end, and ends within 1 mm of where it ends without;
-    no joint of the arm reaches its force limit.
+    """With KP doubled the hand swings past its target at least three times as far as
+    before. With a ramp it is never farther past it than at the end, and ends within 1
+    mm of where it ends without; no joint of the arm reaches its force limit.
     """
-    base, doubled, ramp = (run.metrics[n] for n in ("baseline", "kp_doubled", "kp_doubled_ramp"))
+    base, doubled, ramp = (
+        run.metrics[n] for n in ("baseline", "kp_doubled", "kp_doubled_ramp")
+    )
     yield above("overshoot_with_kp_doubled_m", doubled.overshoot, 3 * base.overshoot)
     yield at_most("overshoot_with_a_ramp_m", ramp.overshoot, ramp.final_distance)
     apart = abs(ramp.final_distance - doubled.final_distance)
@@ -145,8 +168,9 @@ def kp_has_a_price(run: Experiment) -> Iterator[Finding]:
 
 
 def price_at_finer_step(run: Experiment) -> Iterator[Finding]:
-    """With 20 substeps KP doubled swings at least twice as far as the baseline and less than half
-    as far as with 2; with a ramp the hand is never farther past its target than at the end.
+    """With 20 substeps KP doubled swings at least twice as far as the baseline and less
+    than half as far as with 2; with a ramp the hand is never farther past its target
+    than at the end.
     """
     base, doubled, ramp = (run.metrics[name] for name in spec.FINER)
     yield above("overshoot_with_kp_doubled_m", doubled.overshoot, 2 * base.overshoot)
@@ -157,16 +181,20 @@ def price_at_finer_step(run: Experiment) -> Iterator[Finding]:
 
 def limits_cause_the_swing(run: Experiment) -> Iterator[Finding]:
     """With ten times the force limits, the hand swings at most a tenth as far past its target."""
-    free, limited = (run.metrics[name].overshoot for name in ("unlimited", "kp_doubled"))
+    free, limited = (
+        run.metrics[name].overshoot for name in ("unlimited", "kp_doubled")
+    )
     yield at_most("overshoot_m", free, limited / 10)
 
 
 def solver_ignores_the_floor(run: Experiment) -> Iterator[Finding]:
-    """The solver's answer for the low target is within both tolerances, and has the fingertips more
-    than 5 cm below the ground.
+    """The solver's answer for the low target is within both tolerances, and has the
+    fingertips more than 5 cm below the ground.
     """
     found = run.readings[study.GROUP]
-    for name, most in zip(("residual_m", "residual_rad"), spec.IK.tolerances, strict=True):
+    for name, most in zip(
+        ("residual_m", "residual_rad"), spec.IK.tolerances, strict=True
+    ):
         yield at_most(f"low_{name}", found[f"low_{name}"], most)
     yield below("low_tip_m", found["low_tip_m"], -0.05)
 
@@ -179,8 +207,8 @@ def tolerance_costs_little(run: Experiment) -> Iterator[Finding]:
 
 
 def repeatable(run: Experiment) -> Iterator[Finding]:
-    """From the common start, without restarts, equal questions get equal answers: the runs with KP
-    unchanged and doubled have equal commands.
+    """From the common start, without restarts, equal questions get equal answers: the
+    runs with KP unchanged and doubled have equal commands.
     """
     first, second = (run.traces[name].target for name in ("baseline", "kp_doubled"))
     yield equal("entries_that_differ", int((first != second).sum()), 0)
@@ -192,8 +220,8 @@ def first_start_fails(run: Experiment) -> Iterator[Finding]:
 
 
 def restarts_rescue_few(run: Experiment) -> Iterator[Finding]:
-    """With up to 50 starts, more targets of the vertical plane are accepted, and fewer than half of
-    the refused ones.
+    """With up to 50 starts, more targets of the vertical plane are accepted, and fewer
+    than half of the refused ones.
     """
     one, many = (
         study.answers(run.traces[name], spec.QUESTIONS[name])["accepted"].astype(bool)
@@ -213,7 +241,9 @@ def map_has_targets_in_the_floor(run: Experiment) -> Iterator[Finding]:
 def unreachable_refused(run: Experiment) -> Iterator[Finding]:
     """Beyond reach, all answers are refused for their residuals."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
-    yield above("residual_m", float(found["position"].min()), spec.IK.position_tolerance)
+    yield above(
+        "residual_m", float(found["position"].min()), spec.IK.position_tolerance
+    )
     yield equal("accepted", int(found["accepted"].sum()), 0)
 
 
@@ -228,13 +258,17 @@ def nearest_is_nearer(run: Experiment) -> Iterator[Finding]:
 
 def marker(run: Experiment) -> Marker:
     """Return the sphere at the target as the camera must see it."""
-    return Marker(int(run.readings[SEGMENTS]["marker"]), spec.TARGET, spec.MARKER_RADIUS)
+    return Marker(
+        int(run.readings[SEGMENTS]["marker"]), spec.TARGET, spec.MARKER_RADIUS
+    )
 
 
 def camera_matrix(run: Experiment) -> Iterator[Finding]:
     """Matrix, pose and limits of each camera are those that it was given."""
     for name in (view for view in spec.VIEWS if f"view_{view}" in run.readings):
-        yield from camera_checks.camera_matrix(name, view_of(run, name), spec.VIEWS[name])
+        yield from camera_checks.camera_matrix(
+            name, view_of(run, name), spec.VIEWS[name]
+        )
 
 
 def projection(run: Experiment) -> Iterator[Finding]:
@@ -243,20 +277,27 @@ def projection(run: Experiment) -> Iterator[Finding]:
     yield equal("numbers_rise", numbers, sorted({*numbers}), recorded=False)
     view, trace = view_of(run, spec.VIEWED), run.traces["baseline"]
     yield from camera_checks.projection(spec.VIEWED, view, marker(run))
-    ends = kinematics.hand_pose(trace.target[-1]).position, measured_hand(trace, -1).position
+    ends = (
+        kinematics.hand_pose(trace.target[-1]).position,
+        measured_hand(trace, -1).position,
+    )
     pixels = cameras.project(np.array(ends), view.intrinsics, view.transform)
     yield noted(f"{spec.VIEWED}.sag_px", float(np.linalg.norm(pixels[1] - pixels[0])))
 
 
 def sphere_surface(run: Experiment) -> Iterator[Finding]:
     """Each pixel of the marker, back-projected, is within 0.6 % of the radius of its surface."""
-    return camera_checks.sphere_surface(spec.VIEWED, view_of(run, spec.VIEWED), marker(run))
+    return camera_checks.sphere_surface(
+        spec.VIEWED, view_of(run, spec.VIEWED), marker(run)
+    )
 
 
 def plane_surface(run: Experiment) -> Iterator[Finding]:
     """Each ground pixel within 3 m, back-projected, is within 0.1 mm of height 0."""
     number = int(run.readings[SEGMENTS]["plane"])
-    yield from camera_checks.plane_surface(spec.VIEWED, view_of(run, spec.VIEWED), number)
+    yield from camera_checks.plane_surface(
+        spec.VIEWED, view_of(run, spec.VIEWED), number
+    )
     if "view_hand" in run.readings:  # the camera on the hand has a page of its own
         yield from camera_checks.plane_surface("hand", view_of(run, "hand"), number)
 
@@ -269,21 +310,39 @@ def mounted_camera(run: Experiment) -> Iterator[Finding]:
 
 # Checks of every page that has the runs of the lab.
 WITHOUT_CAMERA = (
-    mapping, stamps, acceptance, forward_kinematics, second_engine, arrived, sag_explains,
-    smaller_angles_explain_more, kp_has_a_price, solver_ignores_the_floor, tolerance_costs_little,
-    repeatable, laws_of_motion,
-)  # fmt: skip
+    mapping,
+    stamps,
+    acceptance,
+    forward_kinematics,
+    second_engine,
+    arrived,
+    sag_explains,
+    smaller_angles_explain_more,
+    kp_has_a_price,
+    solver_ignores_the_floor,
+    tolerance_costs_little,
+    repeatable,
+    laws_of_motion,
+)
 
 VIEW = (camera_matrix, projection, sphere_surface, plane_surface)
 CHECKS = (*WITHOUT_CAMERA, posture, *VIEW)
 CAMERAS = (mapping, *VIEW, mounted_camera, laws_of_motion)
 LECTURE = (*CHECKS, price_at_finer_step, limits_cause_the_swing)
 JACOBIAN = (
-    mapping, stamps, forward_kinematics, jacobians_agree, stretched_is_singular, laws_of_motion,
-)  # fmt: skip
+    mapping,
+    stamps,
+    forward_kinematics,
+    jacobians_agree,
+    stretched_is_singular,
+    laws_of_motion,
+)
 
 # Checks of the page about many solutions, beyond those of the lab.
 SOLUTIONS = (
-    first_start_fails, restarts_rescue_few, map_has_targets_in_the_floor, unreachable_refused,
+    first_start_fails,
+    restarts_rescue_few,
+    map_has_targets_in_the_floor,
+    unreachable_refused,
     nearest_is_nearer,
-)  # fmt: skip
+)

@@ -19,7 +19,8 @@ MEASURES = False
 
 TINY = 1e-9  # Largest difference that rounding explains in float64
 
-# Largest difference of a pixel coordinate [pixel] or of a point [m] that rounding explains.
+# Largest difference of a pixel coordinate [pixel] or of a point [m] that rounding
+# explains.
 ROUNDED = 1e-6
 
 # Columns and rows of the invented cameras.
@@ -40,18 +41,24 @@ CAMERAS = {
 def forward(chain: Callable[..., Any], trace: Trace) -> Iterator[Finding]:
     """Check `chain(q, links)`: the pose of the last link, by the links of a chain.
 
-    `q` (7,) are the joint positions; `links` are names, positions and orientations as in `CHAIN`.
-    The function returns a position (3,) [m] and a quaternion (4,) of either sign. It is compared
-    with the engine in recorded postures, with MuJoCo in another one, and with parts of the chain.
+    `q` (7,) are the joint positions; `links` are names, positions and orientations as
+    in `CHAIN`. The function returns a position (3,) [m] and a quaternion (4,) of either
+    sign. It is compared with the engine in recorded postures, with MuJoCo in another
+    one, and with parts of the chain.
     """
     for state in (0, trace.steps // 8, trace.steps):
         q = trace.q[state, :ARM].astype(float)
         yield from near(
-            f"state_{state}", chain(q, CHAIN), measured_hand(trace, state), spec.SAME_POSE[0]
+            f"state_{state}",
+            chain(q, CHAIN),
+            measured_hand(trace, state),
+            spec.SAME_POSE[0],
         )
     q = np.array([0.3, -0.4, 0.5, -1.6, 0.7, 1.1, -0.2])
     position, quat = mujoco_kinematics.link_poses(np.array([[*q, 0.0, 0.0]]), ["hand"])
-    yield from near("mujoco", chain(q, CHAIN), Pose(position[0, 0], quat[0, 0]), spec.SAME_POSE[0])
+    yield from near(
+        "mujoco", chain(q, CHAIN), Pose(position[0, 0], quat[0, 0]), spec.SAME_POSE[0]
+    )
     poses = kinematics.link_poses(q)
     for count in (1, 4):
         expected = Pose(poses.position[count - 1], poses.quat[count - 1])
@@ -65,7 +72,9 @@ def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Findin
     if (position.shape, quat.shape) == ((3,), (4,)):
         yield from same_array(f"{label}.position_m", position, expected.position, tiny)
         yield at_most(f"{label}.norm_error", abs(float(np.linalg.norm(quat)) - 1), 1e-5)
-        _, angle = kinematics.distances(kinematics.pose_error(expected, Pose(position, quat)))
+        _, angle = kinematics.distances(
+            kinematics.pose_error(expected, Pose(position, quat))
+        )
         yield at_most(f"{label}.angle_rad", float(angle), tiny)
 
 
@@ -73,8 +82,8 @@ def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Findin
 def step(damped: Callable[..., Any]) -> Iterator[Finding]:
     """Check `damped(J, error, damping)`: one step (n,) of damped least squares.
 
-    `J` is (m, n), `error` (m,). The postures are the start and a nearly singular one; a step with
-    little damping must bring the hand nearer.
+    `J` is (m, n), `error` (m,). The postures are the start and a nearly singular one; a
+    step with little damping must bring the hand nearer.
     """
     start = np.array(spec.BASELINE.q_start[:ARM])
     target = Pose(spec.TARGET, spec.DOWN)
@@ -82,15 +91,25 @@ def step(damped: Callable[..., Any]) -> Iterator[Finding]:
         of = kinematics.jacobian(q)
         error = kinematics.pose_error(target, kinematics.hand_pose(q))
         for damping in (0.01, 0.3):
-            label, right = f"{name}_{damping:g}", kinematics.damped_step(of, error, damping)
+            label, right = (
+                f"{name}_{damping:g}",
+                kinematics.damped_step(of, error, damping),
+            )
             yield from same_array(label, damped(of, error, damping), right, TINY)
     for rows, damping in ((3, 0.3), (6, 0.1)):
-        of, error = kinematics.jacobian(start)[:rows, : rows - 1], np.linspace(-0.01, 0.02, rows)
+        of, error = (
+            kinematics.jacobian(start)[:rows, : rows - 1],
+            np.linspace(-0.01, 0.02, rows),
+        )
         right = kinematics.damped_step(of, error, damping)
         yield from same_array(f"{rows}_rows", damped(of, error, damping), right, TINY)
     of, error = kinematics.jacobian(start)[:3], np.array([0.01, 0.0, -0.01])
     moved = start + np.asarray(damped(of, error, 0.01), dtype=float).reshape(ARM)
-    left = kinematics.hand_pose(start).position + error - kinematics.hand_pose(moved).position
+    left = (
+        kinematics.hand_pose(start).position
+        + error
+        - kinematics.hand_pose(moved).position
+    )
     yield below("position_only.distance_left_m", float(np.linalg.norm(left)), 1e-3)
 
 
@@ -105,8 +124,15 @@ def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
         q = np.where(np.arange(9) == joint, value, 0.1)
         found = accept(q, np.array(error, dtype=float), 0.1, *limits)
         yield equal(name, bool(found), right)
-    yield equal("looser", bool(accept(np.zeros(9), np.full(6, 0.1), 0.01, 0.2, 0.2, 0.01)), True)
-    for clearance, right in ((0.03, True), (0.029, False), (-0.04, False), (np.nan, False)):
+    yield equal(
+        "looser", bool(accept(np.zeros(9), np.full(6, 0.1), 0.01, 0.2, 0.2, 0.01)), True
+    )
+    for clearance, right in (
+        (0.03, True),
+        (0.029, False),
+        (-0.04, False),
+        (np.nan, False),
+    ):
         found = accept(np.zeros(9), np.zeros(6), clearance, *limits)
         yield equal(f"clearance_{clearance:g}", bool(found), right)
 
@@ -115,29 +141,45 @@ def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
 def project(function: Callable[..., Any]) -> Iterator[Finding]:
     """Check `project(points, K, transform)`: pixel coordinates (n, 2) of points (n, 3).
 
-    The corner of the picture is (0, 0). `transform` is the engine's: x right, y up, z backwards.
+    The corner of the picture is (0, 0). `transform` is the engine's: x right, y up, z
+    backwards.
     """
     # Some are beside the picture, one is far, one near.
-    seen = np.array([[0, 0, 1], [0.3, 0, 1], [0, 0.2, 1], [-4, 1, 2], [1, 3, 0.5], [1, 2, 30],
-                     [0, 0.01, 0.05]])  # fmt: skip
+    seen = np.array(
+        [
+            [0, 0, 1],
+            [0.3, 0, 1],
+            [0, 0.2, 1],
+            [-4, 1, 2],
+            [1, 3, 0.5],
+            [1, 2, 30],
+            [0, 0.01, 0.05],
+        ]
+    )
     for name, (K, transform) in CAMERAS.items():
         pose = cameras.other_axes(transform)
         points = seen @ pose[:3, :3].T + pose[:3, 3]
         expected = cameras.project(points, K, transform)
         yield from same_array(name, function(points, K, transform), expected, ROUNDED)
-        mixed = np.vstack([seen * (1, 1, -1), seen])  # behind the camera, and in front of it
+        mixed = np.vstack(
+            [seen * (1, 1, -1), seen]
+        )  # behind the camera, and in front of it
         found = np.asarray(function(mixed @ pose[:3, :3].T + pose[:3, 3], K, transform))
         missing = np.isnan(found).all(axis=1)
-        yield equal(f"{name}.without_a_pixel", missing.tolist(), [True] * 7 + [False] * 7)
-        yield from same_array(f"{name}.beside_points_without", found[7:], expected, ROUNDED)
+        yield equal(
+            f"{name}.without_a_pixel", missing.tolist(), [True] * 7 + [False] * 7
+        )
+        yield from same_array(
+            f"{name}.beside_points_without", found[7:], expected, ROUNDED
+        )
 
 
 @as_test
 def back_project(function: Callable[..., Any]) -> Iterator[Finding]:
     """Check `back_project(depth, K, transform)`: the point (H, W, 3) of each pixel's centre.
 
-    `depth` (H, W) is measured along the optical axis. The pictures are of a plane in front of the
-    camera, where depth is constant, and of a sloping one.
+    `depth` (H, W) is measured along the optical axis. The pictures are of a plane in
+    front of the camera, where depth is constant, and of a sloping one.
     """
     for name, camera in CAMERAS.items():
         width, height = OTHER if name == "not_square" else SIZE

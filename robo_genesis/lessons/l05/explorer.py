@@ -37,7 +37,14 @@ PICTURES = {
 }
 
 # What is read at a pixel.
-READ = ("pixel", "shows", "depth", "point in the world", "closed form", "depth − closed form")
+READ = (
+    "pixel",
+    "shows",
+    "depth",
+    "point in the world",
+    "closed form",
+    "depth − closed form",
+)
 
 
 def explored(run: Experiment, name: str) -> dict[str, Any]:
@@ -47,7 +54,11 @@ def explored(run: Experiment, name: str) -> dict[str, Any]:
 
 def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
     """Return the maps called `reach`, or `solutions`, as `site/figures/explorer.py` shows them."""
-    maps = [solution_map(run)] if which == "solutions" else [plane_map(name) for name in PLACES]
+    maps = (
+        [solution_map(run)]
+        if which == "solutions"
+        else [plane_map(name) for name in PLACES]
+    )
     tables = {}
     for one in maps:
         found = {row["answer"]: row for row in records(run, one["run"])}
@@ -58,14 +69,19 @@ def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
                 for k, column in zip(row["cells"], one["columns"], strict=False)
             ]
         shown = {cell["answer"] for row in one["rows"] for cell in row["cells"]}
-        tables[one["caption"]] = [row for row in found.values() if int(row["answer"]) in shown]
+        tables[one["caption"]] = [
+            row for row in found.values() if int(row["answer"]) in shown
+        ]
     rows = next(iter(tables.values()))
     return {
         "choices": ("Map", "Cells show"),
         "maps": maps,
         "measures": [{"label": name} for name in QUANTITIES],
         "columns": [*rows[0]][1:],
-        "notes": {"×": "×: refused.", "↓": "↓: accepted by its residual, fingertips in the floor."},
+        "notes": {
+            "×": "×: refused.",
+            "↓": "↓: accepted by its residual, fingertips in the floor.",
+        },
         "dt": DT,
         "postures": {one["run"]: spec.QUESTIONS[one["run"]].positions for one in maps},
         "tables": tables,
@@ -77,12 +93,16 @@ def _cell(record: dict[str, str], place: str) -> dict[str, Any]:
     state = "accepted" if record["accepted"] == "yes" else "refused"
     numbers = [float(record[name].replace("−", "-")) for name in QUANTITIES]
     return {
-        "answer": int(record["answer"]), "name": f"{place}, {state}",
+        "answer": int(record["answer"]),
+        "name": f"{place}, {state}",
         "tag": "×" if state == "refused" else "↓" * (record[TIP].startswith("−")),
-        "state": state, "opens": state == "accepted",
+        "state": state,
+        "opens": state == "accepted",
         "sentence": f"Answer {record['answer']}, {state}.",
-        "values": [*record.values()][1:], "numbers": numbers, "texts": [*map(short, numbers)],
-    }  # fmt: skip
+        "values": [*record.values()][1:],
+        "numbers": numbers,
+        "texts": [*map(short, numbers)],
+    }
 
 
 def short(value: float) -> str:
@@ -97,12 +117,20 @@ def plane_map(name: str) -> dict[str, Any]:
     """Return run, label, caption, axes, labels of columns, and rows of a map of targets."""
     (label, axes, upwards), columns = PLACES[name], spec.GRID_X
     caption = f"{label}. x [m] to the right, {axes[0]} [m] upwards."
-    numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
-    rows = [{"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)]
+    numbers = (
+        np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
+    )
+    rows = [
+        {"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)
+    ]
     return {
-        "run": name, "label": label, "caption": caption, "axes": axes, "rows": rows[::-1],
+        "run": name,
+        "label": label,
+        "caption": caption,
+        "axes": axes,
+        "rows": rows[::-1],
         "columns": [f"{x:g}" for x in columns],
-    }  # fmt: skip
+    }
 
 
 def solution_map(run: Experiment) -> dict[str, Any]:
@@ -127,9 +155,9 @@ def picture(run: Experiment, name: str) -> dict[str, Any]:
     """Return what reads a recorded view.
 
     Returns:
-        `size`, `K`, `pose` (OpenCV axes), the `unit` of a depth [m], by number the `names`, heights
-        of `planes` [m], centre and radius of `spheres` [m], the `columns` that are read, and of the
-        `picture` its `name`, `alt` and `caption`.
+        `size`, `K`, `pose` (OpenCV axes), the `unit` of a depth [m], by number the
+        `names`, heights of `planes` [m], centre and radius of `spheres` [m], the
+        `columns` that are read, and of the `picture` its `name`, `alt` and `caption`.
     """
     view, numbers = view_of(run, name), run.readings[SEGMENTS]
     links = dict(enumerate(run.links, int(numbers["hand"]) - run.links.index("hand")))
@@ -138,7 +166,9 @@ def picture(run: Experiment, name: str) -> dict[str, Any]:
         "K": view.intrinsics.tolist(),
         "pose": other_axes(view.transform)[:3].tolist(),
         "unit": DEPTH_UNIT,
-        "names": {0: "nothing"} | links | {numbers[name]: name for name in spec.SEGMENTS},
+        "names": {0: "nothing"}
+        | links
+        | {numbers[name]: name for name in spec.SEGMENTS},
         "planes": {numbers["plane"]: 0.0},
         "spheres": {numbers["marker"]: [*spec.TARGET.tolist(), spec.MARKER_RADIUS]},
         "columns": READ,

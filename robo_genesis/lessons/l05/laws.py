@@ -23,11 +23,15 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     for name, case in run.cases.items():
         trace = run.traces[name]
         if isinstance(case, SolveCase):
-            assigned = assigned_postures(trace, case.start, run.links, run.traces.values())
+            assigned = assigned_postures(
+                trace, case.start, run.links, run.traces.values()
+            )
             yield from kept(name, chain(assigned, own_targets(trace, case)))
         else:
             command = command_path(case, trace.target[-1])
-            yield from kept(name, driven_run(trace, case.commanding(command), run.links))
+            yield from kept(
+                name, driven_run(trace, case.commanding(command), run.links)
+            )
 
 
 def own_targets(trace: Trace, case: SolveCase) -> Iterator[Finding]:
@@ -36,6 +40,8 @@ def own_targets(trace: Trace, case: SolveCase) -> Iterator[Finding]:
     hand = measured_hand(trace, slice(1, None)).position
     targets = np.concatenate([asked.positions for asked in spec.QUESTIONS.values()])
     nearest = np.linalg.norm(hand[:, None] - targets, axis=-1).min(axis=1)
-    own = np.where(nearest <= within, np.linalg.norm(hand - case.positions, axis=-1), 0.0)
+    own = np.where(
+        nearest <= within, np.linalg.norm(hand - case.positions, axis=-1), 0.0
+    )
     what = "distance of the hand from the target [m], where it reaches one"
     yield from apart("pose", what, own, ZERO, within)

@@ -1,6 +1,7 @@
 """Distances of the hand from its target, from a trace alone.
 
-Three of them are kept apart: how far the command's own pose is from the target, how far the arm is
+Three of them are kept apart: how far the command's own pose is from the target, how far
+    the arm is
 from the command, and how far the hand is from the target.
 """
 
@@ -31,30 +32,44 @@ class ReachMetrics(CaseMetrics):
     command_distance: float = metric("m", "command to target", *COMMANDED)
     command_angle: float = metric("rad", "command to target, angle", *COMMANDED)
     tracking_distance: float = metric("m", "end to command", *MEASURED, *COMMANDED)
-    tracking_angle: float = metric("rad", "end to command, angle", *MEASURED, *COMMANDED)
-    tip_tracking_distance: float = metric("m", "end to command, fingertip", *MEASURED, *COMMANDED)
+    tracking_angle: float = metric(
+        "rad", "end to command, angle", *MEASURED, *COMMANDED
+    )
+    tip_tracking_distance: float = metric(
+        "m", "end to command, fingertip", *MEASURED, *COMMANDED
+    )
     final_distance: float = metric("m", "end to target", *MEASURED)
     final_angle: float = metric("rad", "end to target, angle", *MEASURED)
     overshoot: float = metric("m", "past the target on the way", *MEASURED)
-    final_speed: float = metric("rad/s", "speed of the fastest joint at the end", "qd_rad_s_or_m_s")
+    final_speed: float = metric(
+        "rad/s", "speed of the fastest joint at the end", "qd_rad_s_or_m_s"
+    )
 
 
 def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
     """Measure a run of a case with all links; its command is constant, at last after the ramp.
 
-    The overshoot is the largest distance beyond the target along the line from the start to it.
+    The overshoot is the largest distance beyond the target along the line from the
+    start to it.
 
     Raises:
         IndexError: the trace lacks the hand.
     """
     target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
-    end, found = measured_hand(trace, -1), {"final_speed": float(np.abs(trace.qd[-1]).max())}
+    end, found = (
+        measured_hand(trace, -1),
+        {"final_speed": float(np.abs(trace.qd[-1]).max())},
+    )
     path = measured_hand(trace, slice(None)).position
     found["start_distance"] = float(np.linalg.norm(path[0] - case.position))
     found["overshoot"] = passed_by(path, case.position)
     tips = fingertip(command) - fingertip(end)
     found["tip_tracking_distance"] = float(np.linalg.norm(tips))
-    pairs = {"command": (target, command), "tracking": (command, end), "final": (target, end)}
+    pairs = {
+        "command": (target, command),
+        "tracking": (command, end),
+        "final": (target, end),
+    }
     for name, pair in pairs.items():
         found[f"{name}_distance"], found[f"{name}_angle"] = distance_and_angle(*pair)
     return ReachMetrics(**found)

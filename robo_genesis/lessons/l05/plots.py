@@ -41,7 +41,11 @@ def picture(run: Experiment) -> Figure:
     figure, ax = plotting.axes(plotting.WIDTH)
     if view.rgb is not None:
         ax.imshow(view.rgb, extent=(0, *view.size, 0), interpolation="nearest")
-    cross = {"markersize": 16, "markeredgewidth": 2, "color": plotting.look("target")["color"]}
+    cross = {
+        "markersize": 16,
+        "markeredgewidth": 2,
+        "color": plotting.look("target")["color"],
+    }
     ax.plot([u], [v], "+", label="projected by hand", **cross)
     ax.set(xlim=(u - AROUND, u + AROUND), ylim=(v + AROUND, v - AROUND), aspect="equal")
     ax.set(xlabel="u [pixel]", ylabel="v [pixel]")

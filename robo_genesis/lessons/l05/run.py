@@ -8,8 +8,18 @@ import numpy as np
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, accepted_command, solve_ik
-from robo_genesis.sim.arm.joint_control import ControlCase, Controlled, assign_postures, run_case
+from robo_genesis.sim.arm.engine_kinematics import (
+    IkAnswer,
+    IkSettings,
+    accepted_command,
+    solve_ik,
+)
+from robo_genesis.sim.arm.joint_control import (
+    ControlCase,
+    Controlled,
+    assign_postures,
+    run_case,
+)
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
@@ -19,9 +29,9 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 class ReachCase(Controlled):
     """A target of the hand, and the controlled arm that is to reach it.
 
-    `position` (3,) [m] and `quat` (4,) are in the world. With `compensated`, each arm joint's
-    command is gravity / KP beyond the answer. The command moves on a straight line of joint
-    positions during the first `ramp` steps; 0 commands its end at once.
+    `position` (3,) [m] and `quat` (4,) are in the world. With `compensated`, each arm
+    joint's command is gravity / KP beyond the answer. The command moves on a straight
+    line of joint positions during the first `ramp` steps; 0 commands its end at once.
     """
 
     position: FloatArray
@@ -65,8 +75,8 @@ def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
     """Return the control case that commands an answer.
 
     Raises:
-        NotAccepted: the answer is not finite, a residual is beyond its tolerance, or the fingertips
-            would be too low.
+        NotAccepted: the answer is not finite, a residual is beyond its tolerance, or
+            the fingertips would be too low.
     """
     q_target = accepted_command(answer, case.settings, case.q_start)
     if case.compensated:
@@ -100,8 +110,8 @@ def solve_all(
     """Ask all questions of a case, then assign each answer and read where the links are.
 
     Returns:
-        A trace of the start and the m answers, without steps, and the residuals (m, 6) that the
-        engine reported [m and rad].
+        A trace of the start and the m answers, without steps, and the residuals (m, 6)
+        that the engine reported [m and rad].
     """
     questions = zip(case.positions, case.starts, strict=True)
     answers = [

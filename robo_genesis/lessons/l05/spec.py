@@ -1,7 +1,8 @@
 """Specification of lesson L05: targets, solver settings, controllers, predictions and tolerances.
 
-Pages, checks, verification and tests read the experiment here. The module is data and computes
-nothing. `parameters()` has the values that decide what runs; all other values only judge.
+Pages, checks, verification and tests read the experiment here. The module is data and
+computes nothing. `parameters()` has the values that decide what runs; all other values
+only judge.
 """
 
 import math
@@ -29,8 +30,12 @@ EXPECTED_MODEL = franka.MODEL_COUNTS
 
 # Lower and upper limits (7,) of the arm's joints in the model file [rad].
 ARM_LIMITS = (
-    franka.per_joint(-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0)[:7],
-    franka.per_joint(2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04)[:7],
+    franka.per_joint(
+        -2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0
+    )[:7],
+    franka.per_joint(
+        2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04
+    )[:7],
 )
 
 # Target of the hand's origin in the world [m].
@@ -55,14 +60,18 @@ FINER = {
     for name in ("baseline", "kp_doubled", "kp_doubled_ramp")
 }
 
-# The runs that the lecture has beside those of the lab; the last one never needs its limits.
+# The runs that the lecture has beside those of the lab; the last one never needs its
+# limits.
 MORE = FINER | {"unlimited": replace(KP_DOUBLED, effort_limit=10 * franka.EFFORT_LIMIT)}
 
 LABELS = {
-    name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ") for name in CASES
+    name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ")
+    for name in CASES
 }
 LABELS |= {f"{name}_fine": f"{LABELS[name]}, {FINE} substeps" for name in CASES}
-LABELS["unlimited"] = "KP doubled, ten times the force limits"  # Words of a reader for runs
+LABELS["unlimited"] = (
+    "KP doubled, ten times the force limits"  # Words of a reader for runs
+)
 
 VIEWED = "world"  # The recorded view of the camera, before the first step
 
@@ -70,10 +79,15 @@ FOV = 42.0  # Vertical field of view of the lesson's camera [degree]
 
 # The lesson's camera: the robot, the marker and the ground.
 VIEW = CAMERA | {
-    "pos": (1.5, -1.1, 1.0), "lookat": (0.4, 0.0, 0.3), "fov": FOV, "near": 0.1, "far": 20.0,
-}  # fmt: skip
+    "pos": (1.5, -1.1, 1.0),
+    "lookat": (0.4, 0.0, 0.3),
+    "fov": FOV,
+    "near": 0.1,
+    "far": 20.0,
+}
 
-# Near and far limit of the view `cut` [m]: one is inside the hand, the other on the floor.
+# Near and far limit of the view `cut` [m]: one is inside the hand, the other on the
+# floor.
 CUT = (1.65, 2.2)
 
 HAND_FOV = 60.0  # Vertical field of view of the camera on the hand [degree]
@@ -81,7 +95,8 @@ HAND_FOV = 60.0  # Vertical field of view of the camera on the hand [degree]
 # The camera in the frame of the hand, z backwards: it looks along the fingers [m].
 ON_HAND = ((0.0, -1, 0, 0.05), (-1, 0, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
 
-# The views of the page about cameras, and what the cameras are given, or have by default.
+# The views of the page about cameras, and what the cameras are given, or have by
+# default.
 VIEWS: dict[str, dict[str, Any]] = {
     VIEWED: VIEW,
     "cut": VIEW | {"near": CUT[0], "far": CUT[1]},
@@ -103,7 +118,8 @@ GRID_X, GRID_Y, GRID_Z = (
     tuple(np.round(np.linspace(*ends), 3).tolist())
     for ends in ((0.1, 0.9, 9), (-0.6, 0.6, 7), (0.05, 0.95, 7))
 )
-HEIGHT = 0.35  # Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0
+# Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0
+HEIGHT = 0.35
 
 # Targets (63, 3) of the reach map, row by row [m].
 PLANES = {
@@ -119,10 +135,12 @@ REACH_MAP = {
 RESTARTS, RESTART_SEED = 100, 0
 
 # Starts (100, 9) of the solver, uniform within the limits [rad or m].
-RANDOM_STARTS = np.hstack([
-    np.random.default_rng(RESTART_SEED).uniform(*ARM_LIMITS, (RESTARTS, 7)),
-    np.tile(franka.Q_START[7:], (RESTARTS, 1)),
-])  # fmt: skip
+RANDOM_STARTS = np.hstack(
+    [
+        np.random.default_rng(RESTART_SEED).uniform(*ARM_LIMITS, (RESTARTS, 7)),
+        np.tile(franka.Q_START[7:], (RESTARTS, 1)),
+    ]
+)
 
 # Joint positions (7,) of an arm whose Jacobian has a small singular value [rad].
 NEARLY_STRETCHED = read_only((0.0, 0.0, 0.0, -0.07, 0.0, 1.6, 0.0))
@@ -132,8 +150,15 @@ IN_THE_FLOOR = replace(BASELINE, position=read_only((0.5, 0.0, 0.05)))
 
 # The lesson's question with smaller tolerances of the position.
 PRECISE = {
-    f"at_{name}": replace(BASELINE, settings=replace(ONE_START, position_tolerance=most))
-    for name, most in (("500_um", 5e-4), ("50_um", 5e-5), ("5_um", 5e-6), ("500_nm", 5e-7))
+    f"at_{name}": replace(
+        BASELINE, settings=replace(ONE_START, position_tolerance=most)
+    )
+    for name, most in (
+        ("500_um", 5e-4),
+        ("50_um", 5e-5),
+        ("5_um", 5e-6),
+        ("500_nm", 5e-7),
+    )
 }
 
 MANY_STARTS = SolveCase(np.tile(TARGET, (RESTARTS, 1)), DOWN, RANDOM_STARTS, ONE_START)
@@ -142,7 +167,10 @@ DRAWS = 20
 
 # The target beyond reach from the lesson's start, then from 19 random ones.
 UNREACHABLE = SolveCase(
-    np.tile(BEYOND_REACH, (DRAWS, 1)), DOWN, np.vstack([franka.Q_START, RANDOM_STARTS[1:DRAWS]]), IK
+    np.tile(BEYOND_REACH, (DRAWS, 1)),
+    DOWN,
+    np.vstack([franka.Q_START, RANDOM_STARTS[1:DRAWS]]),
+    IK,
 )
 
 # Questions to the solver beyond those of the lab.
@@ -152,24 +180,30 @@ QUESTIONS = REACH_MAP | {
     "unreachable": UNREACHABLE,
 }
 
-# As in `reaching`. The answers to these questions have no bound: rounding decides which of many
-# postures a search finds.
+# As in `reaching`. The answers to these questions have no bound: rounding decides which
+# of many postures a search finds.
 TOLERANCES = reaching.TOLERANCES | {"iterations": (0.0, 0.0)}
 TOLERANCES |= dict.fromkeys(QUESTIONS, (math.inf, 0.0))
 
 # Share of the displacement that gravity, KP and the Jacobian may leave unexplained.
 SAG_SHARE = 0.02
 
-ANGLE_WEIGHT = 0.5  # Metres that count as much as one radian, where the nearest pose is sought
+ANGLE_WEIGHT = (
+    0.5  # Metres that count as much as one radian, where the nearest pose is sought
+)
 
-# The engine's answer for the target beyond reach is farther than the nearest pose by more [m].
+# The engine's answer for the target beyond reach is farther than the nearest pose by
+# more [m].
 BEYOND_NEAREST = 0.01
 
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
     asked = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
-    asked, counted = asked | {"stretched": NEARLY_STRETCHED.tolist()}, list(EXPECTED_MODEL)
+    asked, counted = (
+        asked | {"stretched": NEARLY_STRETCHED.tolist()},
+        list(EXPECTED_MODEL),
+    )
     return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS)
 
 

@@ -18,29 +18,41 @@ from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.kinematics import ARM, Pose, measured_hand
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
-# Groups of a bundle's metrics: what the engine's solver reported, also for smaller tolerances.
+# Groups of a bundle's metrics: what the engine's solver reported, also for smaller
+# tolerances.
 GROUP, PRECISE, ITERATIONS = "ik", "ik_residuals", "iterations"
 
-# Residuals of the answers for the target and for one in the floor, with the height of the
-# fingertips there; the residual for each tolerance, and the iterations to it.
+# Residuals of the answers for the target and for one in the floor, with the height of
+# the fingertips there; the residual for each tolerance, and the iterations to it.
 READINGS = {
-    GROUP: Readings({
-        "residual_m": "m", "residual_rad": "rad",
-        "low_residual_m": "m", "low_residual_rad": "rad", "low_tip_m": "m",
-    }),
+    GROUP: Readings(
+        {
+            "residual_m": "m",
+            "residual_rad": "rad",
+            "low_residual_m": "m",
+            "low_residual_rad": "rad",
+            "low_tip_m": "m",
+        }
+    ),
     PRECISE: Readings(dict.fromkeys(spec.PRECISE, "m")),
     ITERATIONS: Readings(dict.fromkeys(spec.PRECISE, "iterations"), "exact"),
-}  # fmt: skip
+}
 
 
 def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
     """Give a page what the solver reports of the lesson's questions; this resets the scene."""
     reset(scene, robot, joints, spec.BASELINE.commanding(spec.BASELINE.q_start))
-    first, low = (ask(robot, joints, case) for case in (spec.BASELINE, spec.IN_THE_FLOOR))
+    first, low = (
+        ask(robot, joints, case) for case in (spec.BASELINE, spec.IN_THE_FLOOR)
+    )
     tip = spec.IN_THE_FLOOR.position[2] - low.error[2] - kinematics.TIP
     values = (*kinematics.distances(first.error), *kinematics.distances(low.error), tip)
-    page.readings[GROUP] = dict(zip(READINGS[GROUP].units, map(float, values), strict=True))
-    needed = {name: iterations(robot, joints, case) for name, case in spec.PRECISE.items()}
+    page.readings[GROUP] = dict(
+        zip(READINGS[GROUP].units, map(float, values), strict=True)
+    )
+    needed = {
+        name: iterations(robot, joints, case) for name, case in spec.PRECISE.items()
+    }
     page.readings[PRECISE] = {name: left for name, (_, left) in needed.items()}
     page.readings[ITERATIONS] = {name: n for name, (n, _) in needed.items()}
 
@@ -48,7 +60,8 @@ def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
 def iterations(robot: Any, joints: JointMap, case: ReachCase) -> tuple[int, float]:
     """Return the fewest iterations after which an answer is accepted, and its residual [m].
 
-    Without such an answer the number is that of the settings, and the residual is too large.
+    Without such an answer the number is that of the settings, and the residual is too
+    large.
     """
     for n in range(1, case.settings.iterations + 1):
         fewer = replace(case, settings=replace(case.settings, iterations=n))
@@ -72,7 +85,9 @@ def read_jacobians(page: Any, robot: Any, joints: JointMap) -> None:
     """Give a page the largest differences of the engine's Jacobian and ours; it assigns states."""
     found = {}
     for name, q in jacobian_postures(page.traces["baseline"]).items():
-        robot.set_dofs_position(q.copy(), joints.dofs_idx_local.tolist(), zero_velocity=True)
+        robot.set_dofs_position(
+            q.copy(), joints.dofs_idx_local.tolist(), zero_velocity=True
+        )
         rows = engine.jacobian(robot, joints)[:, :ARM]
         found[name] = float(np.abs(rows - kinematics.jacobian(q)).max())
     page.readings[JACOBIANS] = found
@@ -85,7 +100,9 @@ def other_jacobians(q: FloatArray) -> tuple[float, float]:
         q: (9,) joint positions [rad or m].
     """
     ours = kinematics.jacobian(q)
-    ahead, behind = (kinematics.hand_pose(q[:ARM] + s * STEP * np.eye(ARM)) for s in (1, -1))
+    ahead, behind = (
+        kinematics.hand_pose(q[:ARM] + s * STEP * np.eye(ARM)) for s in (1, -1)
+    )
     quotients = kinematics.pose_error(ahead, behind).T / (2 * STEP)
     others = mujoco_kinematics.jacobian(q)[:, :ARM], quotients
     mujoco, differences = (float(np.abs(of - ours).max()) for of in others)
@@ -95,8 +112,9 @@ def other_jacobians(q: FloatArray) -> tuple[float, float]:
 def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
     """Return the motion (6,) of the hand [m and rad] by which gravity moves it from command `q`.
 
-    Each joint stops where KP times its position error equals gravity, so it rests gravity / KP
-    below its command. The Jacobian turns these small angles into a motion of the hand.
+    Each joint stops where KP times its position error equals gravity, so it rests
+    gravity / KP below its command. The Jacobian turns these small angles into a motion
+    of the hand.
 
     Args:
         q: (9,) command [rad or m].
@@ -109,8 +127,8 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
 def sag_lengths(trace: Trace, kp: FloatArray) -> tuple[float, float, float, float]:
     """Return the lengths of the measured motion from command to end and of the expected one [m].
 
-    The third number is the length of their difference as a share of the expected one, the fourth
-    the expected rotation [rad].
+    The third number is the length of their difference as a share of the expected one,
+    the fourth the expected rotation [rad].
     """
     command = trace.target[-1].astype(float)
     found = measured_hand(trace, -1).position - kinematics.hand_pose(command).position
@@ -124,10 +142,10 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     """Return what is known of each answer, from the measured poses of the hand.
 
     Returns:
-        Arrays (m,): `position` [m] and `rotation` [rad] residual, `accepted` by them, `tip`, the
-        height of the fingertips [m], `manipulability`,
-        `margin` of the joint that is nearest to a limit [rad], and `from_start`, the largest angle
-        between answer and start of the run [rad].
+        Arrays (m,): `position` [m] and `rotation` [rad] residual, `accepted` by them,
+        `tip`, the height of the fingertips [m], `manipulability`, `margin` of the joint
+        that is nearest to a limit [rad], and `from_start`, the largest angle between
+        answer and start of the run [rad].
     """
     measured = measured_hand(trace, slice(1, None))
     error = kinematics.pose_error(Pose(case.positions, case.quat), measured)
@@ -151,8 +169,9 @@ def many_answers(run: Experiment) -> dict[str, FloatArray]:
 def self_motion(q: FloatArray, target: Pose, step: float = 0.05) -> FloatArray:
     """Return postures (n, 7) [rad] that keep the hand at a target, on the curve through `q` (7,).
 
-    Seven joints meet six conditions, so a solution is a point of a curve. From `q` the curve is
-    followed along the null vector of the Jacobian in both directions, up to a joint limit.
+    Seven joints meet six conditions, so a solution is a point of a curve. From `q` the
+    curve is followed along the null vector of the Jacobian in both directions, up to a
+    joint limit.
 
     Args:
         q: a solution [rad].
@@ -163,7 +182,9 @@ def self_motion(q: FloatArray, target: Pose, step: float = 0.05) -> FloatArray:
     return np.array([*back[::-1], q, *there])
 
 
-def one_way(q: FloatArray, along: FloatArray, target: Pose, step: float) -> list[FloatArray]:
+def one_way(
+    q: FloatArray, along: FloatArray, target: Pose, step: float
+) -> list[FloatArray]:
     """Return the postures beyond `q` in direction `along` (7,); see `self_motion`."""
     way: list[FloatArray] = []
     while len(way) < LONGEST_CURVE:
@@ -194,7 +215,8 @@ def families(solutions: FloatArray, target: Pose) -> list[tuple[FloatArray, list
         target: of the hand.
 
     Returns:
-        The curve (m, 7) of each family and the indices of its solutions, the largest family first.
+        The curve (m, 7) of each family and the indices of its solutions, the largest
+        family first.
     """
     left, found = list(range(len(solutions))), []
     while left:
@@ -233,8 +255,8 @@ def weighted(apart: FloatArray, angle: FloatArray) -> FloatArray:
 def nearest() -> tuple[FloatArray, FloatArray]:
     """Return posture (7,) [rad] and pose error (6,) nearest to the target beyond reach.
 
-    The nearest has the smallest `weighted` distance that SciPy's bounded least squares reaches from
-    eight of the random starts.
+    The nearest has the smallest `weighted` distance that SciPy's bounded least squares
+    reaches from eight of the random starts.
     """
     from scipy.optimize import least_squares
 
@@ -251,7 +273,8 @@ def nearest() -> tuple[FloatArray, FloatArray]:
         for start in spec.RANDOM_STARTS[:8, :ARM]
     )
     near = min(searches, key=lambda search: search.cost).x
-    # Rounding decides where such a search stops. On each processor, the last one ends at one value.
+    # Rounding decides where such a search stops. On each processor, the last one ends
+    # at one value.
     fine = dict.fromkeys(("ftol", "xtol", "gtol"), 1e-14)
     best = least_squares(left, near, bounds=spec.ARM_LIMITS, **fine).x
     return best, error(best)

@@ -25,9 +25,12 @@ NO_PICTURE = "SKIP: no camera"
 
 SHOWN = 3  # Joints with a row of their own in the table of gravity
 
-AT_LIMIT = 0.99  # Share of the force limit from which a sample is counted as at the limit
+AT_LIMIT = (
+    0.99  # Share of the force limit from which a sample is counted as at the limit
+)
 
-# What chooses one of several answers: a key of `study.answers`, and which value is best.
+# What chooses one of several answers: a key of `study.answers`, and which value is
+# best.
 CRITERIA = {
     "nearest to the present posture": ("from_start", min),
     "farthest from the limits": ("margin", max),
@@ -57,7 +60,9 @@ def error_table(run: Experiment) -> str:
         "target to measured hand": (m.final_distance, m.final_angle),
     }
     heads = {"distance [mm]": 3, "angle [mrad]": 3}
-    return tables.number_table("between", heads, {w: 1000 * np.array(of) for w, of in rows.items()})
+    return tables.number_table(
+        "between", heads, {w: 1000 * np.array(of) for w, of in rows.items()}
+    )
 
 
 def sag_table(run: Experiment) -> str:
@@ -65,12 +70,19 @@ def sag_table(run: Experiment) -> str:
 
     The page that shows it explains the heads.
     """
-    heads = {"sag [mm]": 2, "computed [mm]": 2, "rotation [mrad]": 2, "computed [mrad]": 2}
+    heads = {
+        "sag [mm]": 2,
+        "computed [mm]": 2,
+        "rotation [mrad]": 2,
+        "computed [mrad]": 2,
+    }
     heads["not explained [%]"] = 1
     rows = {}
     for name, case in spec.CASES.items():
         found, expected, rest, turned = study.sag_lengths(run.traces[name], case.kp)
-        values = 1000 * np.array([found, expected, run.metrics[name].tracking_angle, turned])
+        values = 1000 * np.array(
+            [found, expected, run.metrics[name].tracking_angle, turned]
+        )
         rows[spec.LABELS[name]] = *values, 100 * rest
     return tables.number_table("run", heads, rows)
 
@@ -91,7 +103,10 @@ def tolerance_table(run: Experiment) -> str:
     """Return the iterations and the residual of the solver for each tolerance."""
     needed, left = run.readings[study.ITERATIONS], run.readings[study.PRECISE]
     rows = {
-        f"{1e6 * case.settings.position_tolerance:g} µm": (needed[name], 1e6 * left[name])
+        f"{1e6 * case.settings.position_tolerance:g} µm": (
+            needed[name],
+            1e6 * left[name],
+        )
         for name, case in spec.PRECISE.items()
     }
     return tables.number_table("tolerance", {"iterations": 0, "residual [µm]": 2}, rows)
@@ -105,7 +120,9 @@ def jacobian_table(run: Experiment) -> str:
         * np.array([run.readings[study.JACOBIANS][name], *study.other_jacobians(q)])
         for name, q in postures
     }
-    heads = dict.fromkeys(("engine [10⁻⁶]", "MuJoCo [10⁻⁶]", "difference quotients [10⁻⁶]"), 3)
+    heads = dict.fromkeys(
+        ("engine [10⁻⁶]", "MuJoCo [10⁻⁶]", "difference quotients [10⁻⁶]"), 3
+    )
     return tables.number_table("posture", heads, rows)
 
 
@@ -127,14 +144,19 @@ def joint_table(run: Experiment) -> str:
         "position − command, computed [mrad]": 2,
         "moves the hand along z by [mm]": 2,
     }
-    q, kp = run.traces["baseline"].target[-1].astype(float), spec.BASELINE.kp[: kinematics.ARM]
+    q, kp = (
+        run.traces["baseline"].target[-1].astype(float),
+        spec.BASELINE.kp[: kinematics.ARM],
+    )
     effort = mujoco_kinematics.gravity_effort(q)[: kinematics.ARM]
     angles = -1000 * effort / kp
     ways = kinematics.jacobian(q)[2] * angles
     most = sorted(np.abs(ways).argsort()[-SHOWN:])
     rows = {f"`{JOINT_NAMES[k]}`": (effort[k], kp[k], angles[k], ways[k]) for k in most}
     others = ways.sum() - ways[most].sum()
-    return tables.number_table("joint", heads, {**rows, "all others": ("", "", "", others)})
+    return tables.number_table(
+        "joint", heads, {**rows, "all others": ("", "", "", others)}
+    )
 
 
 def marker_table(run: Experiment) -> str:
@@ -161,7 +183,10 @@ def surfaces(run: Experiment) -> dict[str, cameras.Residuals]:
 def depth_table(run: Experiment) -> str:
     """Return how far back-projected pixels are from the surfaces in closed form."""
     heads = {"pixels": 0, "mean [mm]": 3, "largest [mm]": 3}
-    rows = {n: (of.count, 1000 * of.mean, 1000 * of.largest) for n, of in surfaces(run).items()}
+    rows = {
+        n: (of.count, 1000 * of.mean, 1000 * of.largest)
+        for n, of in surfaces(run).items()
+    }
     return tables.number_table("surface", heads, rows or {NO_PICTURE: ("", "", "")})
 
 
@@ -169,10 +194,14 @@ def metric_table(run: Experiment) -> str:
     """Return the metrics of all runs in millimetres and milliradians."""
     labels, units = (ReachMetrics.about(what) for what in ("label", "unit"))
     rows = {
-        f"{label} [m{units[name]}]": [1000 * getattr(run.metrics[c], name) for c in spec.CASES]
+        f"{label} [m{units[name]}]": [
+            1000 * getattr(run.metrics[c], name) for c in spec.CASES
+        ]
         for name, label in labels.items()
     }
-    return tables.number_table("metric", {spec.LABELS[case]: 3 for case in spec.CASES}, rows)
+    return tables.number_table(
+        "metric", {spec.LABELS[case]: 3 for case in spec.CASES}, rows
+    )
 
 
 def conclusions(run: Experiment) -> str:
@@ -181,22 +210,28 @@ def conclusions(run: Experiment) -> str:
     residuals = np.array([ik["residual_m"], ik["residual_rad"]])
     answer = "accepted" if (residuals <= spec.IK.tolerances).all() else "refused"
     start, end, behind = (
-        1000 * getattr(base[1], f"{name}_distance") for name in ("start", "final", "tracking")
+        1000 * getattr(base[1], f"{name}_distance")
+        for name in ("start", "final", "tracking")
     )
-    return bullets([
-        f"The answer of the solver is {answer}: its residual is {1000 * residuals[0]:.3f} mm and "
-        f"{1000 * residuals[1]:.4f} mrad.",
-        f"The hand's distance from its target went from {start:.1f} mm to {end:.2f} mm. The arm "
-        f"stopped {behind:.2f} mm from the pose of its command.",
-        *(
-            f"With {spec.LABELS[name]}, {1000 * m.final_distance:.2f} mm are left."
-            for name, m in others
-        ),
-        *(
-            f"The pixels of the {name} are {1000 * found.largest:.3f} mm or less from its surface."
-            for name, found in surfaces(run).items()
-        ),
-    ])  # fmt: skip
+    return bullets(
+        [
+            f"The answer of the solver is {answer}: its residual is "
+            f"{1000 * residuals[0]:.3f} mm and "
+            f"{1000 * residuals[1]:.4f} mrad.",
+            f"The hand's distance from its target went from {start:.1f} "
+            f"mm to {end:.2f} mm. The arm "
+            f"stopped {behind:.2f} mm from the pose of its command.",
+            *(
+                f"With {spec.LABELS[name]}, {1000 * m.final_distance:.2f} mm are left."
+                for name, m in others
+            ),
+            *(
+                f"The pixels of the {name} are "
+                f"{1000 * found.largest:.3f} mm or less from its surface."
+                for name, found in surfaces(run).items()
+            ),
+        ]
+    )
 
 
 def records(run: Experiment, name: str) -> list[dict[str, str]]:
@@ -208,14 +243,22 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
     for k in range(case.steps):
         row = {
             "answer": str(k + 1),
-            "target x, y, z [m]": ", ".join(f"{value:g}" for value in case.positions[k]),
+            "target x, y, z [m]": ", ".join(
+                f"{value:g}" for value in case.positions[k]
+            ),
             "accepted": "yes" if found["accepted"][k] else "no",
             "joint1 [rad]": decimal(q[k, 0], 3),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
-        shown = {label: (by * found[key][k], n) for label, (key, by, n) in QUANTITIES.items()}
-        written = {label: f"{round(x, 6) + 0.0:.{n}g}" for label, (x, n) in shown.items()}
-        rows.append(row | {label: text.replace("-", "−") for label, text in written.items()})
+        shown = {
+            label: (by * found[key][k], n) for label, (key, by, n) in QUANTITIES.items()
+        }
+        written = {
+            label: f"{round(x, 6) + 0.0:.{n}g}" for label, (x, n) in shown.items()
+        }
+        rows.append(
+            row | {label: text.replace("-", "−") for label, text in written.items()}
+        )
     return rows
 
 
@@ -223,7 +266,10 @@ def chosen(run: Experiment) -> dict[str, int]:
     """Return by criterion the number of the accepted answer, from 0, that it chooses."""
     found = study.many_answers(run)
     numbers = np.flatnonzero(found["accepted"]).tolist()
-    return {n: best(numbers, key=found[key].__getitem__) for n, (key, best) in CRITERIA.items()}
+    return {
+        n: best(numbers, key=found[key].__getitem__)
+        for n, (key, best) in CRITERIA.items()
+    }
 
 
 @tables.as_table
@@ -242,9 +288,14 @@ def span(values: FloatArray, digits: int) -> str:
 
 def choice_table(run: Experiment) -> str:
     """Return the answers that the criteria choose."""
-    rows, shown = records(run, "many_starts"), ("answer", "joint1 [rad]", *[*QUANTITIES][:3])
+    rows, shown = (
+        records(run, "many_starts"),
+        ("answer", "joint1 [rad]", *[*QUANTITIES][:3]),
+    )
     found = chosen(run).items()
-    return tables.markdown([{"criterion": n} | {s: rows[k][s] for s in shown} for n, k in found])
+    return tables.markdown(
+        [{"criterion": n} | {s: rows[k][s] for s in shown} for n, k in found]
+    )
 
 
 def unreachable_table(run: Experiment) -> str:
@@ -257,7 +308,10 @@ def unreachable_table(run: Experiment) -> str:
         f"median of {spec.DRAWS}": order[spec.DRAWS // 2],
         f"farthest of {spec.DRAWS}": order[-1],
     }
-    pairs = {f"engine, {n}": (found["position"][k], found["rotation"][k]) for n, k in words.items()}
+    pairs = {
+        f"engine, {n}": (found["position"][k], found["rotation"][k])
+        for n, k in words.items()
+    }
     pairs["nearest that we found"] = kinematics.distances(study.nearest()[1])
     heads = dict.fromkeys(("distance [m]", "angle [rad]", "weighted distance [m]"), 3)
     rows = {name: (*pair, study.weighted(*pair)) for name, pair in pairs.items()}
@@ -270,8 +324,14 @@ def reach_table(run: Experiment) -> Iterator[dict[str, Any]]:
     for name in (*spec.PLANES, "vertical_restarted"):
         found = study.answers(run.traces[name], spec.QUESTIONS[name])
         yes = found["accepted"].astype(bool)
-        row = {"plane": name.replace("_", ", "), "targets": len(yes), "accepted": int(yes.sum())}
+        row = {
+            "plane": name.replace("_", ", "),
+            "targets": len(yes),
+            "accepted": int(yes.sum()),
+        }
         row |= {"of them in the floor": int((yes & (found["tip"] < 0)).sum())}
-        row |= {head: span(found[QUANTITIES[head][0]][yes], 3) for head in [*QUANTITIES][:2]}
+        row |= {
+            head: span(found[QUANTITIES[head][0]][yes], 3) for head in [*QUANTITIES][:2]
+        }
         left = span(1000 * found["position"][~yes], 1)
         yield row | {"distance left where refused [mm]": left}

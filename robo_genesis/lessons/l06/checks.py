@@ -5,7 +5,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    model_counts,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study, throughput
 from robo_genesis.sim.arm.franka import EFFORT_LIMIT, JOINT_NAMES, per_joint
@@ -15,9 +23,10 @@ from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import kept
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
-# A hand that turns sideways pushes its fingers, which hold each other. That force is not in the
-# law. It is up to 0.34 N here, and 2.3 N with 20 times the limits, because the hand turns faster.
-# Tolerance of an internal force with the usual limits [N·m or N].
+# A hand that turns sideways pushes its fingers, which hold each other. That force is
+# not in the law. It is up to 0.34 N here, and 2.3 N with 20 times the limits, because
+# the hand turns faster. Tolerance of an internal force with the usual limits [N·m or
+# N].
 NET_FORCE = per_joint(*(1e-2,) * 7, 0.6, 0.6)
 
 
@@ -28,8 +37,9 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 
 
 def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
-    """By forward kinematics, each command of the runs with metrics is within both tolerances and 5
-    µm and 5 µrad of rounding. The rule refuses the target beyond reach, and no other.
+    """By forward kinematics, each command of the runs with metrics is within both
+    tolerances and 5 µm and 5 µrad of rounding. The rule refuses the target beyond
+    reach, and no other.
     """
     most, angle_most = spec.IK.tolerances
     for name, world in spec.CASES.items():
@@ -38,11 +48,15 @@ def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
             apart, angle = distance_and_angle(Pose(position, world.quat), hand_pose(q))
             label = f"{name}.target_{number}"
             yield at_most(f"{label}.residual_m", apart, most + spec.SAME_POSE[0])
-            yield at_most(f"{label}.residual_rad", angle, angle_most + spec.SAME_POSE[1])
+            yield at_most(
+                f"{label}.residual_rad", angle, angle_most + spec.SAME_POSE[1]
+            )
     for k, (name, residual) in enumerate(run.readings["mixed"].items()):
         beyond = bool((spec.MIXED[k] == spec.BEYOND_REACH).all())
         expected = study.residual(spec.MIXED[k], run.joints)
-        tolerance = spec.SAME_RESIDUAL * max(1.0, 4 * expected)  # a float32 has seven digits
+        tolerance = spec.SAME_RESIDUAL * max(
+            1.0, 4 * expected
+        )  # a float32 has seven digits
         yield within(f"mixed.{name}", residual, expected, tolerance)
         accepted = run.readings["mixed_accepted"][f"env_{k}"]
         yield equal(f"mixed.row_{k}_accepted", accepted, int(not beyond))
@@ -62,8 +76,8 @@ def arrived(run: Experiment) -> Iterator[Finding]:
 
 
 def row_equals_alone(run: Experiment) -> Iterator[Finding]:
-    """Each row of the batch and the same run alone have commands, positions, velocities and control
-    forces within the declared bounds of each other.
+    """Each row of the batch and the same run alone have commands, positions, velocities
+    and control forces within the declared bounds of each other.
     """
     for k in spec.ENVS:
         row, alone = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
@@ -86,9 +100,9 @@ def permuted_rows(run: Experiment) -> Iterator[Finding]:
 
 
 def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
-    """Environments that are not named keep their hand in place while others get a second command.
-    While others are reset and commanded in mid-motion, they give the same arrays to the last
-    bit.
+    """Environments that are not named keep their hand in place while others get a
+    second command. While others are reset and commanded in mid-motion, they give the
+    same arrays to the last bit.
     """
     yield from same_to_the_last_bit(run, "beside")
     for name, world in spec.WORLDS.items():
@@ -100,8 +114,8 @@ def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
 
 
 def pressed_on_the_floor(run: Experiment) -> Iterator[Finding]:
-    """With the hands kept above their targets by the floor, rows in another order and rows after
-    a partial reset are equal to the last bit.
+    """With the hands kept above their targets by the floor, rows in another order and
+    rows after a partial reset are equal to the last bit.
     """
     found = run.readings[study.EQUALITY]
     for claim in ("permuted", "again"):
@@ -110,22 +124,26 @@ def pressed_on_the_floor(run: Experiment) -> Iterator[Finding]:
 
 
 def old_forces_after_a_reset(run: Experiment) -> Iterator[Finding]:
-    """After a partial reset of hands that press on the floor with more than 50 N, the engine
-    returns their old contact forces, or zero as newer versions do. One step later they are zero.
-    Forces of the joints are the old ones until that step.
+    """After a partial reset of hands that press on the floor with more than 50 N, the
+    engine returns their old contact forces, or zero as newer versions do. One step
+    later they are zero. Forces of the joints are the old ones until that step.
     """
     found = run.readings[study.EQUALITY]
     for k in spec.LATER:
         before, after, later = (found[f"force_{k}_{when}"] for when in study.WHEN)
         yield above(f"row_{k}.force_before_N", before, 50.0)
-        yield equal(f"row_{k}.neither_old_nor_zero_N", min(after, abs(after - before)), 0.0)
+        yield equal(
+            f"row_{k}.neither_old_nor_zero_N", min(after, abs(after - before)), 0.0
+        )
         yield equal(f"row_{k}.force_one_step_later_N", later, 0.0)
-        yield equal(f"row_{k}.joint_forces_that_changed", found[f"joints_{k}_changed"], 0)
+        yield equal(
+            f"row_{k}.joint_forces_that_changed", found[f"joints_{k}_changed"], 0
+        )
 
 
 def answers_depend_on_the_row(run: Experiment) -> Iterator[Finding]:
-    """In one call with one start, equal questions have answers that are equal to the last bit. With
-    random starts, two of their answers differ by more than 10 mrad.
+    """In one call with one start, equal questions have answers that are equal to the
+    last bit. With random starts, two of their answers differ by more than 10 mrad.
     """
     found = run.readings[study.EQUALITY]
     yield equal("entries_that_differ_with_one_start", found["one_start_differ"], 0)
@@ -133,20 +151,23 @@ def answers_depend_on_the_row(run: Experiment) -> Iterator[Finding]:
 
 
 def sweep_repeats_the_runs(run: Experiment) -> Iterator[Finding]:
-    """The robots of the sweep that are also recorded end there and pass the target as recorded, to
-    0.01 mm.
+    """The robots of the sweep that are also recorded end there and pass the target as
+    recorded, to 0.01 mm.
     """
     for name, robot in spec.SWEPT.items():
         m, most, row = run.metrics[name], spec.RESOLUTION["m"], spec.SWEEP[robot]
-        ends, passed = (run.readings[f"sweep_{what}"][row] for what in ("end", "overshoot"))
+        ends, passed = (
+            run.readings[f"sweep_{what}"][row] for what in ("end", "overshoot")
+        )
         yield within(f"{name}.final_distance_m", ends, m.final_distance, most)
         yield within(f"{name}.overshoot_m", passed, m.overshoot, most)
 
 
 def price_of_stiffness(run: Experiment) -> Iterator[Finding]:
-    """With KV unchanged and any load, KP doubled lowers the distance at the end to a share between
-    0.45 and 0.55, and raises the overshoot by more than 20 mm. With 20 times the limits of the
-    torques, the stiff robot passes its target by less than a tenth as far.
+    """With KV unchanged and any load, KP doubled lowers the distance at the end to a
+    share between 0.45 and 0.55, and raises the overshoot by more than 20 mm. With 20
+    times the limits of the torques, the stiff robot passes its target by less than a
+    tenth as far.
     """
     m = run.metrics
     share = m["unlimited_robot"].overshoot / m["stiff_robot"].overshoot
@@ -154,17 +175,23 @@ def price_of_stiffness(run: Experiment) -> Iterator[Finding]:
     ends, passed = (run.readings[f"sweep_{what}"] for what in ("end", "overshoot"))
     for load in spec.LOADS:
         plain, stiff = (spec.SWEEP[kp, 1.0, load] for kp in (1.0, 2.0))
-        yield within(f"load_{load:g}.share_of_the_distance", ends[stiff] / ends[plain], 0.5, 0.05)
-        yield above(f"load_{load:g}.added_overshoot_m", passed[stiff] - passed[plain], 0.02)
+        yield within(
+            f"load_{load:g}.share_of_the_distance", ends[stiff] / ends[plain], 0.5, 0.05
+        )
+        yield above(
+            f"load_{load:g}.added_overshoot_m", passed[stiff] - passed[plain], 0.02
+        )
 
 
 def stiffest_fail(run: Experiment) -> Iterator[Finding]:
-    """Without a load, no robot with KP × 8 or × 16 ends within 5 mm of the target and passes it by
-    less than 5 mm.
+    """Without a load, no robot with KP × 8 or × 16 ends within 5 mm of the target and
+    passes it by less than 5 mm.
     """
     for (kp, kv, load), name in spec.SWEEP.items():
         if kp >= 8 and load == 0:
-            worst = max(run.readings[f"sweep_{what}"][name] for what in ("end", "overshoot"))
+            worst = max(
+                run.readings[f"sweep_{what}"][name] for what in ("end", "overshoot")
+            )
             yield above(f"kp_{kp:g}_kv_{kv:g}.worse_of_both_m", worst, 5e-3)
 
 
@@ -174,9 +201,9 @@ def partial_reset(run: Experiment) -> Iterator[Finding]:
 
 
 def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
-    """The row without changes equals its run beside equal neighbours to the last bit. Each hand has
-    its own mass. At rest each torque equals the gravity torque of the arm with its load, and KP
-    times the position error, within 0.05 N·m.
+    """The row without changes equals its run beside equal neighbours to the last bit.
+    Each hand has its own mass. At rest each torque equals the gravity torque of the arm
+    with its load, and KP times the position error, within 0.05 N·m.
     """
     yield from same_to_the_last_bit(run, "plain")
     for name, world in spec.VARIANTS.items():
@@ -192,8 +219,8 @@ def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
 
 
 def equal_work(run: Experiment) -> Iterator[Finding]:
-    """In each batch of the table, all arms end near the commanded angles, with joint positions that
-    are equal to the last bit in all environments.
+    """In each batch of the table, all arms end near the commanded angles, with joint
+    positions that are equal to the last bit in all environments.
     """
     for size, differ in run.readings[throughput.EQUAL].items():
         yield equal(f"{size}_environments.that_missed_the_motion_or_differ", differ, 0)
@@ -210,11 +237,23 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
 
 
 WITHOUT_CAMERA = (
-    mapping, stamps, acceptance_per_row, arrived, row_equals_alone, permuted_rows,
-    untouched_keep_their_state, partial_reset, own_gains_and_mass, laws_of_motion,
-)  # fmt: skip
+    mapping,
+    stamps,
+    acceptance_per_row,
+    arrived,
+    row_equals_alone,
+    permuted_rows,
+    untouched_keep_their_state,
+    partial_reset,
+    own_gains_and_mass,
+    laws_of_motion,
+)
 CHECKS = (*WITHOUT_CAMERA, posture)
 LECTURE = (
-    pressed_on_the_floor, old_forces_after_a_reset, answers_depend_on_the_row,
-    sweep_repeats_the_runs, price_of_stiffness, stiffest_fail,
-)  # fmt: skip
+    pressed_on_the_floor,
+    old_forces_after_a_reset,
+    answers_depend_on_the_row,
+    sweep_repeats_the_runs,
+    price_of_stiffness,
+    stiffest_fail,
+)

@@ -23,9 +23,15 @@ def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     It returns one truth value for each row, (k,).
     """
     names = list(ANSWERS)
-    for label, rows in (("all", names), ("backwards", names[::-1]), ("one", names[3:4])):
+    for label, rows in (
+        ("all", names),
+        ("backwards", names[::-1]),
+        ("one", names[3:4]),
+    ):
         changed = [ANSWERS[name][0] for name in rows]
-        q = np.array([np.where(np.arange(9) == joint, value, 0.1) for joint, value in changed])
+        q = np.array(
+            [np.where(np.arange(9) == joint, value, 0.1) for joint, value in changed]
+        )
         error = np.array([ANSWERS[name][1] for name in rows], dtype=float)
         found = np.asarray(accept(q, error, *spec.IK.tolerances))
         yield equal(f"{label}.shape", list(found.shape), [len(rows)])
@@ -34,7 +40,9 @@ def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
             for name, value in zip(rows, found, strict=True):
                 yield equal(f"{label}.{name}", bool(value), ANSWERS[name][2])
     loose = accept(np.zeros((2, 9)), np.full((2, 6), 0.1), 0.2, 0.2)
-    yield equal("looser_tolerances", np.asarray(loose, dtype=bool).tolist(), [True, True])
+    yield equal(
+        "looser_tolerances", np.asarray(loose, dtype=bool).tolist(), [True, True]
+    )
 
 
 class Robot:
@@ -51,7 +59,9 @@ class Robot:
         """Keep positions of some DOFs in some environments."""
         dofs = range(3) if dofs_idx_local is None else dofs_idx_local
         envs = range(len(self.target)) if envs_idx is None else np.atleast_1d(envs_idx)
-        self.target[np.ix_([int(k) for k in envs], list(dofs))] = position  # a mask is 0 and 1
+        self.target[np.ix_([int(k) for k in envs], list(dofs))] = (
+            position  # a mask is 0 and 1
+        )
         self.calls += 1
 
 
@@ -64,14 +74,23 @@ VALID: dict[str, tuple[int, Sequence[int], Sequence[int]]] = {
     "more_environments": (6, [0, 1, 2], [5, 0]),
 }
 
-# The engine would send many of these commands.
-# Shapes that do not have one row for each of two environments, with three DOFs; (2,) with two.
+# The engine would send many of these commands. Shapes that do not have one row for each
+# of two environments, with three DOFs; (2,) with two.
 SHAPES = ((1, 3), (3,), (6,), (3, 2), (2,), (2, 1), (2, 3, 1), (3, 3))
 
 MASK = [False, True]
 
 # Environments that do not fit two rows and a scene of three environments.
-NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK, np.array(MASK))
+NUMBERS: tuple[Any, ...] = (
+    [],
+    [1],
+    [1, 1],
+    [1, 3],
+    [-1, 1],
+    [1.5, 0],
+    MASK,
+    np.array(MASK),
+)
 
 
 @as_test
@@ -79,7 +98,10 @@ def subset(command: Callable[..., Any]) -> Iterator[Finding]:
     """Check `command(robot, dofs, q, envs)`: one call, row k for environment `envs[k]`."""
     for name, (count, dofs, envs) in VALID.items():
         robot = Robot(count)
-        q, expected = 0.3 + np.arange(12.0)[: len(envs) * len(dofs)], robot.target.copy()
+        q, expected = (
+            0.3 + np.arange(12.0)[: len(envs) * len(dofs)],
+            robot.target.copy(),
+        )
         q = q.reshape(len(envs), len(dofs))
         expected[np.ix_(envs, dofs)] = q
         command(robot, dofs, q, np.array(envs))
@@ -125,7 +147,8 @@ class Machine:
         return self.now
 
 
-# Durations of the steps of the warm-up, steps of a repeat, and their duration in each repeat.
+# Durations of the steps of the warm-up, steps of a repeat, and their duration in each
+# repeat.
 TRIALS: dict[str, tuple[Sequence[float], int, Sequence[float]]] = {
     "steady": ([1, 1, 1], 10, [1] * 5),
     "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),

@@ -10,15 +10,23 @@ MEASURES = False
 
 # Label and noun of each group of readings that the map shows.
 SHOWN = {
-    "sweep_end": ("distance at the end [mm]", "distance of the hand from its target at the end"),
-    "sweep_overshoot": ("overshoot [mm]", "distance by which the hand passes its target"),
+    "sweep_end": (
+        "distance at the end [mm]",
+        "distance of the hand from its target at the end",
+    ),
+    "sweep_overshoot": (
+        "overshoot [mm]",
+        "distance by which the hand passes its target",
+    ),
 }
 
 
 def explored(run: Experiment) -> dict[str, Any]:
     """Return the sweep as `site/figures/explorer.py` shows it: KP upwards, KV to the right."""
     words = {"lower": "lower", "higher": "higher", "margin": 1.0, "within": "1 mm"}
-    measures = [{"label": label, "noun": noun} | words for label, noun in SHOWN.values()]
+    measures = [
+        {"label": label, "noun": noun} | words for label, noun in SHOWN.values()
+    ]
     return {
         "choices": ("In the hand", "Map shows"),
         "maps": [_map(run, load) for load in spec.LOADS],
@@ -51,7 +59,9 @@ def _map(run: Experiment, load: float) -> dict[str, Any]:
 def _cell(run: Experiment, kp: float, kv: float, load: float) -> dict[str, Any]:
     """Return one robot."""
     numbers = [1000 * run.readings[group][spec.SWEEP[kp, kv, load]] for group in SHOWN]
-    ends, passed = texts = [decimal(number, 1 if number < 9.95 else 0) for number in numbers]
+    ends, passed = texts = [
+        decimal(number, 1 if number < 9.95 else 0) for number in numbers
+    ]
     name = f"KP × {kp:g}, KV × {kv:g}"
     return {
         "name": name,

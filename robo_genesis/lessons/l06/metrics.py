@@ -25,17 +25,23 @@ class WorldMetrics(CaseMetrics):
 
     start_distance: float = metric("m", "start to first target", *MEASURED)
     residual: float = metric("m", "last command to its target", *COMMANDED)
-    residual_angle: float = metric("rad", "last command to its target, angle", *COMMANDED)
+    residual_angle: float = metric(
+        "rad", "last command to its target, angle", *COMMANDED
+    )
     first_distance: float = metric("m", "first target after 1.8 s", *MEASURED)
     final_distance: float = metric(
-        "m", "last target at the end", *MEASURED,
+        "m",
+        "last target at the end",
+        *MEASURED,
         noun="distance of the hand from its target at the end",
-    )  # fmt: skip
+    )
     final_angle: float = metric("rad", "last target at the end, angle", *MEASURED)
     overshoot: float = metric(
-        "m", "first target passed by", "link_pos_m",
+        "m",
+        "first target passed by",
+        "link_pos_m",
         noun="distance by which the hand passes its first target",
-    )  # fmt: skip
+    )
     moved_later: float | None = metric("m", "motion after 1.8 s", "link_pos_m")
 
 

@@ -41,12 +41,16 @@ WORLDS = MeasuringPage(
 )
 LECTURE = WORLDS.with_more(dict, readings=study.LECTURE_READINGS, checks=checks.LECTURE)
 MODEL = {"model": study.READINGS["model"]}
-MISTAKES = replace(WORLDS, runs={}, readings=MODEL, checks=(checks.mapping,), camera=False)
+MISTAKES = replace(
+    WORLDS, runs={}, readings=MODEL, checks=(checks.mapping,), camera=False
+)
 
 
 def timed(page: MeasuringPage, protocol: throughput.Protocol) -> MeasuringPage:
     """Return a page that also measures a throughput."""
-    return page.with_more(protocol.parameters, {}, protocol.readings(), [checks.equal_work])
+    return page.with_more(
+        protocol.parameters, {}, protocol.readings(), [checks.equal_work]
+    )
 
 
 LAB = timed(WORLDS, throughput.PROTOCOL)
@@ -58,7 +62,12 @@ THROUGHPUT = timed(MISTAKES, throughput.DEEPER)
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, WorldMetrics),
-    pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES, "throughput": THROUGHPUT},
+    pages={
+        "lab": LAB,
+        "lecture": LECTURE,
+        "mistakes": MISTAKES,
+        "throughput": THROUGHPUT,
+    },
     replays={
         "robots": Replay(
             tuple(spec.VARIANTS),

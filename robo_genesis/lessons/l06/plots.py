@@ -78,11 +78,17 @@ def throughput(run: Experiment) -> Figure:
 def model(run: Experiment) -> Figure:
     """Draw the measured time of a step, and the range of the models."""
     figure, numbers = plotting.figure(3.8), np.array(sizes(run))
-    ax, step, known = figure.subplots(), 1000 * times(run, "step"), np.isin(numbers, FITTED)
+    ax, step, known = (
+        figure.subplots(),
+        1000 * times(run, "step"),
+        np.isin(numbers, FITTED),
+    )
     fine = np.geomspace(numbers[0], numbers[-1], 60)
     models = [1000 * one.step_time(fine) for one in fits(run)]
     band = {"color": THEORY["color"], "alpha": 0.3, "linewidth": 0}
-    ax.fill_between(fine, np.min(models, axis=0), np.max(models, axis=0), label="models", **band)
+    ax.fill_between(
+        fine, np.min(models, axis=0), np.max(models, axis=0), label="models", **band
+    )
     dots = MEASURED | {"linestyle": "none", "markersize": 5}
     ax.plot(numbers[known], step[known], label="in the fits", **dots)
     ax.plot(numbers[~known], step[~known], label="predicted", fillstyle="none", **dots)

@@ -9,7 +9,12 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.batch import Batch
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, accepted_command, solve_ik
+from robo_genesis.sim.arm.engine_kinematics import (
+    IkAnswer,
+    IkSettings,
+    accepted_command,
+    solve_ik,
+)
 from robo_genesis.sim.arm.joint_control import Controlled
 from robo_genesis.sim.arm.joints import JointMap
 
@@ -18,8 +23,9 @@ from robo_genesis.sim.arm.joints import JointMap
 class Environment(Controlled):
     """One environment: the targets of its hand in their order, its controlled arm, and its load.
 
-    `positions` (p, 3) [m] and `quat` (4,) are in the world. A second target is commanded after
-    `switch` of the `steps`. `load` is added to the mass of the hand [kg].
+    `positions` (p, 3) [m] and `quat` (4,) are in the world. A second target is
+    commanded after `switch` of the `steps`. `load` is added to the mass of the hand
+    [kg].
     """
 
     positions: FloatArray
@@ -30,9 +36,12 @@ class Environment(Controlled):
 
 
 def ask(
-    robot: Any, joints: JointMap, worlds: Sequence[Environment], number: int = 0,
+    robot: Any,
+    joints: JointMap,
+    worlds: Sequence[Environment],
+    number: int = 0,
     envs: Sequence[int] | None = None,
-) -> IkAnswer:  # fmt: skip
+) -> IkAnswer:
     """Ask in one call for a target of each world; row k of the answer belongs to `worlds[k]`.
 
     Args:
@@ -47,7 +56,9 @@ def ask(
     if robot.scene.n_envs == 0:
         position, quat, q_start = position[0], quat[0], q_start[0]
     found = solve_ik(robot, joints, position, quat, q_start, worlds[0].settings, envs)
-    return IkAnswer(found.q.reshape(len(worlds), -1), found.error.reshape(len(worlds), -1))
+    return IkAnswer(
+        found.q.reshape(len(worlds), -1), found.error.reshape(len(worlds), -1)
+    )
 
 
 def commands(worlds: Sequence[Environment], answer: IkAnswer) -> FloatArray:
@@ -60,12 +71,18 @@ def commands(worlds: Sequence[Environment], answer: IkAnswer) -> FloatArray:
     return accepted_command(answer, worlds[0].settings, starts)
 
 
-def start(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment]) -> Batch:
+def start(
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment]
+) -> Batch:
     """Reset every environment to the start of its world, with its gains."""
-    return Batch(scene, robot, joints, [world.commanding(world.q_start) for world in worlds])
+    return Batch(
+        scene, robot, joints, [world.commanding(world.q_start) for world in worlds]
+    )
 
 
-def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment]) -> list[Trace]:
+def reach(
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment]
+) -> list[Trace]:
     """Command the first target of all worlds, later the second target of those that have one.
 
     Returns:
@@ -84,14 +101,18 @@ def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment
 
 
 def reset_some(
-    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment],
-    envs: Sequence[int], after: int,
-) -> Iterator[Batch]:  # fmt: skip
+    scene: Any,
+    robot: Any,
+    joints: JointMap,
+    worlds: Sequence[Environment],
+    envs: Sequence[int],
+    after: int,
+) -> Iterator[Batch]:
     """Reset some environments after some steps, and command their first target again.
 
     Yields:
-        The batch before the reset, after it, one step later, and after `switch` further steps. Its
-        traces of `envs` begin at their last reset, the others at the start.
+        The batch before the reset, after it, one step later, and after `switch` further
+        steps. Its traces of `envs` begin at their last reset, the others at the start.
     """
     batch = start(scene, robot, joints, worlds)
     q_target = commands(worlds, ask(robot, joints, worlds))

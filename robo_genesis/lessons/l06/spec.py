@@ -1,7 +1,8 @@
 """Specification of lesson L06: environments, their targets, gains and loads, and tolerances.
 
-Pages, checks, verification and tests read the experiment here. The module is data and computes
-nothing. `parameters()` has the values that decide what runs; all other values only judge.
+Pages, checks, verification and tests read the experiment here. The module is data and
+computes nothing. `parameters()` has the values that decide what runs; all other values
+only judge.
 """
 
 from dataclasses import asdict, replace
@@ -22,8 +23,8 @@ IK, ONE_START, DOWN = reaching.IK, reaching.ONE_START, reaching.DOWN
 BEYOND_REACH, MARKER_RADIUS = reaching.BEYOND_REACH, reaching.MARKER_RADIUS
 RESOLUTION, REACHED = reaching.RESOLUTION, reaching.REACHED
 
-# As in `reaching`. A robot with little damping still swings at the end of the sweep; between two
-# processors it was up to 24 mm elsewhere.
+# As in `reaching`. A robot with little damping still swings at the end of the sweep;
+# between two processors it was up to 24 mm elsewhere.
 TOLERANCES = reaching.TOLERANCES | {"sweep_end": (0.1, 0.0)}
 SAME_POSE, SAME_RESIDUAL = reaching.SAME_POSE, reaching.SAME_RESIDUAL
 
@@ -53,7 +54,8 @@ FIRST = Environment(TARGETS[:1], DOWN, IK, SWITCH, steps=STEPS)
 ENVS = tuple(range(len(TARGETS)))
 
 WORLDS = {
-    f"env_{k}": replace(FIRST, positions=read_only([TARGETS[k], *LATER.get(k, [])])) for k in ENVS
+    f"env_{k}": replace(FIRST, positions=read_only([TARGETS[k], *LATER.get(k, [])]))
+    for k in ENVS
 }
 
 # The same worlds, each in a scene with one robot and without environments.
@@ -61,7 +63,8 @@ ALONE = {f"alone_{k}": WORLDS[f"env_{k}"] for k in ENVS}
 
 SHORT = replace(FIRST, steps=SWITCH)
 
-# One target, and four robots that differ in gains, mass of the hand or limits of the torques.
+# One target, and four robots that differ in gains, mass of the hand or limits of the
+# torques.
 VARIANTS = {
     "plain_robot": SHORT,
     "stiff_robot": replace(SHORT, kp=2 * franka.KP_BASELINE),
@@ -89,15 +92,19 @@ SWEPT |= {"loaded_robot": (1.0, 1.0, 1.0)}
 
 CASES = WORLDS | ALONE | VARIANTS
 
-INTO_THE_FLOOR = replace(FIRST, settings=replace(IK, clearance=-0.1), switch=STEPS, steps=STEPS)
+INTO_THE_FLOOR = replace(
+    FIRST, settings=replace(IK, clearance=-0.1), switch=STEPS, steps=STEPS
+)
 
-# Targets of the hand that put its fingers into the floor; the solver does not know the floor.
+# Targets of the hand that put its fingers into the floor; the solver does not know the
+# floor.
 PRESSED = {
     f"pressed_{k}": replace(INTO_THE_FLOOR, positions=read_only([[x, y, 0.05]]))
     for k, (x, y, _) in enumerate(TARGETS)
 }
 
-# A target that the solver does not reach from the start, and reaches from random starts [m].
+# A target that the solver does not reach from the start, and reaches from random starts
+# [m].
 RESTARTED = read_only([(0.25, 0.0, 0.2)])
 
 # Row k of the permuted batch is the world of this environment.
@@ -113,7 +120,9 @@ BESIDE = {
 }
 
 # Environments from their partial reset on.
-AGAIN = {f"again_{k}": replace(FIRST, positions=TARGETS[[k]], steps=SWITCH) for k in LATER}
+AGAIN = {
+    f"again_{k}": replace(FIRST, positions=TARGETS[[k]], steps=SWITCH) for k in LATER
+}
 
 # Runs that must repeat another one; they are recorded, and have no metrics.
 COPIES = PERMUTED | BESIDE | AGAIN
@@ -122,24 +131,32 @@ MARKS = ("baseline", "first", "second", "third")
 
 # The mark of each case in the palette.
 CASE_MARKS = {
-    name: mark for group in (WORLDS, VARIANTS) for name, mark in zip(group, MARKS, strict=True)
+    name: mark
+    for group in (WORLDS, VARIANTS)
+    for name, mark in zip(group, MARKS, strict=True)
 }
 
 # Words of a reader for runs.
-LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
-    "plain_robot": "plain robot",
-    "stiff_robot": "KP doubled",
-    "loaded_robot": "1 kg in the hand",
-    "unlimited_robot": "KP doubled, limits × 20",
-} | {name: f"environment {name[-1]} alone" for name in ALONE}  # fmt: skip
+LABELS = (
+    {name: name.replace("env_", "environment ") for name in WORLDS}
+    | {
+        "plain_robot": "plain robot",
+        "stiff_robot": "KP doubled",
+        "loaded_robot": "1 kg in the hand",
+        "unlimited_robot": "KP doubled, limits × 20",
+    }
+    | {name: f"environment {name[-1]} alone" for name in ALONE}
+)
 
-SPACING = 1.0  # Distance of neighbouring environments in pictures [m]; no state depends on it
+SPACING = (
+    1.0  # Distance of neighbouring environments in pictures [m]; no state depends on it
+)
 
 # Where the replay draws the environments [m]: from left to right, none hides another.
 PLACES = ((-0.81, -0.75), (-0.54, 0.09), (0.34, -0.09), (0.61, 0.75))
 
-# The engine places it in the world of environment 0, which pictures show at a corner of the group.
-# The lesson's camera: all environments, side by side.
+# The engine places it in the world of environment 0, which pictures show at a corner of
+# the group. The lesson's camera: all environments, side by side.
 VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
 
 # How the second case of a pair compares with the first [m]; not fitted to a run.
@@ -150,11 +167,12 @@ RELATIONS = (
     (("stiff_robot", "unlimited_robot"), "overshoot", "lower", 5e-3),
 )
 
-# Both are computed in float32.
-# Largest difference of a row from the same run alone [rad or m, rad/s or m/s, N·m or N].
+# Both are computed in float32. Largest difference of a row from the same run alone [rad
+# or m, rad/s or m/s, N·m or N].
 SAME_RUN = {"q": 5e-6, "qd": 5e-5, "control_force": 2e-2}
 
-# Largest difference of a torque at rest from gravity and load, and from KP times error [N·m].
+# Largest difference of a torque at rest from gravity and load, and from KP times error
+# [N·m].
 HELD = 0.05
 
 

@@ -17,7 +17,8 @@ from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR, IkAnswer
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joints import JointMap, resolve_joints, to_numpy
 
-# Counts, residuals and verdicts of a question with a target beyond reach, and masses of hands.
+# Counts, residuals and verdicts of a question with a target beyond reach, and masses of
+# hands.
 READINGS = {
     "model": counts(spec.EXPECTED_MODEL),
     "mixed": Readings({f"row_{k}_m": "m" for k in spec.ENVS}),
@@ -28,14 +29,17 @@ READINGS = {
 EQUALITY = "equality"
 READ = ("pressed_permuted", "pressed_again", "pressed_alone", "one_start", "restarts")
 
-# Of two runs: numbers that are compared, how many differ, largest difference of an arm joint.
+# Of two runs: numbers that are compared, how many differ, largest difference of an arm
+# joint.
 COMPARED = {"compared": "1", "differ": "1", "apart": "rad"}
 
-# When contact forces of the pressed hands are read: around a partial reset, and a step later.
+# When contact forces of the pressed hands are read: around a partial reset, and a step
+# later.
 WHEN = ("before", "after", "next")
 
-# Rounding decides how far runs in contact separate, so that another run need not repeat it.
-# Comparisons without arrays, and of each robot of the sweep two distances from the target.
+# Rounding decides how far runs in contact separate, so that another run need not repeat
+# it. Comparisons without arrays, and of each robot of the sweep two distances from the
+# target.
 LECTURE_READINGS = {
     EQUALITY: Readings(
         {f"{claim}_{what}": unit for claim in READ for what, unit in COMPARED.items()}
@@ -56,8 +60,12 @@ def read_mixed(page: Any, robot: Any) -> IkAnswer:
     answer = ask(robot, page.joints, worlds)
     apart, _ = kinematics.distances(answer.error)
     verdicts = kinematics.accepted(answer.q, answer.error, *spec.ONE_START.tolerances)
-    page.readings["mixed"] = dict(zip(READINGS["mixed"].units, map(float, apart), strict=True))
-    page.readings["mixed_accepted"] = dict(zip(spec.WORLDS, map(int, verdicts), strict=True))
+    page.readings["mixed"] = dict(
+        zip(READINGS["mixed"].units, map(float, apart), strict=True)
+    )
+    page.readings["mixed_accepted"] = dict(
+        zip(spec.WORLDS, map(int, verdicts), strict=True)
+    )
     return answer
 
 
@@ -72,8 +80,14 @@ def residual(position: FloatArray, joints: JointMap) -> float:
         error = kinematics.pose_error(target, kinematics.hand_pose(q))
         if kinematics.accepted(q, error, *settings.tolerances):
             break
-        q = kinematics.solve(target, q, *limits, iterations=1, damping=settings.damping,
-                             largest=settings.largest_step)  # fmt: skip
+        q = kinematics.solve(
+            target,
+            q,
+            *limits,
+            iterations=1,
+            damping=settings.damping,
+            largest=settings.largest_step,
+        )
     return kinematics.distance_and_angle(target, kinematics.hand_pose(q))[0]
 
 
@@ -82,14 +96,18 @@ def record(page: Any, scene: Any, robot: Any, camera: Any) -> None:
     worlds = list(spec.WORLDS.values())
     start(scene, robot, page.joints, worlds)
     page.capture(camera, "initial")
-    page.traces |= dict(zip(spec.WORLDS, reach(scene, robot, page.joints, worlds), strict=True))
+    page.traces |= dict(
+        zip(spec.WORLDS, reach(scene, robot, page.joints, worlds), strict=True)
+    )
     page.capture(camera, "final")
 
 
 def record_alone(page: Any, scene: Any, robot: Any) -> None:
     """Record each world in a scene without environments."""
     for name, world in spec.ALONE.items():
-        (page.traces[name],) = reach(scene, robot, resolve_joints(robot, JOINT_NAMES), [world])
+        (page.traces[name],) = reach(
+            scene, robot, resolve_joints(robot, JOINT_NAMES), [world]
+        )
 
 
 def record_copies(page: Any, scene: Any, robot: Any) -> None:
@@ -99,7 +117,9 @@ def record_copies(page: Any, scene: Any, robot: Any) -> None:
     page.traces |= {f"permuted_{k}": rows[spec.ORDER.index(k)] for k in spec.ENVS}
     envs = list(spec.LATER)
     *_, batch = reset_some(scene, robot, page.joints, worlds, envs, spec.RESET_AFTER)
-    page.traces |= {f"{'again' if k in envs else 'beside'}_{k}": batch.trace(k) for k in spec.ENVS}
+    page.traces |= {
+        f"{'again' if k in envs else 'beside'}_{k}": batch.trace(k) for k in spec.ENVS
+    }
 
 
 def record_variants(page: Any, scene: Any, robot: Any) -> None:
@@ -108,8 +128,12 @@ def record_variants(page: Any, scene: Any, robot: Any) -> None:
     loaded = [row for row, world in enumerate(worlds) if world.load]
     heavy = np.array([spec.HAND_MASS + worlds[row].load for row in loaded])
     masses = set_link_mass(robot, END_EFFECTOR, heavy, loaded)
-    page.readings["hand_mass"] = dict(zip(spec.VARIANTS, map(float, masses), strict=True))
-    page.traces |= dict(zip(spec.VARIANTS, reach(scene, robot, page.joints, worlds), strict=True))
+    page.readings["hand_mass"] = dict(
+        zip(spec.VARIANTS, map(float, masses), strict=True)
+    )
+    page.traces |= dict(
+        zip(spec.VARIANTS, reach(scene, robot, page.joints, worlds), strict=True)
+    )
     set_link_mass(robot, END_EFFECTOR, np.full(len(loaded), spec.HAND_MASS), loaded)
 
 
@@ -133,9 +157,16 @@ def read_equality(page: Any, scene: Any, robot: Any, alone: Any, single: Any) ->
         question = replace(spec.FIRST, positions=spec.RESTARTED, settings=settings)
         q = ask(robot, page.joints, [question] * len(spec.ENVS)).q
         differ = q[1:] != q[0]
-        found.append((differ.size, int(differ.sum()), float(np.abs(q[1:] - q[0]).max())))
+        found.append(
+            (differ.size, int(differ.sum()), float(np.abs(q[1:] - q[0]).max()))
+        )
     height = min(row.link_pos[-1, kinematics.HAND, 2] for row in rows)
-    values = [*(value for of in found for value in of), height, *np.ravel(forces[:-1]), *changed]
+    values = [
+        *(value for of in found for value in of),
+        height,
+        *np.ravel(forces[:-1]),
+        *changed,
+    ]
     page.readings[EQUALITY] = dict(
         zip(LECTURE_READINGS[EQUALITY].units, map(float, values), strict=True)
     )
@@ -144,7 +175,9 @@ def read_equality(page: Any, scene: Any, robot: Any, alone: Any, single: Any) ->
 def compared(pairs: Sequence[tuple[Trace, Trace]]) -> tuple[int, int, float]:
     """Return the values of `COMPARED` for some pairs of runs."""
     counted = [entries_that_differ(*pair) for pair in pairs]
-    apart = max(largest_differences(*pair, slice(kinematics.ARM))["q"] for pair in pairs)
+    apart = max(
+        largest_differences(*pair, slice(kinematics.ARM))["q"] for pair in pairs
+    )
     differ, of = (sum(column) for column in zip(*counted, strict=True))
     return of, differ, apart
 
@@ -160,7 +193,9 @@ def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
     return differ, compared
 
 
-def largest_differences(one: Trace, other: Trace, joints: slice = slice(None)) -> dict[str, float]:
+def largest_differences(
+    one: Trace, other: Trace, joints: slice = slice(None)
+) -> dict[str, float]:
     """Return the largest difference of each array of `spec.SAME_RUN` in two runs.
 
     Args:
@@ -169,7 +204,8 @@ def largest_differences(one: Trace, other: Trace, joints: slice = slice(None)) -
         joints: of the nine joints, those that are compared.
 
     Returns:
-        By array, the difference: of joints of the arm in rad, rad/s and N·m, of fingers in m, m/s
+        By array, the difference: of joints of the arm in rad, rad/s and N·m, of fingers
+            in m, m/s
         and N.
     """
     found = {}
@@ -183,5 +219,7 @@ def largest_differences(one: Trace, other: Trace, joints: slice = slice(None)) -
 def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:
     """Return by claim the pairs of runs that must be equal to the last bit."""
     copies = {"permuted": spec.PERMUTED, "beside": spec.BESIDE, "again": spec.AGAIN}
-    found = {claim: [(n, f"env_{n[-1]}") for n in names] for claim, names in copies.items()}
+    found = {
+        claim: [(n, f"env_{n[-1]}") for n in names] for claim, names in copies.items()
+    }
     return found | {"plain": [("plain_robot", "env_0")]}

@@ -1,6 +1,7 @@
 """Tables of L06, and the sentences that the lab generates, each a function of the experiment.
 
-Those about throughput are correct for every outcome, because elapsed times differ in each run.
+Those about throughput are correct for every outcome, because elapsed times differ in
+each run.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -33,7 +34,9 @@ def mixed_table(run: Experiment) -> Iterator[dict[str, str]]:
     for k, (residual, accepted) in enumerate(zip(*found, strict=True)):
         yield {
             "row": f"{k}",
-            "target [m]": ", ".join(f"{value:g}" for value in spec.MIXED[k]).replace("-", "−"),
+            "target [m]": ", ".join(f"{value:g}" for value in spec.MIXED[k]).replace(
+                "-", "−"
+            ),
             "position residual [mm]": mm(residual, 3),
             "the row is": "accepted" if accepted else "**refused**",
         }
@@ -48,7 +51,9 @@ def row_table(run: Experiment) -> str:
         "motion after 1.8 s [mm]": ("moved_later", 2),
     }
     rows = {
-        spec.LABELS[name]: [1e3 * getattr(run.metrics[name], of) for of, _ in shown.values()]
+        spec.LABELS[name]: [
+            1e3 * getattr(run.metrics[name], of) for of, _ in shown.values()
+        ]
         for name in spec.WORLDS
     }
     heads = {head: digits for head, (_, digits) in shown.items()}
@@ -62,7 +67,9 @@ def sweep_table(run: Experiment) -> Iterator[dict[str, str]]:
         row = {"KP ×": f"{kp:g}"}
         for kv in spec.FACTORS:
             name = spec.SWEEP[kp, kv, 0.0]
-            passed, end = (1e3 * run.readings[f"sweep_{of}"][name] for of in ("overshoot", "end"))
+            passed, end = (
+                1e3 * run.readings[f"sweep_{of}"][name] for of in ("overshoot", "end")
+            )
             row[f"KV × {kv:g}"] = f"{passed:.0f} / {end:.0f}"
         yield row
 
@@ -72,7 +79,8 @@ def ends(names: Iterable[str]) -> str:
     return listed([name[-1] for name in names])
 
 
-# What is compared, by claim; `equality_table` has a row for each one that a page measured.
+# What is compared, by claim; `equality_table` has a row for each one that a page
+# measured.
 CLAIMED = {
     "permuted": f"the worlds in the order {', '.join(map(str, spec.ORDER))}",
     "beside": f"environments {ends(spec.BESIDE)}, while {ends(spec.AGAIN)} are reset and "
@@ -93,7 +101,9 @@ def equality_table(run: Experiment) -> str:
     """Return how many numbers differ, and by how much, where two runs could be equal."""
     names = {**study.pairs(), "alone": [(f"env_{k}", f"alone_{k}") for k in spec.ENVS]}
     found: dict[str, tuple[float, ...]] = {
-        claim: study.compared([(run.traces[one], run.traces[other]) for one, other in pairs])
+        claim: study.compared(
+            [(run.traces[one], run.traces[other]) for one, other in pairs]
+        )
         for claim, pairs in names.items()
     }
     measured = run.readings.get(study.EQUALITY, {})
@@ -111,11 +121,16 @@ def variant_table(run: Experiment) -> str:
     """Return gains, mass, torques and distances of four robots with one target."""
     torques = [f"torque of joint{k + 1} (computed) [N·m]" for k in SHOWN_TORQUES]
     heads = {"KP of joint2 [N·m/rad]": 0, "mass of the hand [kg]": 2}
-    heads |= dict.fromkeys(torques, 2) | {"ends from target [mm]": 2, "passes it by [mm]": 1}
+    heads |= dict.fromkeys(torques, 2) | {
+        "ends from target [mm]": 2,
+        "passes it by [mm]": 1,
+    }
     rows = {}
     for name, world in spec.VARIANTS.items():
         trace, m = run.traces[name], run.metrics[name]
-        expected = mujoco_kinematics.gravity_effort(trace.q[-1].astype(float), world.load)
+        expected = mujoco_kinematics.gravity_effort(
+            trace.q[-1].astype(float), world.load
+        )
         pairs = [(trace.control_force[-1, k], expected[k]) for k in SHOWN_TORQUES]
         both = [f"{decimal(found, 2)} ({decimal(right, 2)})" for found, right in pairs]
         first = world.kp[1], run.readings["hand_mass"][name], *both
@@ -132,18 +147,22 @@ def conclusions(run: Experiment) -> str:
         for is_ in (True, False)
     )
     pairs = [(run.traces[f"env_{k}"], run.traces[f"alone_{k}"]) for k in spec.ENVS]
-    return bullets([
-        f"One of the four targets is beyond reach. Rows {accepted} are accepted.",
-        f"After the second command, the named environments moved by {mm(min(named))} mm or more, "
-        f"the others by at most {1e6 * max(others):.2g} µm.",
-        "Positions of arm joints in a row and in the same run alone differ by up to "
-        f"{1e6 * study.compared(pairs)[2]:.2f} µrad.",
-        *(
-            f"{spec.LABELS[name]}: the hand passes the target by {mm(m[name].overshoot)} mm, ends "
-            f"{mm(m[name].final_distance)} mm from it."
-            for name in spec.VARIANTS
-        ),
-    ])  # fmt: skip
+    return bullets(
+        [
+            f"One of the four targets is beyond reach. Rows {accepted} are accepted.",
+            "After the second command, the named environments moved by "
+            f"{mm(min(named))} mm or more, "
+            f"the others by at most {1e6 * max(others):.2g} µm.",
+            "Positions of arm joints in a row and in the same run alone differ by up to "
+            f"{1e6 * study.compared(pairs)[2]:.2f} µrad.",
+            *(
+                f"{spec.LABELS[name]}: the hand passes the target by "
+                f"{mm(m[name].overshoot)} mm, ends "
+                f"{mm(m[name].final_distance)} mm from it."
+                for name in spec.VARIANTS
+            ),
+        ]
+    )
 
 
 def three(value: float) -> str:
@@ -171,10 +190,17 @@ def steps(run: Experiment) -> dict[int, float]:
 def throughput_table(run: Experiment) -> str:
     """Return time and throughput of each number of environments; the largest one is bold."""
     found, rows = steps(run), {}
-    first, best = next(iter(found.values())), max(found, key=lambda size: size / found[size])
+    first, best = (
+        next(iter(found.values())),
+        max(found, key=lambda size: size / found[size]),
+    )
     for size, step in found.items():
         rate = three(size / step)
-        rows[f"{size}"] = ms(step), three(step / first), f"**{rate}**" if size == best else rate
+        rows[f"{size}"] = (
+            ms(step),
+            three(step / first),
+            f"**{rate}**" if size == best else rate,
+        )
     heads = ("one step [ms]", "times the first", "steps per second, all")
     return tables.timed_table("environments", dict.fromkeys(heads, 0), rows)
 
@@ -183,10 +209,20 @@ def throughput_details(run: Experiment) -> str:
     """Return what else was measured with each number of environments."""
     found, rows = run.readings[GROUP], {}
     for size, step in steps(run).items():
-        of = [found[f"{name}_{size}"] for name in ("fastest", "slowest", "build", "memory")]
+        of = [
+            found[f"{name}_{size}"]
+            for name in ("fastest", "slowest", "build", "memory")
+        ]
         rows[f"{size}"] = f"{ms(of[0])} to {ms(of[1])}", three(DT / step), *of[2:]
-    heads = ("fastest to slowest [ms]", "simulated s per s, each", "build [s]", "memory [MiB]")
-    return tables.timed_table("environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows)
+    heads = (
+        "fastest to slowest [ms]",
+        "simulated s per s, each",
+        "build [s]",
+        "memory [MiB]",
+    )
+    return tables.timed_table(
+        "environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows
+    )
 
 
 def fits(run: Experiment) -> list[Model]:
@@ -219,10 +255,16 @@ def constants_table(run: Experiment) -> str:
     rows = {
         "*a*, the fixed part of a step [ms]": span([1e3 * m.fixed for m in models]),
         "*b*, the part of each environment [µs]": span([1e6 * m.each for m in models]),
-        "1/*b*, the limit of the throughput [steps per second]": span([1 / m.each for m in models]),
-        "*a*/*b*, environments for half of it": span([m.fixed / m.each for m in models]),
+        "1/*b*, the limit of the throughput [steps per second]": span(
+            [1 / m.each for m in models]
+        ),
+        "*a*/*b*, environments for half of it": span(
+            [m.fixed / m.each for m in models]
+        ),
     }
-    return tables.timed_table("constant", {"models": 0}, {name: (of,) for name, of in rows.items()})
+    return tables.timed_table(
+        "constant", {"models": 0}, {name: (of,) for name, of in rows.items()}
+    )
 
 
 def parts_table(run: Experiment) -> str:
@@ -241,8 +283,13 @@ def cache_table(run: Experiment) -> str:
     rows = {}
     for size in (1024, 1000):
         four = size // 4
-        names = {f"one scene of {size}": size, f"four scenes of {four}, in turn": f"four_of_{four}"}
+        names = {
+            f"one scene of {size}": size,
+            f"four scenes of {four}, in turn": f"four_of_{four}",
+        }
         for name, of in names.items():
             step = run.readings[GROUP][f"step_{of}"]
             rows[name] = ms(step), three(1e6 * step / size)
-    return tables.timed_table("a step of", {"time [ms]": 0, "for each environment [µs]": 0}, rows)
+    return tables.timed_table(
+        "a step of", {"time [ms]": 0, "for each environment [µs]": 0}, rows
+    )

@@ -15,15 +15,20 @@ from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.throughput import Calls, Clock, calls_of
 
-# Groups of a bundle's metrics: times and memory, and how many environments did other work.
+# Groups of a bundle's metrics: times and memory, and how many environments did other
+# work.
 GROUP, EQUAL = "throughput", "rows_that_differ"
 
-RAISED = 0.1  # Angle by which the timed command turns each arm joint from its start [rad]
+RAISED = (
+    0.1  # Angle by which the timed command turns each arm joint from its start [rad]
+)
 
-# Largest distance of an arm joint from its commanded angle at the end [rad], sag included.
+# Largest distance of an arm joint from its commanded angle at the end [rad], sag
+# included.
 NEAR = RAISED / 5
 
-# Limits, with hardware of today, of the time of a step and a build [s], and of memory [MiB].
+# Limits, with hardware of today, of the time of a step and a build [s], and of memory
+# [MiB].
 STEP, BUILD, MEMORY = (1e-4, 10.0), (0.1, 300.0), (-(2.0**14), 2.0**14)
 
 # Returns a built scene with so many environments, its robot, and what else it has.
@@ -34,9 +39,10 @@ Build = Callable[[int], tuple[Any, ...]]
 class Protocol:
     """What is timed.
 
-    `sizes` are numbers of environments, in the order in which their scenes are built. In a new
-    order each time, each scene makes `warm_up` steps whose time is not used and `steps` steps, and
-    all of that is done `repeats` times. `others` are names of further scenes that are timed too.
+    `sizes` are numbers of environments, in the order in which their scenes are built.
+    In a new order each time, each scene makes `warm_up` steps whose time is not used
+    and `steps` steps, and all of that is done `repeats` times. `others` are names of
+    further scenes that are timed too.
     """
 
     sizes: tuple[int, ...]
@@ -56,7 +62,10 @@ class Protocol:
         for size in self.sizes:
             limits |= {f"build_{size}": BUILD, f"memory_{size}": MEMORY}
         units = {name: "MiB" if name.startswith("memory") else "s" for name in limits}
-        return {GROUP: Readings(units, "performance", limits), EQUAL: counts(map(str, self.sizes))}
+        return {
+            GROUP: Readings(units, "performance", limits),
+            EQUAL: counts(map(str, self.sizes)),
+        }
 
 
 PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
@@ -76,7 +85,8 @@ DEEPER = Protocol(
     (*(f"{of}_{size}" for of in PARTS for size in ENDS), *FOUR),
 )
 
-# Numbers of environments from which the model is fitted, three at a time. It predicts others.
+# Numbers of environments from which the model is fitted, three at a time. It predicts
+# others.
 FITTED = (1, 16, 60, 64)
 
 
@@ -121,13 +131,22 @@ def measure(
         start(robot)
         found[f"memory_{size}"] = memory() - before
         built[size] = scene, robot
-    timed = {str(size): calls_of(*of) for size, of in built.items()} | dict(others(built))
-    found |= timing.in_turn(timed, protocol.warm_up, protocol.steps, protocol.repeats, clock)
-    ends = {str(size): to_numpy(robot.get_dofs_position()) for size, (_, robot) in built.items()}
+    timed = {str(size): calls_of(*of) for size, of in built.items()} | dict(
+        others(built)
+    )
+    found |= timing.in_turn(
+        timed, protocol.warm_up, protocol.steps, protocol.repeats, clock
+    )
+    ends = {
+        str(size): to_numpy(robot.get_dofs_position())
+        for size, (_, robot) in built.items()
+    }
     return found, {name: unequal(q) for name, q in ends.items()}
 
 
-def explanations(built: Mapping[int, Any], build: Callable[..., Any]) -> dict[str, Calls]:
+def explanations(
+    built: Mapping[int, Any], build: Callable[..., Any]
+) -> dict[str, Calls]:
     """Return the further scenes of `DEEPER`.
 
     Args:
@@ -147,6 +166,8 @@ def explanations(built: Mapping[int, Any], build: Callable[..., Any]) -> dict[st
         for size in ENDS
     }
     return parts | {
-        name: timing.together([calls_of(*built[size]), *(calls(size) for _ in range(3))])
+        name: timing.together(
+            [calls_of(*built[size]), *(calls(size) for _ in range(3))]
+        )
         for name, size in FOUR.items()
     }

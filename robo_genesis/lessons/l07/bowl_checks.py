@@ -4,7 +4,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    nearly,
+    noted,
+    within,
+)
 from robo_genesis.core.experiment import Experiment, MeasuringPage, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l07 import bowls
@@ -15,9 +24,17 @@ from robo_genesis.sim.common_checks import stamps
 from robo_genesis.sim.laws import UNTURNED, ZERO, apart, kept, times, unit_quaternions
 
 FALLEN, FALLING = 5e-6, 1e-4  # Tolerances of place [m] and velocity [m/s] in free fall
-ENDS, NEAR = WALL + 0.001, 0.002  # Where the lowest ball ends, and how near to this height [m]
-FLAT, GAP, SHARE = 1e-5, 2e-5, 1e-3  # Of a flat face [m], of points outside hulls [m], of masses
-GAIN = 0.05  # Share of energy that contacts return in one outer step: up to 0.018 in the runs
+ENDS, NEAR = (
+    WALL + 0.001,
+    0.002,
+)  # Where the lowest ball ends, and how near to this height [m]
+FLAT, GAP, SHARE = (
+    1e-5,
+    2e-5,
+    1e-3,
+)  # Of a flat face [m], of points outside hulls [m], of masses
+# Share of energy that contacts return in one outer step: up to 0.018 in the runs
+GAIN = 0.05
 
 
 def one_hull_holds_none(run: Experiment) -> Iterator[Finding]:
@@ -28,8 +45,8 @@ def one_hull_holds_none(run: Experiment) -> Iterator[Finding]:
 
 
 def others_hold_all(run: Experiment) -> Iterator[Finding]:
-    """All other bowls hold all twelve balls of 16 mm, also with other steps, starts and hulls; the
-    lowest ball ends near the bowl's floor, and none has sunk in.
+    """All other bowls hold all twelve balls of 16 mm, also with other steps, starts and
+    hulls; the lowest ball ends near the bowl's floor, and none has sunk in.
     """
     for name in [*bowls.BIG, *bowls.ATTACKS][1:]:
         found = run.metrics[name]
@@ -44,8 +61,9 @@ def hulls_cover(run: Experiment) -> Iterator[Finding]:
 
 
 def default_is_closer(run: Experiment) -> Iterator[Finding]:
-    """One hull has more than four times the volume of the mesh; the default decomposition has less
-    than one hull and more than the mesh, and the pieces fill the mesh exactly.
+    """One hull has more than four times the volume of the mesh; the default
+    decomposition has less than one hull and more than the mesh, and the pieces fill the
+    mesh exactly.
     """
     solid = run.readings["bowl_volume"]
     ratio = {choice: solid[choice] / solid["visual"] for choice in CHOICES}
@@ -69,12 +87,17 @@ def small_balls_count_as_inside(run: Experiment) -> Iterator[Finding]:
 
 
 def fast_small_balls_sink(run: Experiment) -> Iterator[Finding]:
-    """With steps of 1 ms, balls of 4 mm sink into the foot if v T / e exceeds their radius: from
-    above the rim some do, in hulls and in pieces, and from a start inside the bowl none.
+    """With steps of 1 ms, balls of 4 mm sink into the foot if v T / e exceeds their
+    radius: from above the rim some do, in hulls and in pieces, and from a start inside
+    the bowl none.
     """
     for name, case in bowls.SMALL.items():
         label, found = f"{name}.sunk", run.metrics[name].in_foot
-        yield above(label, found, 0) if case.depth > case.radius else equal(label, found, 0)
+        yield (
+            above(label, found, 0)
+            if case.depth > case.radius
+            else equal(label, found, 0)
+        )
         yield noted(f"{name}.depth_m", case.depth)
 
 
@@ -89,12 +112,16 @@ def falling_balls(trace: BodyTrace, case: BowlCase) -> Iterator[Finding]:
     yield from times(trace, case.steps, case.dt)
     yield from unit_quaternions(trace.link_quat)
     fallen = summed_drop(case.h, case.substeps * np.arange(case.steps + 1))
-    free = slice(int((case.drop > fallen).sum()) or 1)  # states in which nothing can touch
+    free = slice(
+        int((case.drop > fallen).sum()) or 1
+    )  # states in which nothing can touch
     down = np.array([0.0, 0.0, 1.0])
     place = case.starts - fallen[free, None, None] * down
     motion = -GRAVITY * trace.t[free, None, None] * down
     yield from apart("motion", "free link_pos [m]", trace.link_pos[free], place, FALLEN)
-    yield from apart("motion", "free link_vel [m/s]", trace.link_vel[free], motion, FALLING)
+    yield from apart(
+        "motion", "free link_vel [m/s]", trace.link_vel[free], motion, FALLING
+    )
     yield from apart("motion", "free link_quat", trace.link_quat[free], UNTURNED, 0.0)
     yield from apart("motion", "free link_ang [rad/s]", trace.link_ang[free], ZERO, 0.0)
     height = trace.link_pos[..., 2].astype(np.float64).sum(axis=1)
@@ -103,15 +130,26 @@ def falling_balls(trace: BodyTrace, case: BowlCase) -> Iterator[Finding]:
         for of in (trace.link_vel, trace.link_ang)
     )
     energy = GRAVITY * height + moving + 0.4 * case.radius**2 * turning
-    gained = np.maximum(np.stack([energy[1:] - energy[0], np.diff(energy)]) / energy[0], 0)
+    gained = np.maximum(
+        np.stack([energy[1:] - energy[0], np.diff(energy)]) / energy[0], 0
+    )
     room = np.array([[SHARE], [GAIN]])
-    yield from apart("motion", "energy gained since the start, and in a step", gained, ZERO, room)
+    yield from apart(
+        "motion", "energy gained since the start, and in a step", gained, ZERO, room
+    )
 
 
 CHECKS = (
-    stamps, one_hull_holds_none, others_hold_all, hulls_cover, default_is_closer,
-    mass_is_of_collision, small_balls_count_as_inside, fast_small_balls_sink, laws_of_motion,
-)  # fmt: skip
+    stamps,
+    one_hull_holds_none,
+    others_hold_all,
+    hulls_cover,
+    default_is_closer,
+    mass_is_of_collision,
+    small_balls_count_as_inside,
+    fast_small_balls_sink,
+    laws_of_motion,
+)
 
 MESHES = MeasuringPage(
     runs=runs_of(bowls.CASES),

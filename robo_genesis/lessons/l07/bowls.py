@@ -14,7 +14,12 @@ from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.bowl import CHOICES, HEIGHT, WALL
 from robo_genesis.sim.bodies.free_fall import GRAVITY
-from robo_genesis.sim.bodies.rigid_bodies import new_scene, record_states, stacked, times
+from robo_genesis.sim.bodies.rigid_bodies import (
+    new_scene,
+    record_states,
+    stacked,
+    times,
+)
 
 T = 0.01  # Time constant of the engine's contacts at solver steps of up to 5 ms [s]
 
@@ -25,8 +30,9 @@ BALLS = tuple(f"ball_{k}" for k in range(1, 13))
 class BowlCase:
     """Balls that fall into a fixed bowl on the floor, in layers of four.
 
-    `choice` is a key of `CHOICES`, `radius` that of the balls [m], `shift` their start along x [m],
-    `drop` the height of the lowest ones above the rim [m], `seed` that of CoACD.
+    `choice` is a key of `CHOICES`, `radius` that of the balls [m], `shift` their start
+    along x [m], `drop` the height of the lowest ones above the rim [m], `seed` that of
+    CoACD.
     """
 
     choice: str = "default"
@@ -49,7 +55,9 @@ class BowlCase:
         layer, place = np.divmod(np.arange(len(BALLS)), 4)
         angle = np.pi / 2 * place + 0.3 * layer
         z = HEIGHT + self.drop + self.radius + (2 * self.radius + 0.002) * layer
-        return np.stack([0.022 * np.cos(angle) + self.shift, 0.022 * np.sin(angle), z], axis=1)
+        return np.stack(
+            [0.022 * np.cos(angle) + self.shift, 0.022 * np.sin(angle), z], axis=1
+        )
 
     @property
     def depth(self) -> float:
@@ -79,7 +87,8 @@ CASES = BIG | ATTACKS | SMALL
 
 CUT = ("one_hull", "default")
 
-# Places x on the line y = 0, and heights, where `CUT` collision geometry is sampled [m].
+# Places x on the line y = 0, and heights, where `CUT` collision geometry is sampled
+# [m].
 ACROSS, UP = np.arange(-72, 73, 3) / 1000, np.arange(101) / 2000
 
 # The engine's values: of the geometry, and the time of a run and of one outer step.
@@ -88,22 +97,32 @@ READINGS = {
     "bowl_volume": Readings(dict.fromkeys([*CHOICES, "visual"], "cm³")),
     "bowl_mass": Readings(dict.fromkeys(CHOICES, "kg")),
     "uncovered": Readings({"default": "m"}),
-    **{f"top_{of}": Readings({f"x_{1e3 * x:+.0f}mm": "m" for x in ACROSS}) for of in CUT},
     **{
-        what: Readings(dict.fromkeys(CHOICES, "s"), "performance", dict.fromkeys(CHOICES, limits))
+        f"top_{of}": Readings({f"x_{1e3 * x:+.0f}mm": "m" for x in ACROSS})
+        for of in CUT
+    },
+    **{
+        what: Readings(
+            dict.fromkeys(CHOICES, "s"), "performance", dict.fromkeys(CHOICES, limits)
+        )
         for what, limits in {"run": (0.0, 3600.0), "step": (1e-5, 10.0)}.items()
     },
 }
 
-# Another processor may get other hulls from CoACD, and each contact makes rounding grow: balls may
-# come to lie anywhere. Counts of the balls inside must agree, and all claims.
+# Another processor may get other hulls from CoACD, and each contact makes rounding
+# grow: balls may come to lie anywhere. Counts of the balls inside must agree, and all
+# claims.
 TOLERANCES = {
-    "bowl_geoms": (12.0, 0.0), "cm³": (0.05, 0.15), "bowl_mass": (1e-6, 0.15),
+    "bowl_geoms": (12.0, 0.0),
+    "cm³": (0.05, 0.15),
+    "bowl_mass": (1e-6, 0.15),
     "uncovered": (1e-4, 0.0),
-    "lowest": (HEIGHT, 0.0), "inside": (0.0, 0.0), "in_foot": (12.0, 0.0),
+    "lowest": (HEIGHT, 0.0),
+    "inside": (0.0, 0.0),
+    "in_foot": (12.0, 0.0),
     **dict.fromkeys([f"top_{of}" for of in CUT], (HEIGHT, 0.0)),
     **dict.fromkeys(CASES, (10.0, 0.0)),
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +147,11 @@ def bowl_metrics(trace: BodyTrace, case: BowlCase) -> BowlMetrics:
 
 def parameters() -> dict[str, Any]:
     """Return every configured input as JSON values, for the evidence key."""
-    of_bowl = {"profiles_m": bowl.profiles(), "sections": bowl.SECTIONS, "density": bowl.DENSITY}
+    of_bowl = {
+        "profiles_m": bowl.profiles(),
+        "sections": bowl.SECTIONS,
+        "density": bowl.DENSITY,
+    }
     return inputs(CASES) | json_value(of_bowl | {"x_m": ACROSS, "z_m": UP})
 
 
@@ -137,7 +160,9 @@ def run_case(gs: Any, case: BowlCase) -> tuple[BodyTrace, float]:
     scene = new_scene(gs, case)
     scene.add_entity(gs.morphs.Plane())
     bowl.add(gs, scene, case.choice, seed=case.seed)
-    balls = [gs.morphs.Sphere(radius=case.radius, pos=tuple(start)) for start in case.starts]
+    balls = [
+        gs.morphs.Sphere(radius=case.radius, pos=tuple(start)) for start in case.starts
+    ]
     links = [scene.add_entity(ball).link_start for ball in balls]
     scene.build()
     of, taken = scene.rigid_solver, []
@@ -148,7 +173,9 @@ def run_case(gs: Any, case: BowlCase) -> tuple[BodyTrace, float]:
         scene.step()
         taken.append(time.perf_counter() - start)
 
-    states = record_states(step, case.steps, lambda: tuple(to_numpy(get(links)) for get in getters))
+    states = record_states(
+        step, case.steps, lambda: tuple(to_numpy(get(links)) for get in getters)
+    )
     return BodyTrace(times(case), *stacked(states)), float(np.median(taken))
 
 
@@ -160,15 +187,21 @@ def read_geometry(gs: Any) -> dict[str, dict[str, float]]:
         of: bowl.add(gs, scene, of, (0.0, 0.3 * place, 0.0), fixed=False)
         for place, of in enumerate(CHOICES)
     }
-    shapes = {of: [geom.get_trimesh() for geom in one.geoms] for of, one in bowls.items()}
+    shapes = {
+        of: [geom.get_trimesh() for geom in one.geoms] for of, one in bowls.items()
+    }
     seen = {"visual": [geom.get_trimesh() for geom in bowls["default"].vgeoms]}
     scene.build()
-    points = np.vstack([[*one.vertices, one.vertices.mean(axis=0)] for one in bowl.pieces()])
+    points = np.vstack(
+        [[*one.vertices, one.vertices.mean(axis=0)] for one in bowl.pieces()]
+    )
     found = {
         "bowl_geoms": {of: float(len(meshes)) for of, meshes in shapes.items()},
         "bowl_volume": {of: volume(meshes) for of, meshes in (shapes | seen).items()},
         "bowl_mass": {of: float(one.get_mass()) for of, one in bowls.items()},
-        "uncovered": {"default": float(max(outside(shapes["default"], points).max(), 0))},
+        "uncovered": {
+            "default": float(max(outside(shapes["default"], points).max(), 0))
+        },
     }
     grid = np.stack(np.broadcast_arrays(ACROSS[:, None], 0.0, UP), axis=-1)
     for of in CUT:
@@ -187,6 +220,8 @@ def outside(hulls: list[Any], points: FloatArray) -> FloatArray:
 
     def beyond(hull: Any) -> FloatArray:
         normals = hull.face_normals
-        return np.asarray((points @ normals.T - (normals * hull.triangles[:, 0]).sum(1)).max(-1))
+        return np.asarray(
+            (points @ normals.T - (normals * hull.triangles[:, 0]).sum(1)).max(-1)
+        )
 
     return np.asarray(np.min([beyond(hull) for hull in hulls], axis=0))

@@ -5,14 +5,27 @@ from itertools import chain
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    model_counts,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.lessons.l07.metrics import OBJECT, lifts
 from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
-from robo_genesis.sim.arm.laws import assigned_postures, commanded, dynamics, model_joints
+from robo_genesis.sim.arm.laws import (
+    assigned_postures,
+    commanded,
+    dynamics,
+    model_joints,
+)
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept, unit_quaternions
@@ -24,11 +37,15 @@ def structure(run: Experiment) -> Iterator[Finding]:
 
 
 def one_rung(run: Experiment) -> Iterator[Finding]:
-    """Scene A passes all five rungs, and each other scene of the page fails the one that it was
-    made for, and no other. A run without a camera cannot fail "seen".
+    """Scene A passes all five rungs, and each other scene of the page fails the one
+    that it was made for, and no other. A run without a camera cannot fail "seen".
     """
     for name in rungs.scenes(run):
-        made_for = None if spec.FAILS[name] == "seen" and not run.rendered else spec.FAILS[name]
+        made_for = (
+            None
+            if spec.FAILS[name] == "seen" and not run.rendered
+            else spec.FAILS[name]
+        )
         expected = [made_for] if made_for else []
         yield equal(f"{name}.fails", rungs.failed(run, name), expected)
         if expected:
@@ -37,20 +54,22 @@ def one_rung(run: Experiment) -> Iterator[Finding]:
 
 
 def reached(run: Experiment) -> Iterator[Finding]:
-    """Before closing and at the end the hand is within 8 mm of its waypoint, if nothing is in
-    its way.
+    """Before closing and at the end the hand is within 8 mm of its waypoint, if nothing
+    is in its way.
     """
     for name, case in run.cases.items():
         if lifts(case) and case.size[1] <= spec.LIMITS["width"][1]:
             points = lifting.waypoints(case.place, case.size[2])
             for phase, point in zip(("settle", "hold"), points[1:], strict=True):
                 hand = measured_hand(run.traces[name], lifting.ENDS[phase]).position
-                yield at_most(f"{name}.{phase}_m", float(np.linalg.norm(hand - point)), 8e-3)
+                yield at_most(
+                    f"{name}.{phase}_m", float(np.linalg.norm(hand - point)), 8e-3
+                )
 
 
 def hovering_is_at_rest(run: Experiment) -> Iterator[Finding]:
-    """The hovering object is 5 mm above the table, keeps its place to 1 µm, and is lifted with the
-    hand.
+    """The hovering object is 5 mm above the table, keeps its place to 1 µm, and is
+    lifted with the hand.
     """
     rest, lift = run.metrics["hovering_at_rest"], run.metrics["hovering"]
     yield within("hovering.support_m", rest.support, 5e-3, 1e-6)
@@ -59,8 +78,9 @@ def hovering_is_at_rest(run: Experiment) -> Iterator[Finding]:
 
 
 def symptoms(found: Experiment) -> Iterator[Finding]:
-    """No camera has a pixel of scene D's object. The solver accepts both postures of scene E, and
-    the way to them touches something. In scene F the open hand touches the box.
+    """No camera has a pixel of scene D's object. The solver accepts both postures of
+    scene E, and the way to them touches something. In scene F the open hand touches the
+    box.
     """
     for camera, pixels in found.readings.get("pixels", {}).items():
         if camera.startswith("outside"):
@@ -71,27 +91,31 @@ def symptoms(found: Experiment) -> Iterator[Finding]:
 
 
 def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
-    """With friction 0.3, a box that is 82 mm wide is lifted by more than 40 mm with two solver
-    steps in an outer step, and by less than 5 mm with four. Both times the open hand touches it on
-    its way down.
+    """With friction 0.3, a box that is 82 mm wide is lifted by more than 40 mm with two
+    solver steps in an outer step, and by less than 5 mm with four. Both times the open
+    hand touches it on its way down.
     """
     coarse, fine = run.metrics["forced"], run.metrics["forced_fine"]
     yield above("forced.rise_m", coarse.rise, 0.04)
     yield below("forced_fine.rise_m", fine.rise, 5e-3)
     for name in spec.FURTHER:
-        yield above(f"{name}.descending", run.readings["contacts"][f"{name}_descending"], 0)
+        yield above(
+            f"{name}.descending", run.readings["contacts"][f"{name}_descending"], 0
+        )
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """At each sample links and control forces are those of the driven robot, and until the hand is
-    above an object all forces and velocities. Bodies begin where their case puts them. Answers of
-    a map are assigned.
+    """At each sample links and control forces are those of the driven robot, and until
+    the hand is above an object all forces and velocities. Bodies begin where their case
+    puts them. Answers of a map are assigned.
     """
     yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
         trace, robot = run.traces[name], lifting.without_bodies(run.traces[name], 2)
         if not isinstance(case, table.SceneCase):
-            found = assigned_postures(robot, case.start, run.links[:OBJECT], run.traces.values())
+            found = assigned_postures(
+                robot, case.start, run.links[:OBJECT], run.traces.values()
+            )
             yield from kept(name, found)
             continue
         free = lifting.ENDS["approach"] if lifts(case) else trace.steps

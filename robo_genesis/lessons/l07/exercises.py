@@ -35,12 +35,17 @@ MOTIONS: dict[str, tuple[Sequence[float], int, float, bool]] = {
     "both_ways": ([0, 0, 0, 0.1875, -0.1875, 0, 0], 4, 0.25, False),
     "creeps": ([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], 4, 0.25, False),
     "moved_before": ([0, 3, 7, 9, 9, 9, 9, 9], 4, 0.25, True),
-    "first_step": ([0, 0, 0, 1, 1], 2, 0.25, False), "last_step": ([0, 0, -1], 2, 0.25, False),
-    "record_is_the_window": ([0, 0, 0], 2, 0.25, True), "no_states": ([], 2, 0.25, False),
-    "one_state_too_short": ([0, 0], 2, 0.25, False), "nan": ([0, 0, nan, 0], 2, 0.25, False),
-    "nan_at_the_end": ([0, 0, nan], 2, 0.25, False), "infinite": ([0, -inf, 0], 2, 0.25, False),
-    "five_steps": ([0, 1, 1, 1, 1, 1], 5, 0.25, False), "another_bound": ([0, 1, 0], 2, 1.0, True),
-}  # fmt: skip
+    "first_step": ([0, 0, 0, 1, 1], 2, 0.25, False),
+    "last_step": ([0, 0, -1], 2, 0.25, False),
+    "record_is_the_window": ([0, 0, 0], 2, 0.25, True),
+    "no_states": ([], 2, 0.25, False),
+    "one_state_too_short": ([0, 0], 2, 0.25, False),
+    "nan": ([0, 0, nan, 0], 2, 0.25, False),
+    "nan_at_the_end": ([0, 0, nan], 2, 0.25, False),
+    "infinite": ([0, -inf, 0], 2, 0.25, False),
+    "five_steps": ([0, 1, 1, 1, 1, 1], 5, 0.25, False),
+    "another_bound": ([0, 1, 0], 2, 1.0, True),
+}
 
 
 @as_test
@@ -50,17 +55,24 @@ def rest(at_rest: Callable[..., Any]) -> Iterator[Finding]:
         for axis in range(3):
             positions = np.tile([0.5, -0.25, 0.035], (len(moves), 1))
             positions[:, axis] += moves
-            yield equal(f"{name}.along_{'xyz'[axis]}", at_rest(positions, window, bound), expected)
+            yield equal(
+                f"{name}.along_{'xyz'[axis]}",
+                at_rest(positions, window, bound),
+                expected,
+            )
     turns = np.array([[0, 0, 0], [0.2, 0, 0.2], [0, 0.2, 0.2]])
     yield equal("each_coordinate_for_itself", at_rest(turns, 2, 0.25), True)
 
 
 # Segmentations, number of the object, area of its outline [pixel]
 PICTURES: dict[str, tuple[list[list[int]], int, float]] = {
-    "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0), "absent": ([[0, 1], [2, 0]], 4, 12.5),
-    "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 2.0), "large": ([[200, 0], [200, 2]], 200, 8.0),
-    "more_than_its_outline": ([[3, 3], [3, 0]], 3, 2.5), "no_outline": ([[3, 3], [0, 0]], 3, 0.0),
-}  # fmt: skip
+    "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0),
+    "absent": ([[0, 1], [2, 0]], 4, 12.5),
+    "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 2.0),
+    "large": ([[200, 0], [200, 2]], 200, 8.0),
+    "more_than_its_outline": ([[3, 3], [3, 0]], 3, 2.5),
+    "no_outline": ([[3, 3], [0, 0]], 3, 0.0),
+}
 
 
 @as_test
@@ -73,14 +85,19 @@ def pixels(visible: Callable[..., Any]) -> Iterator[Finding]:
         yield from compared(name, ("pixels", "share"), found, expected, 1e-9)
 
 
-# Heights of the fingertips at two answers [m], contacts, and whether the object is reachable
+# Heights of the fingertips at two answers [m], contacts, and whether the object is
+# reachable
 TIPS: dict[str, tuple[tuple[float, float], tuple[int, ...], bool]] = {
-    "all_good": ((0.136, 0.036), (0, 0, 0, 0), True), "at_limits": ((0.03, 0.02), (0, 0), True),
-    "first_too_low": ((0.025, 0.025), (0,), False), "second_too_low": ((0.2, 0.016), (0,), False),
-    "first_nan": ((nan, 0.036), (0, 0), False), "second_nan": ((0.136, nan), (0, 0), False),
-    "touches_first": ((0.1, 0.1), (3, 0, 0), False), "touches_last": ((1, 1), (0, 0, 2), False),
+    "all_good": ((0.136, 0.036), (0, 0, 0, 0), True),
+    "at_limits": ((0.03, 0.02), (0, 0), True),
+    "first_too_low": ((0.025, 0.025), (0,), False),
+    "second_too_low": ((0.2, 0.016), (0,), False),
+    "first_nan": ((nan, 0.036), (0, 0), False),
+    "second_nan": ((0.136, nan), (0, 0), False),
+    "touches_first": ((0.1, 0.1), (3, 0, 0), False),
+    "touches_last": ((1, 1), (0, 0, 2), False),
     "touches_on_the_way": ((0.136, 0.036), (0, 1, 0, 0), False),
-}  # fmt: skip
+}
 
 
 @as_test
@@ -99,22 +116,35 @@ def reach(reachable: Callable[..., Any]) -> Iterator[Finding]:
         yield equal(name, reachable(*given, limits, least), expected)
     for last, expected in ((-0.1, True), (-0.3, False)):
         loose = np.full((3, 6), 0.1), np.array([0.02, 0.01, last]), still, (0.2, 0.2)
-        yield equal(f"third_at_{last}_m", reachable(*loose, np.array([-0.1, 0, -0.2])), expected)
-    yield equal("no_answers", reachable(zero[:0], least[:0], still, limits, least[:0]), False)
+        yield equal(
+            f"third_at_{last}_m", reachable(*loose, np.array([-0.1, 0, -0.2])), expected
+        )
+    yield equal(
+        "no_answers", reachable(zero[:0], least[:0], still, limits, least[:0]), False
+    )
 
 
 GOOD = {"margin": (0.171, 0.005, inf), "mass": (0.0, 0.0, 0.01)}
 
 # Results by rung, and the first rung that fails
-RESULTS: dict[str, tuple[dict[str, dict[str, tuple[float, float, float]]], str | None]] = {
-    "at_limits": ({"b": {"x": (2, 2, 5)}, "a": {"y": (5, 2, 5), "z": (-1, -1, -1)}}, None),
+RESULTS: dict[
+    str, tuple[dict[str, dict[str, tuple[float, float, float]]], str | None]
+] = {
+    "at_limits": (
+        {"b": {"x": (2, 2, 5)}, "a": {"y": (5, 2, 5), "z": (-1, -1, -1)}},
+        None,
+    ),
     "truth_values": ({"b": {"x": (True, 1, 1)}, "a": {"y": (False, 1, 1)}}, "a"),
-    "two_fail": ({"c": GOOD, "b": {"x": (4, 2, 3)}, "a": {"x": (1, 2, 3)}, "d": GOOD}, "b"),
+    "two_fail": (
+        {"c": GOOD, "b": {"x": (4, 2, 3)}, "a": {"x": (1, 2, 3)}, "d": GOOD},
+        "b",
+    ),
     "first_value": ({"a": {"x": (4, 2, 3), "y": (2, 2, 3)}, "b": GOOD}, "a"),
-    "negative": ({"b": {"x": (-1, 0.5, inf)}}, "b"), "infinite": ({"b": {"x": (inf, 0, 9)}}, "b"),
+    "negative": ({"b": {"x": (-1, 0.5, inf)}}, "b"),
+    "infinite": ({"b": {"x": (inf, 0, 9)}}, "b"),
     "nan": ({"c": {"x": (2, 1, 3), "y": (nan, 0, 1)}, "a": {}}, "c"),
     "nothing_measured": ({"c": GOOD, "b": {}, "a": {"x": (5, 0, 1)}}, "b"),
-}  # fmt: skip
+}
 
 
 @as_test

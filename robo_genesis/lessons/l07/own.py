@@ -15,9 +15,16 @@ MEASURES = False
 Results = dict[str, tuple[float, float, float]]
 
 # Units in which quantities are printed; the others are counts, or true and false.
-UNITS = dict.fromkeys(("margin", "depth", "ball", "pregrasp", "grasp", "width"), "mm") | {
-    "support": "µm", "drift": "µm", "moved": "µm", "mass": "%", "share": "%", "rise": "%"
-}  # fmt: skip
+UNITS = dict.fromkeys(
+    ("margin", "depth", "ball", "pregrasp", "grasp", "width"), "mm"
+) | {
+    "support": "µm",
+    "drift": "µm",
+    "moved": "µm",
+    "mass": "%",
+    "share": "%",
+    "rise": "%",
+}
 
 
 def given(facts: Facts, *names: str) -> Results:
@@ -66,13 +73,19 @@ def compared(
     }
     words = {True: "passes", False: "FAILS", None: "-"}
     lines = [f"{'rung':10} {'yours':8} course"]
-    lines += [f"{rung:10} {words[mine[rung]]:8} {words[course[rung]]}" for rung in course]
+    lines += [
+        f"{rung:10} {words[mine[rung]]:8} {words[course[rung]]}" for rung in course
+    ]
     if missing := [rung for rung in course if mine[rung] is None]:
         lines.append(f"Your functions do not judge {listed(missing)} yet.")
     else:
-        lines.append(f"The first rung that fails by your ladder: {ladder(results) or 'none'}.")
+        lines.append(
+            f"The first rung that fails by your ladder: {ladder(results) or 'none'}."
+        )
     if other := [rung for rung in course if mine[rung] not in (None, course[rung])]:
-        lines.append(f"Yours and the course's verdict differ: {listed(other)}. Compare the values.")
+        lines.append(
+            f"Yours and the course's verdict differ: {listed(other)}. Compare the values."
+        )
     failed = [rung for rung, good in course.items() if not good]
     lines.append(f"The scene {outcome(failed)}")
     if len(failed) > 1:
@@ -88,18 +101,28 @@ def outcome(failed: list[str]) -> str:
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the good scene."""
     found = rungs.measured(run, "baseline")
-    t = {name: number(name, value) for of in found.values() for name, value in of.items()}
-    seen = "one camera shows" if run.rendered else "without a camera, its outline would have"
-    return bullets([
-        f"The scene {outcome(rungs.failed(run, 'baseline'))}",
-        f"Built: the object's footprint has a margin of {t['margin']}, and its mass differs from "
-        f"density × volume by {t['mass']}.",
-        f"Stable: at the end the object is {t['support']} from its exact height, and in the last "
-        f"0.2 s no coordinate changed by more than {t['moved']}.",
-        f"Seen: {seen} {t['pixels']} pixels, {t['share']} of the whole outline.",
-        f"Reachable: {t['accepted']} of 2 answers are accepted, with the fingertips "
-        f"{t['pregrasp']} and {t['grasp']} above the table. The robot touches something in "
-        f"{t['touches']} postures of its way.",
-        f"Graspable: the open hand touches the object in {t['descending']} steps. The object's "
-        f"rise is {t['rise']} of the hand's.",
-    ])  # fmt: skip
+    t = {
+        name: number(name, value) for of in found.values() for name, value in of.items()
+    }
+    seen = (
+        "one camera shows"
+        if run.rendered
+        else "without a camera, its outline would have"
+    )
+    return bullets(
+        [
+            f"The scene {outcome(rungs.failed(run, 'baseline'))}",
+            "Built: the object's footprint has a margin of "
+            f"{t['margin']}, and its mass differs from "
+            f"density × volume by {t['mass']}.",
+            f"Stable: at the end the object is {t['support']} from its "
+            "exact height, and in the last "
+            f"0.2 s no coordinate changed by more than {t['moved']}.",
+            f"Seen: {seen} {t['pixels']} pixels, {t['share']} of the whole outline.",
+            f"Reachable: {t['accepted']} of 2 answers are accepted, with the fingertips "
+            f"{t['pregrasp']} and {t['grasp']} above the table. The robot touches something in "
+            f"{t['touches']} postures of its way.",
+            f"Graspable: the open hand touches the object in {t['descending']} steps. The object's "
+            f"rise is {t['rise']} of the hand's.",
+        ]
+    )

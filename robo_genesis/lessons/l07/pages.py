@@ -41,9 +41,16 @@ LECTURE = (
         {"contacts": study.group("contacts", *spec.SCENES_OF_LECTURE, *spec.FURTHER)},
         checks.LECTURE,
     )
-    .with_more(table_map.parameters, table_map.RUNS, table_map.READINGS, (table_map.map_follows,))
+    .with_more(
+        table_map.parameters,
+        table_map.RUNS,
+        table_map.READINGS,
+        (table_map.map_follows,),
+    )
 )
-LAB = with_functions(of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder")
+LAB = with_functions(
+    of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder"
+)
 MISTAKES = of_scenes(*spec.SCENES).with_more(
     dict, checks=(checks.hovering_is_at_rest, checks.symptoms)
 )

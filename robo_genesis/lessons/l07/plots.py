@@ -16,7 +16,11 @@ from robo_genesis.sim.bodies.bowl import CHOICES
 MEASURES = False
 
 # Mark in the palette and words of the boxes that differ in friction.
-FRICTIONS = {"box": ("first", "μ = 0.5"), "firm": ("second", "μ = 1"), "rough": ("third", "μ = 2")}
+FRICTIONS = {
+    "box": ("first", "μ = 0.5"),
+    "firm": ("second", "μ = 1"),
+    "rough": ("third", "μ = 2"),
+}
 
 
 def posture(run: Experiment) -> Figure:
@@ -29,7 +33,9 @@ def views(run: Experiment) -> Figure:
     if not run.rendered:
         return posture(run)
     at = dict(zip(rungs.CAMERAS, ("beside the table", "on the hand"), strict=True))
-    return plotting.stacked({at[name]: run.frames[f"{name}_rgb"] for name in rungs.CAMERAS})
+    return plotting.stacked(
+        {at[name]: run.frames[f"{name}_rgb"] for name in rungs.CAMERAS}
+    )
 
 
 def settling(run: Experiment) -> Figure:
@@ -63,18 +69,27 @@ def bowl_section(run: Experiment) -> Figure:
     """Draw the top of the collision geometry over the bowl's wall, cut at y = 0, by choice."""
     figure = plotting.figure(3.8)
     axes = figure.subplots(len(bowls.CUT), 1, sharex=True, sharey=True)
-    outer, inner = (1000 * of * (np.cos(np.pi / bowl.SECTIONS), 1) for of in bowl.profiles())
+    outer, inner = (
+        1000 * of * (np.cos(np.pi / bowl.SECTIONS), 1) for of in bowl.profiles()
+    )
     half = np.vstack([outer, inner[::-1]])
     wall = np.vstack([half, half[::-1] * (-1, 1)])
     for ax, choice in zip(axes, bowls.CUT, strict=True):
         ax.fill(*wall.T, color=BAND, label="the mesh")
         ax.plot(*wall.T, **LINE)
         tops = 1000 * np.array([*run.readings[f"top_{choice}"].values()])
-        ax.plot(1000 * bowls.ACROSS, tops, label="top of the collision geometry", **look("second"))
+        ax.plot(
+            1000 * bowls.ACROSS,
+            tops,
+            label="top of the collision geometry",
+            **look("second"),
+        )
         ax.set(aspect="equal", ylabel="z [mm]", ylim=(-3, 56), yticks=[0, 25, 50])
         ax.set_title(CHOICES[choice].capitalize())
     axes[-1].set_xlabel("x [mm]")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower left", ncols=2)
+    figure.legend(
+        *axes[0].get_legend_handles_labels(), loc="outside lower left", ncols=2
+    )
     return figure
 
 
@@ -85,8 +100,19 @@ def creep_by_tilt(run: Experiment) -> Figure:
         names = [f"tilt_{tilt}_{box}" for tilt in (0, 5, 10, 15, 20)]
         tilts = np.degrees([run.cases[name].tilt for name in names])
         colour = look(mark)["color"]
-        ax.plot(tilts, [1000 * run.metrics[n].creep for n in names], "o", color=colour, label=label)
-        ax.plot(tilts, [1000 * rest.formulas(run.cases[n])[1] for n in names], ":", color=colour)
+        ax.plot(
+            tilts,
+            [1000 * run.metrics[n].creep for n in names],
+            "o",
+            color=colour,
+            label=label,
+        )
+        ax.plot(
+            tilts,
+            [1000 * rest.formulas(run.cases[n])[1] for n in names],
+            ":",
+            color=colour,
+        )
     ax.set(xlabel="tilt [°]", ylabel="creep [mm/s]", ylim=(0, None))
     legend_above(ax, "Dotted: formula")
     return figure

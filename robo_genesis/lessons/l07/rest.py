@@ -20,22 +20,34 @@ SLOW = 1e-3  # The criterion of a speed that the page examines [m/s]
 
 # The box of all runs. Its friction counts, because that of the table is smaller.
 BOX = ContactCase(
-    start=(0.0, 0.0, TOP + 0.025), size=0.05, duration=0.5, friction=0.5, surface_friction=0.1,
+    start=(0.0, 0.0, TOP + 0.025),
+    size=0.05,
+    duration=0.5,
+    friction=0.5,
+    surface_friction=0.1,
     substeps=4,
-)  # fmt: skip
+)
 
-FALLING = replace(BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2)  # By 5 mm, on a level table
+FALLING = replace(
+    BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2
+)  # By 5 mm, on a level table
 
 # Six boxes side by side across the slope, and what distinguishes each from `BOX`.
 ROW: Mapping[str, Mapping[str, float]] = {
-    "slick": {"friction": 0.3}, "box": {}, "firm": {"friction": 1.0}, "rough": {"friction": 2.0},
-    "small": {"size": 0.02}, "heavy": {"density": 8000.0},
-}  # fmt: skip
+    "slick": {"friction": 0.3},
+    "box": {},
+    "firm": {"friction": 1.0},
+    "rough": {"friction": 2.0},
+    "small": {"size": 0.02},
+    "heavy": {"density": 8000.0},
+}
 
 STEEP = {"mu_150": {"friction": 1.5}} | {name: ROW[name] for name in [*ROW][1:]}
 
 
-def rows(of: Mapping[str, Mapping[str, float]] = ROW, /, **scenes: Any) -> dict[str, Any]:
+def rows(
+    of: Mapping[str, Mapping[str, float]] = ROW, /, **scenes: Any
+) -> dict[str, Any]:
     """Return scenes with boxes side by side by name, from their tilt [°] and other settings."""
     found: dict[str, dict[str, ContactCase]] = {scene: {} for scene in scenes}
     for scene, (tilt, settings) in scenes.items():
@@ -48,10 +60,16 @@ def rows(of: Mapping[str, Mapping[str, float]] = ROW, /, **scenes: Any) -> dict[
 
 PYRAMIDS = rows(
     **{f"tilt_{tilt}": (tilt, {}) for tilt in (0, 5, 10)},
-    h_5ms=(10, {"substeps": 2}), h_1ms=(10, {"substeps": 10}),
-    T_5ms=(10, {"time_constant": 0.005}), T_20ms=(10, {"time_constant": 0.02}),
-) | rows(STEEP, tilt_15=(15, {}), tilt_20=(20, {}))  # fmt: skip
-ROUND = {"cone": "elliptic", "impratio": 100.0, "settle": 0.3}  # the engine's impratio for it
+    h_5ms=(10, {"substeps": 2}),
+    h_1ms=(10, {"substeps": 10}),
+    T_5ms=(10, {"time_constant": 0.005}),
+    T_20ms=(10, {"time_constant": 0.02}),
+) | rows(STEEP, tilt_15=(15, {}), tilt_20=(20, {}))
+ROUND = {
+    "cone": "elliptic",
+    "impratio": 100.0,
+    "settle": 0.3,
+}  # the engine's impratio for it
 LEVEL = rows(elliptic_0=(0, ROUND))
 ELLIPTIC = rows(elliptic_10=(10, ROUND)) | rows(STEEP, elliptic_20=(20, ROUND))
 PARTS = {
@@ -60,18 +78,24 @@ PARTS = {
 }
 NOSLIP = rows({"box": {}}, noslip_5=(5, {"noslip": 5}))
 
-# In MuJoCo alone: versions of Genesis differ in the contact points of a sliding box, and in noslip
-# on a steep slope.
+# In MuJoCo alone: versions of Genesis differ in the contact points of a sliding box,
+# and in noslip on a steep slope.
 SLIDING = {
     f"mujoco_{name}": replace(BOX, tilt=np.radians(tilt), duration=0.3, yaw=yaw)
     for name, tilt, yaw in (
-        ("axis_24", 24, 0.0), ("diagonal_18", 18, np.pi / 4), ("diagonal_20", 20, np.pi / 4)
+        ("axis_24", 24, 0.0),
+        ("diagonal_18", 18, np.pi / 4),
+        ("diagonal_20", 20, np.pi / 4),
     )
 } | {
-    f"mujoco_noslip_{tilt}_box": replace(BOX, tilt=np.radians(tilt), noslip=5) for tilt in (15, 20)
-}  # fmt: skip
+    f"mujoco_noslip_{tilt}_box": replace(BOX, tilt=np.radians(tilt), noslip=5)
+    for tilt in (15, 20)
+}
 COMPARED = PYRAMIDS | ELLIPTIC | NOSLIP  # Some of their boxes run in MuJoCo as well
-ALONE = {"alone": {"alone_box": replace(BOX, tilt=np.radians(10))}, "fall": {"fall_box": FALLING}}
+ALONE = {
+    "alone": {"alone_box": replace(BOX, tilt=np.radians(10))},
+    "fall": {"fall_box": FALLING},
+}
 
 # The runs in Genesis, by scene.
 SCENES = ALONE | COMPARED | LEVEL | rows(**PARTS)
@@ -80,41 +104,57 @@ CASES = {name: case for scene in SCENES.values() for name, case in scene.items()
 
 # Runs in MuJoCo with equal settings, in float64.
 TWINS = {
-    f"mujoco_{name}": case for scene in COMPARED.values() for name, case in scene.items()
+    f"mujoco_{name}": case
+    for scene in COMPARED.values()
+    for name, case in scene.items()
     if name.endswith(("_box", "_firm", "_rough"))
-} | SLIDING  # fmt: skip
+} | SLIDING
 
 # Words of a reader for runs.
 LABELS = {
-    "tilt_10_box": "μ = 0.5", "tilt_10_slick": "μ = 0.3", "tilt_10_firm": "μ = 1",
-    "tilt_10_rough": "μ = 2", "tilt_10_heavy": "16 times the density",
-    "tilt_10_small": "edge 20 mm", "h_5ms_box": "h = 5 ms", "h_1ms_box": "h = 1 ms",
-    "T_5ms_box": "T = 5 ms", "T_20ms_box": "T = 20 ms", "impratio_100_box": "pyramid, impratio 100",
-    "elliptic_10_box": "elliptic cone, impratio 100", "elliptic_alone_box": "elliptic cone alone",
-}  # fmt: skip
+    "tilt_10_box": "μ = 0.5",
+    "tilt_10_slick": "μ = 0.3",
+    "tilt_10_firm": "μ = 1",
+    "tilt_10_rough": "μ = 2",
+    "tilt_10_heavy": "16 times the density",
+    "tilt_10_small": "edge 20 mm",
+    "h_5ms_box": "h = 5 ms",
+    "h_1ms_box": "h = 1 ms",
+    "T_5ms_box": "T = 5 ms",
+    "T_20ms_box": "T = 20 ms",
+    "impratio_100_box": "pyramid, impratio 100",
+    "elliptic_10_box": "elliptic cone, impratio 100",
+    "elliptic_alone_box": "elliptic cone alone",
+}
 
 # The contact points of sliding boxes decide. All others differ by rounding.
 # By metric or case, (atol, rtol) of a value between engines, backends or processors.
 TOLERANCES: dict[str, tuple[float, float]] = {
-    "creep": (2e-5, 0.2), "sunk": (1e-3, 0.05), "moved": (1e-5, 0.2),
+    "creep": (2e-5, 0.2),
+    "sunk": (1e-3, 0.05),
+    "moved": (1e-5, 0.2),
     **dict.fromkeys([*CASES, *TWINS], (5e-3, 0.0)),
     **{name: (np.inf, 0.0) for of in (NOSLIP | {"": SLIDING}).values() for name in of},
-}  # fmt: skip
+}
 
-# By unit, the difference below which two values are equal. float32 changes a creep by up to 3e-6
-# m/s at a solver step of 1 ms.
+# By unit, the difference below which two values are equal. float32 changes a creep by
+# up to 3e-6 m/s at a solver step of 1 ms.
 RESOLUTION = {"m": 1e-5, "m/s": 5e-6, "%": 1.0}
 
 
 def formulas(case: ContactCase, in_mujoco: bool = False) -> tuple[float, float]:
     """Return the depth [m] and the creep [m/s] of a box on four contacts, which grow with (1−d)/d.
 
-    The impedance d depends on the depth, so both are found by iteration. With the pyramid, Genesis
-    divides both μ² by impratio, MuJoCo one of them.
+    The impedance d depends on the depth, so both are found by iteration. With the
+    pyramid, Genesis divides both μ² by impratio, MuJoCo one of them.
     """
     d, most, four = mujoco_contacts.IMPEDANCE[0], mujoco_contacts.IMPEDANCE[1], 4
     seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
-    pyramid, stiffer, square = case.cone == "pyramidal", case.impratio or 1.0, case.friction**2
+    pyramid, stiffer, square = (
+        case.cone == "pyramidal",
+        case.impratio or 1.0,
+        case.friction**2,
+    )
     edges = 1 + square / (1.0 if in_mujoco else stiffer)
     sinking = square * edges / 2 / stiffer if pyramid else 1.0
     sliding = (edges if pyramid else 1.0) / stiffer
@@ -158,11 +198,14 @@ def rest_metrics(trace: ContactTrace, case: ContactCase) -> RestMetrics:
     speeds = v + w * case.size * np.sqrt(3) / 2  # the largest that a corner can have
     slow, fast = np.flatnonzero(speeds[1:] < SLOW) + 1, np.flatnonzero(speeds >= SLOW)
     return RestMetrics(
-        float(path) / WINDOW, case.rest_height - float(place[-1, 2]), float(moved(trace)[-1]),
-        float(speeds[-n:].max()), 100 * float((slow > len(speeds) - 1 - n).sum()) / n,
+        float(path) / WINDOW,
+        case.rest_height - float(place[-1, 2]),
+        float(moved(trace)[-1]),
+        float(speeds[-n:].max()),
+        100 * float((slow > len(speeds) - 1 - n).sum()) / n,
         float(trace.t[slow[0]]) if len(slow) else None,
         float(trace.t[fast[-1]]) if len(fast) else None,
-    )  # fmt: skip
+    )
 
 
 def parameters() -> dict[str, Any]:

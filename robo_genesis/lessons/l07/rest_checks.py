@@ -13,11 +13,22 @@ from robo_genesis.sim.bodies.laws import body_on_surface
 from robo_genesis.sim.common_checks import stamps
 from robo_genesis.sim.laws import copied, kept
 
-SHARE, DEPTH = 0.02, 6e-7  # Of a value against its formula, and of a depth in float32 [m]
+SHARE, DEPTH = (
+    0.02,
+    6e-7,
+)  # Of a value against its formula, and of a depth in float32 [m]
 SAME = 0.03  # Share by which creeps may differ that the formula makes equal
-STILL, ROUNDING = 2e-6, 8e-6  # Creep that float32 causes [m/s]: on a level table, with impratio 100
-BEYOND = 0.05  # Share by which a creep is larger at least where an edge has lost its load
-HELD, DEEPER = 0.05, 5.0  # Largest share of a creep and least of a depth, against the pyramid
+STILL, ROUNDING = (
+    2e-6,
+    8e-6,
+)  # Creep that float32 causes [m/s]: on a level table, with impratio 100
+BEYOND = (
+    0.05  # Share by which a creep is larger at least where an edge has lost its load
+)
+HELD, DEEPER = (
+    0.05,
+    5.0,
+)  # Largest share of a creep and least of a depth, against the pyramid
 SLIDES = 5e-3  # Speed from which a box slides [m/s]
 
 
@@ -25,7 +36,9 @@ def settings(run: Experiment) -> Iterator[Finding]:
     """Frictions and substeps read back from the scenes are those of the cases."""
     for name in SETTINGS:
         for case, value in run.readings[name].items():
-            yield within(f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK)
+            yield within(
+                f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK
+            )
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
@@ -37,9 +50,9 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
 
 
 def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
-    """On a tilted table each box with the pyramid creeps as the formula says, within 2 %, while all
-    its edges press; on a level one none creeps. Where the formula assumes forces that pull, the box
-    creeps faster than it says.
+    """On a tilted table each box with the pyramid creeps as the formula says, within 2
+    %, while all its edges press; on a level one none creeps. Where the formula assumes
+    forces that pull, the box creeps faster than it says.
     """
     for name in (name for scene in rest.PYRAMIDS.values() for name in scene):
         found, (_, expected) = run.metrics[name].creep, rest.formulas(run.cases[name])
@@ -53,12 +66,14 @@ def sinks_as_computed(run: Experiment) -> Iterator[Finding]:
     """On a level table each box sinks in as the formula says, within 2 %, with either cone."""
     for name in (*rest.SCENES["tilt_0"], *rest.SCENES["elliptic_0"]):
         depth, _ = rest.formulas(run.cases[name])
-        yield within(f"{name}.sunk_m", run.metrics[name].sunk, depth, SHARE * depth + DEPTH)
+        yield within(
+            f"{name}.sunk_m", run.metrics[name].sunk, depth, SHARE * depth + DEPTH
+        )
 
 
 def friction_lets_creep(run: Experiment) -> Iterator[Finding]:
-    """At 10° a box with more friction creeps faster from 0.5 to 1 and to 2; one with 0.3 does so as
-    well, because an edge of it has lost its load.
+    """At 10° a box with more friction creeps faster from 0.5 to 1 and to 2; one with
+    0.3 does so as well, because an edge of it has lost its load.
     """
     for faster, slower in (("firm", "box"), ("rough", "firm"), ("slick", "box")):
         share = share_of(run, f"tilt_10_{faster}", f"tilt_10_{slower}")
@@ -71,18 +86,21 @@ def share_of(run: Experiment, name: str, other: str = "tilt_10_box") -> float:
 
 
 def what_counts(run: Experiment) -> Iterator[Finding]:
-    """Density, edge and solver step change the creep by less than 3 %; the time constant changes it
-    in proportion, within 3 %.
+    """Density, edge and solver step change the creep by less than 3 %; the time
+    constant changes it in proportion, within 3 %.
     """
-    same = dict.fromkeys(("tilt_10_heavy", "tilt_10_small", "h_5ms_box", "h_1ms_box"), 1.0)
+    same = dict.fromkeys(
+        ("tilt_10_heavy", "tilt_10_small", "h_5ms_box", "h_1ms_box"), 1.0
+    )
     for name, factor in (same | {"T_5ms_box": 0.5, "T_20ms_box": 2.0}).items():
         yield nearly(f"{name}.share", share_of(run, name), factor, SAME)
 
 
 def round_cone_holds(run: Experiment) -> Iterator[Finding]:
-    """With the elliptic cone each box creeps by at most a twentieth, as the formula says up to what
-    float32 leaves, and the box with 0.5 sinks in at least five times deeper. With the cone alone
-    it creeps at 0.8 of its speed, within 3 %; with impratio alone by at most a twentieth.
+    """With the elliptic cone each box creeps by at most a twentieth, as the formula
+    says up to what float32 leaves, and the box with 0.5 sinks in at least five times
+    deeper. With the cone alone it creeps at 0.8 of its speed, within 3 %; with impratio
+    alone by at most a twentieth.
     """
     for name in (*rest.SCENES["elliptic_10"], *rest.SCENES["elliptic_20"]):
         found, (_, expected) = run.metrics[name].creep, rest.formulas(run.cases[name])
@@ -96,14 +114,15 @@ def round_cone_holds(run: Experiment) -> Iterator[Finding]:
 
 
 def noslip_is_no_cure(run: Experiment) -> Iterator[Finding]:
-    """In both engines noslip stops the box with 0.5 at 5°. In MuJoCo it creeps faster with noslip
-    at 15°, and equally fast at 20°.
+    """In both engines noslip stops the box with 0.5 at 5°. In MuJoCo it creeps faster
+    with noslip at 15°, and equally fast at 20°.
     """
     for engine in ("", "mujoco_"):
         share = share_of(run, f"{engine}noslip_5_box", f"{engine}tilt_5_box")
         yield at_most(f"{engine}noslip_5.share", share, HELD)
     faster, equal = (
-        share_of(run, f"mujoco_noslip_{tilt}_box", f"mujoco_tilt_{tilt}_box") for tilt in (15, 20)
+        share_of(run, f"mujoco_noslip_{tilt}_box", f"mujoco_tilt_{tilt}_box")
+        for tilt in (15, 20)
     )
     yield above("mujoco_noslip_15.share", faster, 1 + BEYOND)
     yield nearly("mujoco_noslip_20.share", equal, 1.0, SAME)
@@ -111,25 +130,31 @@ def noslip_is_no_cure(run: Experiment) -> Iterator[Finding]:
 
 def engines_agree(run: Experiment) -> Iterator[Finding]:
     """In MuJoCo a box sinks in and creeps as in Genesis, within 2 % and what float32 leaves."""
-    for twin in (name for name in rest.TWINS if name not in rest.SLIDING and "noslip" not in name):
+    for twin in (
+        name for name in rest.TWINS if name not in rest.SLIDING and "noslip" not in name
+    ):
         one, other = run.metrics[twin.removeprefix("mujoco_")], run.metrics[twin]
         yield within(f"{twin}.sunk_m", other.sunk, one.sunk, SHARE * one.sunk + DEPTH)
-        yield within(f"{twin}.creep_m_s", other.creep, one.creep, SHARE * one.creep + ROUNDING)
+        yield within(
+            f"{twin}.creep_m_s", other.creep, one.creep, SHARE * one.creep + ROUNDING
+        )
 
 
 def diagonal_slides_first(run: Experiment) -> Iterator[Finding]:
-    """In MuJoCo a box with 0.5 slides at 20° towards the diagonal of its pyramid; along an axis it
-    creeps at 24°, and along the diagonal at 18°.
+    """In MuJoCo a box with 0.5 slides at 20° towards the diagonal of its pyramid; along
+    an axis it creeps at 24°, and along the diagonal at 18°.
     """
-    yield above("diagonal_20.speed_m_s", run.metrics["mujoco_diagonal_20"].creep, SLIDES)
+    yield above(
+        "diagonal_20.speed_m_s", run.metrics["mujoco_diagonal_20"].creep, SLIDES
+    )
     for name in ("axis_24", "diagonal_18"):
         yield below(f"{name}.speed_m_s", run.metrics[f"mujoco_{name}"].creep, SLIDES)
 
 
 def speed_misleads(run: Experiment) -> Iterator[Finding]:
-    """The box that falls by 5 mm is slow, and fast later. In MuJoCo the box with noslip at 15° is
-    slow in 20 to 80 % of the last samples, and moves by less than a tenth of what its highest
-    speed would give.
+    """The box that falls by 5 mm is slow, and fast later. In MuJoCo the box with noslip
+    at 15° is slow in 20 to 80 % of the last samples, and moves by less than a tenth of
+    what its highest speed would give.
     """
     fall = run.metrics["fall_box"]
     yield below("fall_box.slow_at_s", fall.slow_at, fall.fast_until)
@@ -146,13 +171,24 @@ def window_has_an_edge(run: Experiment) -> Iterator[Finding]:
 
 
 CHECKS = (
-    settings, stamps, laws_of_motion, creeps_as_computed, sinks_as_computed, friction_lets_creep,
-    what_counts, round_cone_holds, noslip_is_no_cure, engines_agree, diagonal_slides_first,
-    speed_misleads, window_has_an_edge,
-)  # fmt: skip
+    settings,
+    stamps,
+    laws_of_motion,
+    creeps_as_computed,
+    sinks_as_computed,
+    friction_lets_creep,
+    what_counts,
+    round_cone_holds,
+    noslip_is_no_cure,
+    engines_agree,
+    diagonal_slides_first,
+    speed_misleads,
+    window_has_an_edge,
+)
 
 REST = MeasuringPage(
-    runs=runs_of(rest.CASES) | runs_of(rest.TWINS, note="run in MuJoCo, not in Genesis"),
+    runs=runs_of(rest.CASES)
+    | runs_of(rest.TWINS, note="run in MuJoCo, not in Genesis"),
     kind=ContactTrace,
     links=("body",),
     readings={name: Readings(dict.fromkeys(rest.CASES, "1")) for name in SETTINGS},

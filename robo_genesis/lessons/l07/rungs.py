@@ -26,14 +26,16 @@ def outline(corners: FloatArray, view: View, inside: bool = False) -> float:
     Args:
         corners: (n, 3) of the body [m].
         view: of a camera.
-        inside: whether the area counts as 0 if the border of the picture cuts it. It always does if
-            a corner is not before the camera.
+        inside: whether the area counts as 0 if the border of the picture cuts it. It
+            always does if a corner is not before the camera.
     """
     from scipy.spatial import ConvexHull
 
     pixels = project(corners, view.intrinsics, view.transform)
     good = (pixels > 0) & (pixels < view.size) if inside else np.isfinite(pixels)
-    return float(ConvexHull(pixels).volume) if good.all() else 0.0  # of two dimensions: the area
+    return (
+        float(ConvexHull(pixels).volume) if good.all() else 0.0
+    )  # of two dimensions: the area
 
 
 def measured(run: Experiment, scene: str) -> dict[str, dict[str, float]]:
@@ -77,8 +79,15 @@ def values(
             "mass": abs(found["object"]["mass"] / (case.density * case.volume) - 1),
             "ball": rest.ball if inside else np.inf,
         },
-        "stable": {"support": abs(rest.support), "drift": rest.drift, "moved": rest.moved},
-        "seen": {"pixels": shown[best], "share": shown[best] / max(found["outline"][best], 1.0)},
+        "stable": {
+            "support": abs(rest.support),
+            "drift": rest.drift,
+            "moved": rest.moved,
+        },
+        "seen": {
+            "pixels": shown[best],
+            "share": shown[best] / max(found["outline"][best], 1.0),
+        },
         "reachable": dict(found["reach"]),
         "graspable": {
             "width": case.size[1],
@@ -97,7 +106,8 @@ def scenes(run: Experiment) -> list[str]:
 def passed(values: Mapping[str, float]) -> bool:
     """Return whether all values of a rung are within their limits."""
     return all(
-        spec.LIMITS[name][0] <= value <= spec.LIMITS[name][1] for name, value in values.items()
+        spec.LIMITS[name][0] <= value <= spec.LIMITS[name][1]
+        for name, value in values.items()
     )
 
 

@@ -1,7 +1,8 @@
 """Specification of lesson L07: table scenes of which each fails one rung, limits and tolerances.
 
-Pages, checks, verification and tests read the experiment here. The module is data and computes
-nothing. `parameters()` has the values that decide what runs; all other values only judge.
+Pages, checks, verification and tests read the experiment here. The module is data and
+computes nothing. `parameters()` has the values that decide what runs; all other values
+only judge.
 """
 
 from dataclasses import asdict, replace
@@ -33,7 +34,12 @@ KP[7:], KV[7:] = 480.0, 20.0  # Fingers that close on 50 mm press with 12 N
 RESTING, LIFTING = 60, lifting.ENDS["hold"]
 
 GOOD = SceneCase(
-    shape="cylinder", size=(0.05, 0.05, 0.07), place=(0.5, -0.05, 0.0), kp=KP, kv=KV, steps=RESTING
+    shape="cylinder",
+    size=(0.05, 0.05, 0.07),
+    place=(0.5, -0.05, 0.0),
+    kp=KP,
+    kv=KV,
+    steps=RESTING,
 )
 
 # The scene that passes all rungs, and five that fail one each.
@@ -51,7 +57,9 @@ LETTERS = dict(zip(SCENES, "ABCDEF", strict=True))
 
 # Words of a reader for runs.
 LABELS = {name: f"scene {letter}" for name, letter in LETTERS.items()}
-LABELS |= {f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETTERS.items()}
+LABELS |= {
+    f"{name}_at_rest": f"scene {letter} at rest" for name, letter in LETTERS.items()
+}
 LABELS |= rest.LABELS | {"in_one_hull": "one hull", "in_default": "several hulls"}
 LABELS |= {"forced": "two solver steps", "forced_fine": "four solver steps"}
 
@@ -70,7 +78,11 @@ SHOWN_LIFTS = {
 RUNGS = ("built", "stable", "seen", "reachable", "graspable")
 
 # The one rung that each scene fails; not fitted to a run.
-FAILS = dict(zip(SCENES, (None, "stable", "built", "seen", "reachable", "graspable"), strict=True))
+FAILS = dict(
+    zip(
+        SCENES, (None, "stable", "built", "seen", "reachable", "graspable"), strict=True
+    )
+)
 
 
 FORCED = replace(SCENES["wide"], friction=0.3, pads=0.3)
@@ -98,33 +110,69 @@ FURTHER = {"forced": lift_of(FORCED), "forced_fine": lift_of(FORCED, substeps=4)
 CASES = runs(*SCENES) | FURTHER
 
 # The camera in the world; `fov` is that of the scene.
-VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0), "near": 0.1, "far": 20.0}
+VIEW = CAMERA | {
+    "pos": (1.05, -0.4, 1.0),
+    "lookat": (0.45, 0.0, 0.0),
+    "near": 0.1,
+    "far": 20.0,
+}
 
-# The camera on the hand. With the default near limit, 0.1 m, it would cut a held object open.
+# The camera on the hand. With the default near limit, 0.1 m, it would cut a held object
+# open.
 WRIST = {"res": CAMERA["res"], "fov": 60, "near": 0.01, "far": 20.0, "GUI": False}
 
 # Least and largest value that passes, by quantity: [m], shares, pixels or counts.
 LIMITS: dict[str, tuple[float, float]] = {
-    "margin": (5e-3, np.inf), "depth": (0, 1e-3), "mass": (0, 0.01), "ball": (0, 0.025),
-    "support": (0, 5e-4), "drift": (0, 2e-3), "moved": (0, 2e-4),
-    "pixels": (200, np.inf), "share": (0.5, np.inf),
-    "accepted": (2, 2), "pregrasp": (0.03, np.inf), "grasp": (0.02, np.inf), "touches": (0, 0),
-    "width": (0, 0.076), "descending": (0, 0), "fingers": (1, np.inf), "rise": (0.8, np.inf),
-}  # fmt: skip
+    "margin": (5e-3, np.inf),
+    "depth": (0, 1e-3),
+    "mass": (0, 0.01),
+    "ball": (0, 0.025),
+    "support": (0, 5e-4),
+    "drift": (0, 2e-3),
+    "moved": (0, 2e-4),
+    "pixels": (200, np.inf),
+    "share": (0.5, np.inf),
+    "accepted": (2, 2),
+    "pregrasp": (0.03, np.inf),
+    "grasp": (0.02, np.inf),
+    "touches": (0, 0),
+    "width": (0, 0.076),
+    "descending": (0, 0),
+    "fingers": (1, np.inf),
+    "rise": (0.8, np.inf),
+}
 
 RESOLUTION = rest.RESOLUTION | {
     "s": DT / 2,
     "%": 1.0,
-    "m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5, "kg": 1e-6, "pixels": 3.0, "steps": 0.5,
-    "points": 0.5, "poses": 0.5, "postures": 0.5,
-}  # fmt: skip
+    "m": 1e-5,
+    "rad": 1e-5,
+    "rad/s": 1e-3,
+    "1": 0.5,
+    "kg": 1e-6,
+    "pixels": 3.0,
+    "steps": 0.5,
+    "points": 0.5,
+    "poses": 0.5,
+    "postures": 0.5,
+}
 
-# Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of the table
-# have no bound: rounding decides which of many postures a search finds.
-TOLERANCES = check_spec.TOLERANCES | bowls.TOLERANCES | rest.TOLERANCES | {
-    "pixels": (20.0, 0.01), "steps": (20.0, 0.0), "points": (4.0, 0.0), "poses": (0.0, 0.0),
-    "postures": (3.0, 0.0),
-} | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1)) | {"table": (np.inf, 0.0)}  # fmt: skip
+# Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of
+# the table have no bound: rounding decides which of many postures a search finds.
+TOLERANCES = (
+    check_spec.TOLERANCES
+    | bowls.TOLERANCES
+    | rest.TOLERANCES
+    | {
+        "pixels": (20.0, 0.01),
+        "steps": (20.0, 0.0),
+        "points": (4.0, 0.0),
+        "poses": (0.0, 0.0),
+        "postures": (3.0, 0.0),
+    }
+    | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1))
+    | {"table": (np.inf, 0.0)}
+)
 
 # How the second case of a pair compares with the first [m]; not fitted to a run.
 RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)
@@ -134,7 +182,17 @@ def parameters(cases: dict[str, Any]) -> dict[str, Any]:
     """Return every configured input of a page with these runs as JSON values, for its key."""
     of_scene = ("TABLE", "FLOOR", "ON_HAND", "BALL_HEIGHT")
     of_lift = ("PHASES", "PAD", "HAND_TO_PAD", "ABOVE", "RISE")
-    further = {n: getattr(of, n) for of, ns in ((table, of_scene), (lifting, of_lift)) for n in ns}
+    further = {
+        n: getattr(of, n)
+        for of, ns in ((table, of_scene), (lifting, of_lift))
+        for n in ns
+    }
     further |= {"settings": asdict(ONE_START)}
     wrist = {name: value for name, value in WRIST.items() if name != "GUI"}
-    return inputs(cases, VIEW, table=json_value(further), wrist=wrist, counted=list(EXPECTED_MODEL))
+    return inputs(
+        cases,
+        VIEW,
+        table=json_value(further),
+        wrist=wrist,
+        counted=list(EXPECTED_MODEL),
+    )

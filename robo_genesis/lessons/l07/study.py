@@ -23,7 +23,12 @@ from robo_genesis.sim.camera.views import View, look, segment_number
 GROUPS = {
     "object": {"mass": "kg", "depth": "m"},
     "outline": dict.fromkeys(rungs.CAMERAS, "pixels"),
-    "reach": {"accepted": "poses", "pregrasp": "m", "grasp": "m", "touches": "postures"},
+    "reach": {
+        "accepted": "poses",
+        "pregrasp": "m",
+        "grasp": "m",
+        "touches": "postures",
+    },
     "contacts": {"descending": "steps"} | dict.fromkeys(rungs.FINGERS, "points"),
 }
 
@@ -31,14 +36,20 @@ GROUPS = {
 def group(name: str, *scenes: str) -> Readings:
     """Return a group of readings of scenes, named by scene and reading."""
     units = GROUPS[name].items()
-    return Readings({f"{scene}_{what}": unit for scene in scenes for what, unit in units})
+    return Readings(
+        {f"{scene}_{what}": unit for scene in scenes for what, unit in units}
+    )
 
 
 def readings(*scenes: str) -> dict[str, Readings]:
     """Return the groups of readings of a page with these scenes."""
     found = {name: group(name, *scenes) for name in GROUPS}
     others = [scene for scene in scenes if scene != "baseline"]
-    return found | {"model": counts(MODEL_COUNTS)} | ({"fails": counts(others)} if others else {})
+    return (
+        found
+        | {"model": counts(MODEL_COUNTS)}
+        | ({"fails": counts(others)} if others else {})
+    )
 
 
 def note(page: Any, group: str, scene: str, **values: float) -> None:
@@ -47,7 +58,9 @@ def note(page: Any, group: str, scene: str, **values: float) -> None:
     page.readings.setdefault(group, {}).update(more)
 
 
-def let_rest(world: table.World, joints: JointMap, case: table.SceneCase) -> tuple[Trace, float]:
+def let_rest(
+    world: table.World, joints: JointMap, case: table.SceneCase
+) -> tuple[Trace, float]:
     """Let the scene rest while the robot holds its start.
 
     Returns:
@@ -57,10 +70,14 @@ def let_rest(world: table.World, joints: JointMap, case: table.SceneCase) -> tup
 
     def after(step: int) -> None:
         if step == 0:
-            depths.append(float(to_numpy(world.body.get_contacts()["penetration"]).max(initial=0)))
+            depths.append(
+                float(to_numpy(world.body.get_contacts()["penetration"]).max(initial=0))
+            )
 
     held = case.commanding(case.q_start)
-    trace = run_case(world.scene, world.robot, joints, held, (world.body, world.ball), after=after)
+    trace = run_case(
+        world.scene, world.robot, joints, held, (world.body, world.ball), after=after
+    )
     return trace, depths[0]
 
 
@@ -77,7 +94,9 @@ def lift(
     def begin() -> None:
         world.body.set_pos(case.centre)
 
-    return run_case(world.scene, world.robot, joints, command, bodies, begin, after), counts
+    return run_case(
+        world.scene, world.robot, joints, command, bodies, begin, after
+    ), counts
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,8 +156,15 @@ class Facts:
         limits = spec.ONE_START.tolerances
         good = (kinematics.accepted(a.q, a.error, *limits) for a in self.answers)
         tips = dict(zip(("pregrasp", "grasp"), self.tips.tolist(), strict=True))
-        seen = {name: float((s == self.number).sum()) for name, s in self.segmentations.items()}
-        reach = {"accepted": sum(map(int, good)), **tips, "touches": int((self.touches > 0).sum())}
+        seen = {
+            name: float((s == self.number).sum())
+            for name, s in self.segmentations.items()
+        }
+        reach = {
+            "accepted": sum(map(int, good)),
+            **tips,
+            "touches": int((self.touches > 0).sum()),
+        }
         return {
             "object": {"mass": self.mass, "depth": self.depth},
             "outline": self.outlines,
@@ -151,7 +177,9 @@ class Facts:
         """The values that decide about the scene, by rung."""
         lift = spec.lift_of(self.case)
         metrics = scene_metrics(self.rest, self.case), scene_metrics(self.lift, lift)
-        return rungs.values(self.case, metrics, self.rest.link_pos[-1, BALL], self.readings)
+        return rungs.values(
+            self.case, metrics, self.rest.link_pos[-1, BALL], self.readings
+        )
 
 
 def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
@@ -168,12 +196,25 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     points = lifting.waypoints(case.place, case.size[2])[:2]
     answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
     way = lifting.line([case.q_start, *(a.q for a in answers)])
-    touches = np.array([lifting.touches(world.robot, joints, world.fixed, q) for q in way])
+    touches = np.array(
+        [lifting.touches(world.robot, joints, world.fixed, q) for q in way]
+    )
     lifted, contacts = lift(world, joints, spec.lift_of(case))
     number = segment_number(world.scene, world.body.links[0]) if page.render else 0
-    return Facts(case=case, world=world, rest=rest, lift=lifted, depth=depth, mass=mass,
-                 views=views, outlines=outlines, number=number, answers=answers, touches=touches,
-                 contacts=contacts)  # fmt: skip
+    return Facts(
+        case=case,
+        world=world,
+        rest=rest,
+        lift=lifted,
+        depth=depth,
+        mass=mass,
+        views=views,
+        outlines=outlines,
+        number=number,
+        answers=answers,
+        touches=touches,
+        contacts=contacts,
+    )
 
 
 def keep(page: Any, scene: str, found: Facts) -> None:

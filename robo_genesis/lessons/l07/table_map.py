@@ -1,7 +1,7 @@
 """A map of the table: what the object of scene A would pass at each of its cells.
 
-The solver's answers for pregrasp and grasp are assigned, not commanded. What the cameras see is
-computed from the recorded views, without a picture for each cell.
+The solver's answers for pregrasp and grasp are assigned, not commanded. What the
+cameras see is computed from the recorded views, without a picture for each cell.
 """
 
 from collections.abc import Iterator
@@ -28,8 +28,9 @@ X, Y = np.arange(2, 11) / 10, np.arange(-3, 4) * 0.12
 # Least and largest x and y of the places where objects begin [m].
 WORKSPACE = (0.40, 0.60), (-0.22, 0.28)
 
-# Counts of each cell: of its two postures those that the solver accepts, without contact of the
-# robot with table, legs or itself, and of these those without contact with the bowl.
+# Counts of each cell: of its two postures those that the solver accepts, without
+# contact of the robot with table, legs or itself, and of these those without contact
+# with the bowl.
 COUNTED = ("reached", "free")
 
 
@@ -49,7 +50,9 @@ class MapCase:
     @property
     def targets(self) -> FloatArray:
         """Positions of the hand (2 m, 3), by turns for pregrasp and grasp [m]."""
-        ends = [lifting.waypoints((*at, 0.0), spec.GOOD.size[2])[:2] for at in self.places]
+        ends = [
+            lifting.waypoints((*at, 0.0), spec.GOOD.size[2])[:2] for at in self.places
+        ]
         return np.concatenate(ends)
 
     @property
@@ -77,14 +80,20 @@ def record(page: Any, world: table.World, joints: JointMap) -> None:
     *others, _ = world.fixed
     for cell in CELLS:
         points = CASE.targets[2 * cell : 2 * cell + 2]
-        answers = lifting.ask(world.robot, joints, spec.GOOD.q_start, CASE.settings, points)
+        answers = lifting.ask(
+            world.robot, joints, spec.GOOD.q_start, CASE.settings, points
+        )
         postures += [answer.q for answer in answers]
         within = CASE.settings.tolerances
         left = [a.q for a in answers if kinematics.accepted(a.q, a.error, *within)]
         for name, fixed in zip(COUNTED, (others, world.fixed), strict=True):
-            left = [q for q in left if not lifting.touches(world.robot, joints, fixed, q)]
+            left = [
+                q for q in left if not lifting.touches(world.robot, joints, fixed, q)
+            ]
             page.readings[f"table_{name}"][str(cell)] = len(left)
-    trace = assign_postures(world.scene, world.robot, joints, CASE.start, np.stack(postures))
+    trace = assign_postures(
+        world.scene, world.robot, joints, CASE.start, np.stack(postures)
+    )
     page.traces["table"] = with_bodies(trace)
     page.readings["map"] = totals(page.experiment)
 
@@ -92,11 +101,15 @@ def record(page: Any, world: table.World, joints: JointMap) -> None:
 def with_bodies(trace: Trace) -> Trace:
     """Return a run with the object in each answer's cell, and the ball at its start."""
     states = trace.steps + 1
-    bodies = np.tile([spec.GOOD.centre, (*spec.GOOD.bowl_at, table.BALL_HEIGHT)], (states, 1, 1))
+    bodies = np.tile(
+        [spec.GOOD.centre, (*spec.GOOD.bowl_at, table.BALL_HEIGHT)], (states, 1, 1)
+    )
     bodies[1:, 0, :2] = np.repeat(CASE.places, 2, axis=0)
     quat = np.tile(np.array([1, 0, 0, 0], np.float32), (states, 2, 1))
     pos = np.concatenate([trace.link_pos, bodies.astype(np.float32)], axis=1)
-    return replace(trace, link_pos=pos, link_quat=np.concatenate([trace.link_quat, quat], axis=1))
+    return replace(
+        trace, link_pos=pos, link_quat=np.concatenate([trace.link_quat, quat], axis=1)
+    )
 
 
 def residuals(trace: Trace) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -113,7 +126,9 @@ def outlines(found: Experiment, camera: str) -> FloatArray:
     """
     view = view_of(replace(found, rendered=False), camera)  # without its pictures
     centres = np.column_stack([CASE.places, np.full(len(CELLS), spec.GOOD.centre[2])])
-    return np.array([rungs.outline(spec.GOOD.corners(at), view, inside=True) for at in centres])
+    return np.array(
+        [rungs.outline(spec.GOOD.corners(at), view, inside=True) for at in centres]
+    )
 
 
 # What each verdict says.
@@ -124,18 +139,25 @@ WORDS = {
     "graspable": "free of the bowl and the edge",
 }
 
-READINGS = {f"table_{name}": counts(map(str, CELLS)) for name in COUNTED} | {"map": counts(WORDS)}
+READINGS = {f"table_{name}": counts(map(str, CELLS)) for name in COUNTED} | {
+    "map": counts(WORDS)
+}
 
 
 def verdicts(found: Experiment) -> dict[str, np.ndarray]:
     """Return which cells (m,) pass which test, by the names of `WORDS`."""
-    answers = ([found.readings[f"table_{name}"][str(k)] for k in CELLS] for name in COUNTED)
+    answers = (
+        [found.readings[f"table_{name}"][str(k)] for k in CELLS] for name in COUNTED
+    )
     reached, free = (np.array(good) == 2 for good in answers)
     least = [spec.LIMITS[name][0] for name in ("pregrasp", "grasp")]
     reached &= (residuals(found.traces["table"])[2].reshape(-1, 2) >= least).all(axis=1)
     margins = [replace(spec.GOOD, place=(x, y, 0.0)).margin for x, y in CASE.places]
     free &= reached & (np.array(margins) >= spec.LIMITS["margin"][0])
-    seen = {name: outlines(found, name) >= spec.LIMITS["pixels"][0] for name in rungs.CAMERAS}
+    seen = {
+        name: outlines(found, name) >= spec.LIMITS["pixels"][0]
+        for name in rungs.CAMERAS
+    }
     return {"reachable": reached, **seen, "graspable": free}
 
 
@@ -146,9 +168,10 @@ def totals(found: Experiment) -> dict[str, int]:
 
 
 def map_follows(found: Experiment) -> Iterator[Finding]:
-    """Where the map says that the hand reaches a place, both recorded poses of the hand are within
-    the solver's tolerances, up to 2 µm and 2 µrad. All cells of the workspace are such places. The
-    camera beside the table shows the object in each cell that the hand reaches.
+    """Where the map says that the hand reaches a place, both recorded poses of the hand
+    are within the solver's tolerances, up to 2 µm and 2 µrad. All cells of the
+    workspace are such places. The camera beside the table shows the object in each cell
+    that the hand reaches.
     """
     counted = totals(found)
     for name, count in counted.items():
@@ -156,8 +179,12 @@ def map_follows(found: Experiment) -> Iterator[Finding]:
     yield equal("seen", counted["world"], counted["reachable"])
     reached = verdicts(found)["reachable"]
     left = residuals(found.traces["table"])[:2]
-    for name, of, most in zip(("m", "rad"), left, CASE.settings.tolerances, strict=True):
-        yield at_most(f"residual_{name}", float(of[np.repeat(reached, 2)].max()), most + 2e-6)
+    for name, of, most in zip(
+        ("m", "rad"), left, CASE.settings.tolerances, strict=True
+    ):
+        yield at_most(
+            f"residual_{name}", float(of[np.repeat(reached, 2)].max()), most + 2e-6
+        )
     least, most = np.transpose(WORKSPACE)
     inside = ((CASE.places >= least) & (CASE.places <= most)).all(axis=1)
     yield equal("workspace", int((inside & reached).sum()), int(inside.sum()))

@@ -75,7 +75,9 @@ def bowl_table(run: Experiment) -> Iterator[dict[str, str]]:
 def bowl_price(run: Experiment) -> str:
     """Return the time of run and step by choice."""
     whole, step = run.readings["run"], run.readings["step"]
-    rows = {words: (whole[choice], 1000 * step[choice]) for choice, words in CHOICES.items()}
+    rows = {
+        words: (whole[choice], 1000 * step[choice]) for choice, words in CHOICES.items()
+    }
     heads = {"build and 200 steps [s]": 1, "step [ms]": 2}
     return tables.timed_table("collision geometry", heads, rows)
 
@@ -85,11 +87,18 @@ def bowl_runs(run: Experiment, group: str) -> str:
     rows = {}
     for name, case in getattr(bowls, group).items():
         words = f"{CHOICES[case.choice]}, h = {1000 * case.h:g} ms"
-        words += f", seed {case.seed}" * (case.seed > 0) + ", from inside" * (case.drop < 0)
+        words += f", seed {case.seed}" * (case.seed > 0) + ", from inside" * (
+            case.drop < 0
+        )
         words += f", start {1000 * case.shift:g} mm aside" * (case.shift > 0)
         found = run.metrics[name]
         inside, lowest = ends(found)
-        rows[words] = decimal(1000 * case.depth, 1), inside, f"{found.in_foot:.0f}", lowest
+        rows[words] = (
+            decimal(1000 * case.depth, 1),
+            inside,
+            f"{found.in_foot:.0f}",
+            lowest,
+        )
     heads = ("v T / e [mm]", "inside", "sunk in", "lowest ball [mm]")
     return tables.number_table("run", dict.fromkeys(heads, 0), rows)
 
@@ -107,10 +116,18 @@ def creep_table(run: Experiment, which: str) -> str:
     for name in CREEPS[which]:
         of, twin = run.metrics[name], run.metrics.get(f"mujoco_{name}")
         depth, creep = rest.formulas(run.cases[name])
-        found = {"creep": of.creep, "formula": creep, "MuJoCo": twin.creep if twin else None}
-        speeds = {
-            head: scaled_value(v, "mm/s") if v is not None else "–" for head, v in found.items()
+        found = {
+            "creep": of.creep,
+            "formula": creep,
+            "MuJoCo": twin.creep if twin else None,
         }
-        depths = {"sinks in": scaled_value(of.sunk, "µm"), "its formula": scaled_value(depth, "µm")}
+        speeds = {
+            head: scaled_value(v, "mm/s") if v is not None else "–"
+            for head, v in found.items()
+        }
+        depths = {
+            "sinks in": scaled_value(of.sunk, "µm"),
+            "its formula": scaled_value(depth, "µm"),
+        }
         rows.append({"box": rest.LABELS[name]} | speeds | depths)
     return tables.markdown(rows)

@@ -6,7 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, noted, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    equal,
+    model_counts,
+    noted,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Demonstrations, Episodes
 from robo_genesis.lessons.l08 import dataset, metrics, spec
@@ -36,8 +44,9 @@ def turned_camera(run: Experiment) -> Iterator[Finding]:
 
 
 def words_differ(run: Experiment) -> Iterator[Finding]:
-    """On the same episodes, at least 95 % finish all phases, at least 30 more than succeed lift
-    the object at some time, and more than succeed have it in the bowl at the end.
+    """On the same episodes, at least 95 % finish all phases, at least 30 more than
+    succeed lift the object at some time, and more than succeed have it in the bowl at
+    the end.
     """
     m = run.metrics["askew"]
     yield above("askew.finished", m.finished, 0.95 * len(spec.STARTS) - 0.5)
@@ -46,8 +55,8 @@ def words_differ(run: Experiment) -> Iterator[Finding]:
 
 
 def along_the_pads(run: Experiment) -> Iterator[Finding]:
-    """Each episode whose error along the pads is above −3 mm succeeds, up to 11 mm; none succeeds
-    below −6 mm. The errors across the pads are at most 7 mm.
+    """Each episode whose error along the pads is above −3 mm succeeds, up to 11 mm;
+    none succeeds below −6 mm. The errors across the pads are at most 7 mm.
     """
     error = spec.ASKEW.beliefs - spec.STARTS
     good = metrics.good(run.traces["askew"], spec.ASKEW)
@@ -58,16 +67,16 @@ def along_the_pads(run: Experiment) -> Iterator[Finding]:
 
 
 def pads_are_short(run: Experiment) -> Iterator[Finding]:
-    """When the fingers begin to close, the middle of the pads is in the median 4 to 5.5 mm nearer
-    to the base than the expert believes the object.
+    """When the fingers begin to close, the middle of the pads is in the median 4 to 5.5
+    mm nearer to the base than the expert believes the object.
     """
     for name in ("exact", "askew"):
         yield within(f"{name}.short_m", run.metrics[name].short, 4.75e-3, 7.5e-4)
 
 
 def edge_of_the_pads(run: Experiment) -> Iterator[Finding]:
-    """Each episode succeeds in which the object is at most 8 mm from the middle of the pads towards
-    their far end when the fingers begin to close, and none from 9 mm on.
+    """Each episode succeeds in which the object is at most 8 mm from the middle of the
+    pads towards their far end when the fingers begin to close, and none from 9 mm on.
     """
     trace = run.traces["askew"]
     first = metrics.first_closing(trace)
@@ -79,14 +88,16 @@ def edge_of_the_pads(run: Experiment) -> Iterator[Finding]:
 
 
 def held_but_sliding(run: Experiment) -> Iterator[Finding]:
-    """In the move the median force of a finger is 11 to 12.5 N, 40 to 46 times what the object
-    needs at rest. The median speed at which the object slides down in the fingers is 0.5 to
-    2.5 mm/s.
+    """In the move the median force of a finger is 11 to 12.5 N, 40 to 46 times what the
+    object needs at rest. The median speed at which the object slides down in the
+    fingers is 0.5 to 2.5 mm/s.
     """
     for name in run.metrics:
         press, case = run.metrics[name].press, run.cases[name]
         yield within(f"{name}.press_N", press, 11.75, 0.75)
-        margin = 2 * press / (case.density * case.volume * GRAVITY)  # the fingers have µ = 1
+        margin = (
+            2 * press / (case.density * case.volume * GRAVITY)
+        )  # the fingers have µ = 1
         yield within(f"{name}.margin", margin, 43, 3)
         yield within(f"{name}.creep_m_s", run.metrics[name].creep, 1.5e-3, 1e-3)
 
@@ -96,21 +107,26 @@ def shown_episodes(run: Experiment) -> Iterator[Finding]:
     level = metrics.reached(run.traces["askew"], spec.ASKEW)
     for name, row in spec.SHOWN.items():
         yield equal(f"{name}.rungs", int(level[row]), spec.REACH[name])
-        yield equal(f"{name}.phase", int(run.traces["askew"].phase[-1, row]), picking.DONE)
+        yield equal(
+            f"{name}.phase", int(run.traces["askew"].phase[-1, row]), picking.DONE
+        )
 
 
 def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
-    """A batch with the episodes of another one, in their order or permuted, is equal to it to the
-    last bit.
+    """A batch with the episodes of another one, in their order or permuted, is equal to
+    it to the last bit.
     """
     for name, other, order in (
-        ("again", "exact", slice(None)), ("permuted", "askew", spec.ORDER)
-    ):  # fmt: skip
+        ("again", "exact", slice(None)),
+        ("permuted", "askew", spec.ORDER),
+    ):
         if name in run.cases:
             yield from same_episodes(run, name, other, order)
 
 
-def same_episodes(run: Experiment, name: str, other: str, order: Any) -> Iterator[Finding]:
+def same_episodes(
+    run: Experiment, name: str, other: str, order: Any
+) -> Iterator[Finding]:
     """Require equal episodes of two batches, those of the second in an order."""
     one, two = run.traces[name], run.traces[other]
     for array in (of.name for of in fields(Episodes) if of.name != "t"):
@@ -119,8 +135,9 @@ def same_episodes(run: Experiment, name: str, other: str, order: Any) -> Iterato
 
 
 def commands_come_first(run: Experiment) -> Iterator[Finding]:
-    """In the dataset a command belongs to the sample before it: up to the row whose action closes
-    the fingers, no finger has moved by 1 mm, and one row later each finger has.
+    """In the dataset a command belongs to the sample before it: up to the row whose
+    action closes the fingers, no finger has moved by 1 mm, and one row later each
+    finger has.
     """
     before, after = dataset.finger_motion(run)
     yield at_most("before_m", float(before.max()), 1e-3)
@@ -128,8 +145,9 @@ def commands_come_first(run: Experiment) -> Iterator[Finding]:
 
 
 def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
-    """In a run with a camera, the last picture of the first film is the frame at the end of the
-    run, within one of 255 levels in the mean. The picture at the beginning of the move is not.
+    """In a run with a camera, the last picture of the first film is the frame at the
+    end of the run, within one of 255 levels in the mean. The picture at the beginning
+    of the move is not.
     """
     yield noted("films", len(spec.FILMS) * run.rendered)
     if run.rendered:
@@ -142,10 +160,11 @@ def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """Each batch begins where its case puts robot and object, and recorded commands are those of
-    the phase machine. In the episodes that are recorded at all steps, links and control forces are
-    those of the driven robot at each sample, until the hand is above the object all forces and
-    velocities as well, and the states are those of the batch.
+    """Each batch begins where its case puts robot and object, and recorded commands are
+    those of the phase machine. In the episodes that are recorded at all steps, links
+    and control forces are those of the driven robot at each sample, until the hand is
+    above the object all forces and velocities as well, and the states are those of the
+    batch.
     """
     yield from kept("the joint map", model_joints(run.joints))
     for name in (batch for batch in spec.BATCHES if batch in run.cases):
@@ -169,15 +188,20 @@ def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
 def sent(trace: Demonstrations, case: picking.PickCase) -> Iterator[Finding]:
     """Yield a command that the phase machine does not send.
 
-    The goal of a phase is its last command. In a sample, the arm's command moves straight to it, by
-    the stride of each outer step, or by less in a sample in which the phase begins.
+    The goal of a phase is its last command. In a sample, the arm's command moves
+    straight to it, by the stride of each outer step, or by less in a sample in which
+    the phase begins.
     """
     rows, phase = np.arange(trace.target.shape[1]), trace.phase[1:]
     target = trace.target.astype(np.float64)
     shut = (phase >= picking.CLOSE) & (phase < picking.OPEN)
     fingers = np.where(shut, 0.0, case.q_start[-1])[..., None]
-    yield from apart("motion", "target of fingers [m]", target[..., ARM:], fingers, 1e-6)
-    before = np.concatenate([np.broadcast_to(case.q_start, target[:1].shape), target[:-1]])
+    yield from apart(
+        "motion", "target of fingers [m]", target[..., ARM:], fingers, 1e-6
+    )
+    before = np.concatenate(
+        [np.broadcast_to(case.q_start, target[:1].shape), target[:-1]]
+    )
     before, arm = before[..., :ARM], target[..., :ARM]
     of_phase = phase[::-1] == np.arange(picking.DONE + 1)[:, None, None]
     way = arm[len(phase) - 1 - of_phase.argmax(axis=1), rows][phase, rows] - before
@@ -185,7 +209,9 @@ def sent(trace: Demonstrations, case: picking.PickCase) -> Iterator[Finding]:
     whole = np.minimum(case.commands * case.stride, longest)
     begins = phase != trace.phase[:-1]
     share = np.where(begins, np.minimum(far, whole), whole) / np.maximum(longest, 1e-9)
-    yield from apart("motion", "target of arm [rad]", arm, before + share[..., None] * way, 2e-6)
+    yield from apart(
+        "motion", "target of arm [rad]", arm, before + share[..., None] * way, 2e-6
+    )
 
 
 def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Finding]:
@@ -195,7 +221,9 @@ def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Findi
     pos, quat = trace.link_pos[:, -1], trace.link_quat[:, -1]
     for array, values in (("q", trace.q), ("object_pos", pos), ("object_quat", quat)):
         expected = getattr(batch, array)[:, row]
-        yield from apart("pose", f"{array} of the batch", values[::every], expected, 0.0)
+        yield from apart(
+            "pose", f"{array} of the batch", values[::every], expected, 0.0
+        )
     yield from unit_quaternions(trace.link_quat)
     robot = lifting.without_bodies(trace, 1)
     yield from commanded(robot, case.commanding(trace.target), links)
@@ -213,6 +241,13 @@ LAB = (
     pictures_show_the_states,
 )
 LECTURE = (
-    place_is_enough, turned_camera, words_differ, along_the_pads, pads_are_short, edge_of_the_pads,
-    held_but_sliding, shown_episodes, order_does_not_matter,
-)  # fmt: skip
+    place_is_enough,
+    turned_camera,
+    words_differ,
+    along_the_pads,
+    pads_are_short,
+    edge_of_the_pads,
+    held_but_sliding,
+    shown_episodes,
+    order_does_not_matter,
+)

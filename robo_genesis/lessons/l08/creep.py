@@ -18,26 +18,43 @@ from robo_genesis.sim.mujoco.grippers import ratio_of
 SCANS: Mapping[str, Mapping[str, float]] = {
     "friction": {"mu_03": 0.3, "mu_05": 0.5, "base": 1.0, "mu_15": 1.5, "mu_2": 2.0},
     "force": {"N_2": 2.0, "N_5": 5.0, "base": 10.0, "N_20": 20.0, "N_40": 40.0},
-    "mass": {"m_005": 0.05, "base": 0.1, "m_02": 0.2, "m_05": 0.5, "m_09": 0.9, "m_15": 1.5},
+    "mass": {
+        "m_005": 0.05,
+        "base": 0.1,
+        "m_02": 0.2,
+        "m_05": 0.5,
+        "m_09": 0.9,
+        "m_15": 1.5,
+    },
 }
 
 SCAN = {name: {of: value} for of, row in SCANS.items() for name, value in row.items()}
 
-# Boxes of each other scene. The weight of `m_15` is more than µN, that of the others is less.
+# Boxes of each other scene. The weight of `m_15` is more than µN, that of the others is
+# less.
 ROW = {name: SCAN[name] for name in ("base", "mu_03", "mu_2", "m_09", "m_15")}
 
-SHALLOW = {name: own for name, own in ROW.items() if name != "mu_2"}  # Which would sink in by 5 mm
+SHALLOW = {
+    name: own for name, own in ROW.items() if name != "mu_2"
+}  # Which would sink in by 5 mm
 
 
-def side_by_side(of: Mapping[str, Mapping[str, float]], **common: Any) -> dict[str, HeldCase]:
+def side_by_side(
+    of: Mapping[str, Mapping[str, float]], **common: Any
+) -> dict[str, HeldCase]:
     """Return grippers in a row along y."""
     cases = enumerate(of.items())
-    return {n: HeldCase(place=round(0.1 * k, 1), **{**common, **own}) for k, (n, own) in cases}
+    return {
+        n: HeldCase(place=round(0.1 * k, 1), **{**common, **own})
+        for k, (n, own) in cases
+    }
 
 
 def scene(name: str, of: Mapping[str, Mapping[str, float]] = ROW, **common: Any) -> Any:
     """Return a scene by its name; its cases have that name before theirs."""
-    return {name: side_by_side({f"{name}_{one}": own for one, own in of.items()}, **common)}
+    return {
+        name: side_by_side({f"{name}_{one}": own for one, own in of.items()}, **common)
+    }
 
 
 # Mass whose weight is µN [kg].
@@ -47,14 +64,20 @@ LONG = {"long": side_by_side({"long": {}}, dt=0.1, substeps=40, duration=10.0)}
 
 # The runs in Genesis, by scene.
 SCENES: dict[str, dict[str, HeldCase]] = (
-    LONG | {"scan": side_by_side(SCAN)} | scene("plain")
-    | scene("T_5ms", time_constant=0.005) | scene("T_20ms", SHALLOW, time_constant=0.02)
-    | scene("h_1ms", substeps=10) | scene("iterations_500", iterations=500)
+    LONG
+    | {"scan": side_by_side(SCAN)}
+    | scene("plain")
+    | scene("T_5ms", time_constant=0.005)
+    | scene("T_20ms", SHALLOW, time_constant=0.02)
+    | scene("h_1ms", substeps=10)
+    | scene("iterations_500", iterations=500)
     | scene("elliptic_1", cone="elliptic", impratio=1.0)
-    | scene("elliptic_10", cone="elliptic", impratio=10.0) | scene("elliptic", cone="elliptic")
-    | scene("pyramid_10", impratio=10.0) | scene("pyramid_100", impratio=100.0)
+    | scene("elliptic_10", cone="elliptic", impratio=10.0)
+    | scene("elliptic", cone="elliptic")
+    | scene("pyramid_10", impratio=10.0)
+    | scene("pyramid_100", impratio=100.0)
     | scene("noslip_5", noslip=5)
-)  # fmt: skip
+)
 
 CASES = {n: case for of in SCENES.values() for n, case in of.items()}
 
@@ -64,7 +87,8 @@ TIMED = [name for name, cases in SCENES.items() if len(cases) == len(ROW)]
 # The same runs in MuJoCo, in float64.
 TWINS = {f"mujoco_{name}": case for name, case in CASES.items()}
 
-# What users try, by run: words, the run without it, and its price beside computing time.
+# What users try, by run: words, the run without it, and its price beside computing
+# time.
 CHANGES = {
     "base": ("nothing", "base", "–"),
     "mu_2": ("friction 1 → 2", "base", "a deeper contact"),
@@ -77,21 +101,33 @@ CHANGES = {
     "noslip_5_base": ("noslip, 5 iterations", "base", "no elliptic cone"),
     "noslip_5_m_15": ("the same, *mg* > µN", "m_15", "no elliptic cone"),
     "elliptic_1_base": ("elliptic, impratio 1", "base", "depth as with µ = 1"),
-    "elliptic_base": ("elliptic, impratio 100", "base", "depth as with µ = 1; no noslip"),
+    "elliptic_base": (
+        "elliptic, impratio 100",
+        "base",
+        "depth as with µ = 1; no noslip",
+    ),
     "pyramid_100_base": ("pyramid, impratio 100", "base", "a stiffer normal direction"),
 }
 
 # Words of a reader for runs.
 LABELS = {
-    "long": "10 s", "base": "μ = 1", "mu_2": "μ = 2", "h_1ms_base": "h = 1 ms",
-    "T_5ms_base": "T = 5 ms", "m_15": "1.5 kg", "noslip_5_m_15": "1.5 kg, noslip",
-    "noslip_5_base": "noslip", "elliptic_base": "elliptic cone, impratio 100",
-}  # fmt: skip
+    "long": "10 s",
+    "base": "μ = 1",
+    "mu_2": "μ = 2",
+    "h_1ms_base": "h = 1 ms",
+    "T_5ms_base": "T = 5 ms",
+    "m_15": "1.5 kg",
+    "noslip_5_m_15": "1.5 kg, noslip",
+    "noslip_5_base": "noslip",
+    "elliptic_base": "elliptic cone, impratio 100",
+}
 
 # By metric, (atol, rtol) of a value between engines, backends or processors.
 TOLERANCES: dict[str, tuple[float, float]] = {
-    "creep": (4e-6, 0.005), "depth": (1e-7, 0.005), "path": (4e-6, 0.005)
-}  # fmt: skip
+    "creep": (4e-6, 0.005),
+    "depth": (1e-7, 0.005),
+    "path": (4e-6, 0.005),
+}
 
 RESOLUTION = {"m/s": 5e-6}
 
@@ -101,7 +137,11 @@ def formulas(case: HeldCase, in_mujoco: bool = False) -> tuple[float, float]:
 
     The impedance d depends on the depth, so both are found by iteration.
     """
-    d, most, mu = mujoco_contacts.IMPEDANCE[0], mujoco_contacts.IMPEDANCE[1], case.friction
+    d, most, mu = (
+        mujoco_contacts.IMPEDANCE[0],
+        mujoco_contacts.IMPEDANCE[1],
+        case.friction,
+    )
     seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
     k, b = 1 / seconds**2, 2 / seconds
     w = 1 / case.mass + 1 / (3 * (grippers.PAD_MASS + grippers.ARMATURE))
@@ -137,7 +177,9 @@ def held_metrics(trace: BodyTrace, case: HeldCase) -> HeldMetrics:
     """Measure one run."""
     place = trace.link_pos.astype(np.float64)
     path = place[0, 0, 2] - place[-1, 0, 2]
-    gap = (place[-1, 2, 0] - place[-1, 1, 0]) / 2  # half of the distance of the pads' centres
+    gap = (
+        place[-1, 2, 0] - place[-1, 1, 0]
+    ) / 2  # half of the distance of the pads' centres
     depth = SIZE / 2 + PAD[0] - gap
     return HeldMetrics(float(path) / case.duration, float(depth), float(path))
 

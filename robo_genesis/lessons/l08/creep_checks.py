@@ -6,17 +6,36 @@ from itertools import chain
 import numpy as np
 
 from robo_genesis.core.check_spec import READ_BACK
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    nearly,
+    within,
+)
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l08 import creep
 from robo_genesis.sim.bodies.grippers import CONTACTS, LINKS, HeldCase
 from robo_genesis.sim.common_checks import stamps
-from robo_genesis.sim.laws import UNTURNED, ZERO, apart, copied, kept, times, unit_quaternions
+from robo_genesis.sim.laws import (
+    UNTURNED,
+    ZERO,
+    apart,
+    copied,
+    kept,
+    times,
+    unit_quaternions,
+)
 from robo_genesis.sim.mujoco import grippers as mujoco_grippers
 from robo_genesis.sim.throughput import KEPT
 
-SHARE, STILL = 0.005, 2e-7  # Of a value against its formula; creep that float32 causes [m/s]
+SHARE, STILL = (
+    0.005,
+    2e-7,
+)  # Of a value against its formula; creep that float32 causes [m/s]
 DEPTH = 1e-7  # Depth that float32 does not resolve [m]
 SAME = 0.005  # Share by which creeps may differ that are called equal
 BOUND = 0.0134  # Path in 10 s by the formula with d = 0.9, by hand [m]
@@ -24,8 +43,8 @@ STOPPED = 0.01  # Largest share of a creep that is called stopped
 
 TURN = 1e-4  # Rotation of a held box; noslip turns it by up to 2e-5 rad
 
-# Tolerances of the state after one outer step in MuJoCo; the residuals of the runs are at most 5e-8
-# m, 3e-7, 2e-6 m/s and 7e-5 rad/s.
+# Tolerances of the state after one outer step in MuJoCo; the residuals of the runs are
+# at most 5e-8 m, 3e-7, 2e-6 m/s and 7e-5 rad/s.
 NEXT = {"link_pos": 1e-7, "link_quat": 1e-6, "link_vel": 6e-6, "link_ang": 2.5e-4}
 
 
@@ -33,14 +52,16 @@ def settings(run: Experiment) -> Iterator[Finding]:
     """Friction and time constant read back are those of the cases; each box has 8 contacts."""
     for name in ("friction", "time_constant"):
         for case, value in run.readings[name].items():
-            yield within(f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK)
+            yield within(
+                f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK
+            )
     for case, value in run.readings["contacts"].items():
         yield equal(f"{case}.contacts", value, CONTACTS)
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """Each box slides steadily, and each state follows from the state before it, as MuJoCo computes
-    it anew from every sample.
+    """Each box slides steadily, and each state follows from the state before it, as
+    MuJoCo computes it anew from every sample.
     """
     for name, case in run.cases.items():
         trace, second = run.traces[name], name in creep.TWINS
@@ -53,19 +74,25 @@ def held_box(trace: BodyTrace, case: HeldCase, of_genesis: bool) -> Iterator[Fin
     yield from times(trace, case.steps, case.dt)
     yield from unit_quaternions(trace.link_quat)
     yield from apart("pose", "link_quat", trace.link_quat, UNTURNED, TURN)
-    yield from apart("motion", "link_ang [rad/s]", trace.link_ang, ZERO, NEXT["link_ang"])
+    yield from apart(
+        "motion", "link_ang [rad/s]", trace.link_ang, ZERO, NEXT["link_ang"]
+    )
     place = trace.link_pos.astype(np.float64)
     steady = (place[-1] - place[0]) / case.duration
-    yield from apart("motion", "link_vel [m/s]", trace.link_vel, steady, NEXT["link_vel"])
+    yield from apart(
+        "motion", "link_vel [m/s]", trace.link_vel, steady, NEXT["link_vel"]
+    )
     after = mujoco_grippers.each_step(trace, case, of_genesis)
     for name, expected in after.items():
         found = getattr(trace, name)[1:]
-        yield from apart("motion", f"{name} after one step", found, expected, NEXT[name])
+        yield from apart(
+            "motion", f"{name} after one step", found, expected, NEXT[name]
+        )
 
 
 def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
-    """Without noslip each box creeps as its formula says, within 0.5 %, in both engines: with both
-    cones and all values of impratio, on both sides of the weight µN.
+    """Without noslip each box creeps as its formula says, within 0.5 %, in both
+    engines: with both cones and all values of impratio, on both sides of the weight µN.
     """
     for name, case in run.cases.items():
         if not case.noslip:
@@ -75,13 +102,15 @@ def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
 
 
 def sinks_as_computed(run: Experiment) -> Iterator[Finding]:
-    """Without noslip the contacts of each box are as deep as its formula says, within 0.5 % and
-    0.1 µm, in both engines.
+    """Without noslip the contacts of each box are as deep as its formula says, within
+    0.5 % and 0.1 µm, in both engines.
     """
     for name, case in run.cases.items():
         if not case.noslip:
             depth, _ = creep.formulas(case, name in creep.TWINS)
-            yield within(f"{name}.depth_m", run.metrics[name].depth, depth, SHARE * depth + DEPTH)
+            yield within(
+                f"{name}.depth_m", run.metrics[name].depth, depth, SHARE * depth + DEPTH
+            )
 
 
 def share_of(run: Experiment, name: str, other: str) -> float:
@@ -89,15 +118,20 @@ def share_of(run: Experiment, name: str, other: str) -> float:
     return float(run.metrics[name].creep / run.metrics[other].creep)
 
 
-def shares(run: Experiment, name: str, other: str = "base") -> Iterator[tuple[str, float]]:
+def shares(
+    run: Experiment, name: str, other: str = "base"
+) -> Iterator[tuple[str, float]]:
     """Yield a label and the share of the creep in each engine."""
     for engine in ("", "mujoco_"):
-        yield f"{engine}{name}.share_of_{other}", share_of(run, engine + name, engine + other)
+        yield (
+            f"{engine}{name}.share_of_{other}",
+            share_of(run, engine + name, engine + other),
+        )
 
 
 def friction_lets_creep(run: Experiment) -> Iterator[Finding]:
-    """In both engines the creep grows with each step of friction from 0.3 to 2, at 10 N and 0.1 kg;
-    it is more than doubled in all.
+    """In both engines the creep grows with each step of friction from 0.3 to 2, at 10 N
+    and 0.1 kg; it is more than doubled in all.
     """
     row = [*creep.SCANS["friction"]]
     for faster, slower in zip(row[1:], row, strict=False):
@@ -108,9 +142,9 @@ def friction_lets_creep(run: Experiment) -> Iterator[Finding]:
 
 
 def what_counts(run: Experiment) -> Iterator[Finding]:
-    """In both engines a step of 1 ms and 500 iterations change the creep by less than 0.5 %.
-    Half of the time constant halves it for µ = 0.3, within 1 %. Four times the force leaves
-    at least half of it, and five times the mass makes it larger.
+    """In both engines a step of 1 ms and 500 iterations change the creep by less than
+    0.5 %. Half of the time constant halves it for µ = 0.3, within 1 %. Four times the
+    force leaves at least half of it, and five times the mass makes it larger.
     """
     for name in ("h_1ms_base", "iterations_500_base"):
         for label, share in shares(run, name):
@@ -123,8 +157,8 @@ def what_counts(run: Experiment) -> Iterator[Finding]:
 
 
 def noslip_ends_at_half(run: Experiment) -> Iterator[Finding]:
-    """In both engines noslip leaves at most 1 % of the creep of boxes lighter than µN, and changes
-    that of the box which is heavier by less than 0.5 %.
+    """In both engines noslip leaves at most 1 % of the creep of boxes lighter than µN,
+    and changes that of the box which is heavier by less than 0.5 %.
     """
     for one in creep.ROW:
         expected, room = (1, SAME) if one == "m_15" else (0, STOPPED)
@@ -133,9 +167,9 @@ def noslip_ends_at_half(run: Experiment) -> Iterator[Finding]:
 
 
 def round_cone_holds(run: Experiment) -> Iterator[Finding]:
-    """In both engines the elliptic cone with impratio 100 leaves at most 1 % of the creep of each
-    box, also of the one that is heavier than µN. With impratio 1 the creep is the same for all
-    coefficients, and in Genesis so is the depth.
+    """In both engines the elliptic cone with impratio 100 leaves at most 1 % of the
+    creep of each box, also of the one that is heavier than µN. With impratio 1 the
+    creep is the same for all coefficients, and in Genesis so is the depth.
     """
     for one in creep.ROW:
         for label, share in shares(run, f"elliptic_{one}", one):
@@ -148,11 +182,15 @@ def round_cone_holds(run: Experiment) -> Iterator[Finding]:
 
 
 def engines_agree(run: Experiment) -> Iterator[Finding]:
-    """In MuJoCo a box creeps as in Genesis, within 0.5 % and 2 µm/s, except with the pyramid and
-    another impratio than 1: there the box with µ = 2 creeps more than four times as fast in MuJoCo.
+    """In MuJoCo a box creeps as in Genesis, within 0.5 % and 2 µm/s, except with the
+    pyramid and another impratio than 1: there the box with µ = 2 creeps more than four
+    times as fast in MuJoCo.
     """
     for twin in creep.TWINS:
-        one, other = run.metrics[twin.removeprefix("mujoco_")].creep, run.metrics[twin].creep
+        one, other = (
+            run.metrics[twin.removeprefix("mujoco_")].creep,
+            run.metrics[twin].creep,
+        )
         if not twin.startswith("mujoco_pyramid_1"):
             yield within(f"{twin}.creep_m_s", other, one, SHARE * one + 10 * STILL)
     share = share_of(run, "mujoco_pyramid_100_mu_2", "pyramid_100_mu_2")
@@ -160,8 +198,8 @@ def engines_agree(run: Experiment) -> Iterator[Finding]:
 
 
 def creeps_on(run: Experiment) -> Iterator[Finding]:
-    """In 10 s the box slides 10 s times the creep of the formula, within 0.5 %, and less than the
-    bound of its formula with d = 0.9.
+    """In 10 s the box slides 10 s times the creep of the formula, within 0.5 %, and
+    less than the bound of its formula with d = 0.9.
     """
     case, path = run.cases["long"], run.metrics["long"].path
     yield nearly("long.path_m", path, case.duration * creep.formulas(case)[1], SHARE)
@@ -169,14 +207,24 @@ def creeps_on(run: Experiment) -> Iterator[Finding]:
 
 
 CHECKS = (
-    settings, stamps, laws_of_motion, creeps_as_computed, sinks_as_computed, friction_lets_creep,
-    what_counts, noslip_ends_at_half, round_cone_holds, engines_agree, creeps_on,
-)  # fmt: skip
+    settings,
+    stamps,
+    laws_of_motion,
+    creeps_as_computed,
+    sinks_as_computed,
+    friction_lets_creep,
+    what_counts,
+    noslip_ends_at_half,
+    round_cone_holds,
+    engines_agree,
+    creeps_on,
+)
 
 TIMES = [f"{what}_{name}" for what in KEPT for name in creep.TIMED]
 
 CREEP = MeasuringPage(
-    runs=runs_of(creep.CASES) | runs_of(creep.TWINS, note="run in MuJoCo, not in Genesis"),
+    runs=runs_of(creep.CASES)
+    | runs_of(creep.TWINS, note="run in MuJoCo, not in Genesis"),
     kind=BodyTrace,
     links=LINKS,
     readings={

@@ -37,13 +37,18 @@ def columns(run: Experiment) -> dict[str, tuple[np.ndarray, tuple[str, ...] | No
         "next.success": (last & good, None),
         "next.done": (last & np.ones_like(good), None),
     }
-    return {name: (values.swapaxes(0, 1), names) for name, (values, names) in by_time.items()}
+    return {
+        name: (values.swapaxes(0, 1), names)
+        for name, (values, names) in by_time.items()
+    }
 
 
 def recorded(run: Experiment) -> dict[str, Any]:
     """Return the data as `site/takeaways/lerobot.py` writes them."""
     trace, count = run.traces["exact"], len(spec.FILMS) * run.rendered
-    shown = [film.pictures_of(run.frames, name, trace.steps) for name in spec.FILMS[:count]]
+    shown = [
+        film.pictures_of(run.frames, name, trace.steps) for name in spec.FILMS[:count]
+    ]
     return {
         "task": TASK,
         "robot": "franka_panda",
@@ -57,8 +62,9 @@ def recorded(run: Experiment) -> dict[str, Any]:
 
 
 def finger_motion(run: Experiment) -> tuple[FloatArray, FloatArray]:
-    """Return by episode (e,) the largest distance of a finger from its start until the row whose
-    action closes the fingers, and the least motion of a finger from there to the next row [m].
+    """Return by episode (e,) the largest distance of a finger from its start until the
+    row whose action closes the fingers, and the least motion of a finger from there to
+    the next row [m].
 
     Raises:
         ValueError: an episode has no such row, or it is the first.
@@ -67,7 +73,9 @@ def finger_motion(run: Experiment) -> tuple[FloatArray, FloatArray]:
     q, action = (found[name][0][..., ARM:].astype(np.float64) for name in used)
     closing = (action == 0).all(axis=2).argmax(axis=1)
     if not closing.all():
-        raise ValueError("The fingers of an episode are never closed, or from its first row on.")
+        raise ValueError(
+            "The fingers of an episode are never closed, or from its first row on."
+        )
     until = np.arange(q.shape[1]) <= closing[:, None]
     before = np.where(until[..., None], np.abs(q - q[:, :1]), 0).max(axis=(1, 2))
     rows = np.arange(len(q))

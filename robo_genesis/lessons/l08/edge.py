@@ -16,15 +16,26 @@ STEPS: dict[str, Any] = {"dt": 0.1, "substeps": 20, "commands": 10, "steps": 60}
 # Place of the cylinder, number of errors along each axis, and the largest one [m].
 PLACE, CELLS, MOST = (0.5, -0.1), 16, 0.03
 
-# Standard deviation of the error along each axis [m], and number of starts for both experts.
+# Standard deviation of the error along each axis [m], and number of starts for both
+# experts.
 NOISE, PAIRS = 0.005, 128
 
-# Place of the pads when the fingers close, from their command, with the opposite sign [m].
+# Place of the pads when the fingers close, from their command, with the opposite sign
+# [m].
 SAG = read_only((0.0048, -0.0009))
 
-CLOCKS = (10, 20, 30, 0)  # Outer steps after which the descent ends, 0 where it is measured
+CLOCKS = (
+    10,
+    20,
+    30,
+    0,
+)  # Outer steps after which the descent ends, 0 where it is measured
 
-STRIDES = (0.024, 0.012, 0.006)  # Largest changes of a joint's command in one outer step [rad]
+STRIDES = (
+    0.024,
+    0.012,
+    0.006,
+)  # Largest changes of a joint's command in one outer step [rad]
 
 TIMED = 16  # Episodes with each clock, and with each stride
 
@@ -32,7 +43,9 @@ TIMED = 16  # Episodes with each clock, and with each stride
 OBLONG, TURNED = (0.05, 0.07, 0.06), np.pi / 4
 
 
-def batch(starts: FloatArray, errors: FloatArray | float = 0.0, **more: Any) -> PickCase:
+def batch(
+    starts: FloatArray, errors: FloatArray | float = 0.0, **more: Any
+) -> PickCase:
     """Return episodes with these starts (e, 2) and errors (e, 2) of what the expert believes."""
     return replace(spec.ASKEW, starts=starts, beliefs=starts + errors, **STEPS, **more)
 
@@ -51,9 +64,12 @@ def cases() -> dict[str, PickCase]:
         "grid": batch(np.tile(PLACE, (len(errors), 1)), errors),
         "plain": batch(starts, noise),
         "corrected": batch(starts, noise + SAG),
-        "timed": batch(np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)),
+        "timed": batch(
+            np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)
+        ),
         "paced": replace(
-            batch(np.tile(timed, (len(STRIDES), 1)), stride=np.repeat(STRIDES, TIMED)), steps=90
+            batch(np.tile(timed, (len(STRIDES), 1)), stride=np.repeat(STRIDES, TIMED)),
+            steps=90,
         ),
         "boxes": batch(starts, shape="box", size=OBLONG, yaws=yaws),
     }

@@ -31,9 +31,10 @@ def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
 
 
 def window_of_errors(run: Experiment) -> Iterator[Finding]:
-    """Of 256 errors 36 to 60 end well. With at most 14 mm across the pads, all with 2 to 6 mm along
-    them do, and none from −10 mm down or from 18 mm up. Of those that end well, the hand touches 5
-    or more before the fingers close, among them each with more than 20 mm across.
+    """Of 256 errors 36 to 60 end well. With at most 14 mm across the pads, all with 2
+    to 6 mm along them do, and none from −10 mm down or from 18 mm up. Of those that end
+    well, the hand touches 5 or more before the fingers close, among them each with more
+    than 20 mm across.
     """
     case, trace = run.cases["grid"], run.traces["grid"]
     along, across = 1000 * (case.beliefs - case.starts).T
@@ -49,8 +50,8 @@ def window_of_errors(run: Experiment) -> Iterator[Finding]:
 
 
 def correction_helps(run: Experiment) -> Iterator[Finding]:
-    """The corrected expert succeeds alone at 10 or more starts and fails alone at 8 at most, and by
-    the paired test p is below 0.01.
+    """The corrected expert succeeds alone at 10 or more starts and fails alone at 8 at
+    most, and by the paired test p is below 0.01.
     """
     alone, worse = pairs(run)[1:3]
     yield above("only_corrected", alone, 9.5)
@@ -67,20 +68,24 @@ def window_is_centred(run: Experiment) -> Iterator[Finding]:
 
 
 def pairs(run: Experiment, first: int = edge.PAIRS) -> tuple[int, int, int, int]:
-    """Return at how many of the first starts both experts succeed, only the corrected one, only the
-    plain one, and none.
+    """Return at how many of the first starts both experts succeed, only the corrected
+    one, only the plain one, and none.
     """
     cases, traces = run.cases, run.traces
-    plain, other = (metrics.good(traces[n], cases[n])[:first] for n in ("plain", "corrected"))
+    plain, other = (
+        metrics.good(traces[n], cases[n])[:first] for n in ("plain", "corrected")
+    )
     both, alone = int((plain & other).sum()), int((other & ~plain).sum())
     return both, alone, int((plain & ~other).sum()), int((~plain & ~other).sum())
 
 
 def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
-    """All episodes finish all phases. With the shortest clock none succeeds; with the longest
-    one and with the measured end all do.
+    """All episodes finish all phases. With the shortest clock none succeeds; with the
+    longest one and with the measured end all do.
     """
-    good = metrics.good(run.traces["timed"], run.cases["timed"]).reshape(len(edge.CLOCKS), -1)
+    good = metrics.good(run.traces["timed"], run.cases["timed"]).reshape(
+        len(edge.CLOCKS), -1
+    )
     yield equal("timed.finished", run.metrics["timed"].finished, good.size)
     yield equal("shortest.success", int(good[0].sum()), 0)
     for row, words in ((-2, "longest"), (-1, "measured")):
@@ -88,8 +93,9 @@ def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
 
 
 def slower_slides_farther(run: Experiment) -> Iterator[Finding]:
-    """At each of three speeds all 16 episodes end well. From each start, a slower arm lets the
-    cylinder slide farther. The medians of the slide per second differ by less than a tenth.
+    """At each of three speeds all 16 episodes end well. From each start, a slower arm
+    lets the cylinder slide farther. The medians of the slide per second differ by less
+    than a tenth.
     """
     seconds, slid = (
         of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
@@ -97,12 +103,15 @@ def slower_slides_farther(run: Experiment) -> Iterator[Finding]:
     yield equal("paced.success", run.metrics["paced"].resting, slid.size)
     yield above("slower.least_further_slide_m", float(np.diff(slid, axis=0).min()), 0)
     rates_of = np.median(slid / seconds, axis=1)
-    yield below("slide_per_second.spread", float(np.ptp(rates_of) / rates_of.min()), 0.1)
+    yield below(
+        "slide_per_second.spread", float(np.ptp(rates_of) / rates_of.min()), 0.1
+    )
 
 
 def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
-    """At least 13 boxes more are over the bowl at the end than succeed, and at least 10 of them
-    hang above the rim in the hand. At least 95 % of the episodes finish all phases.
+    """At least 13 boxes more are over the bowl at the end than succeed, and at least 10
+    of them hang above the rim in the hand. At least 95 % of the episodes finish all
+    phases.
     """
     m = run.metrics["boxes"]
     yield above("boxes.over_bowl", m.over_bowl, m.resting + BAND)
@@ -111,7 +120,14 @@ def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
 
 
 RATES = (
-    checks.structure, stamps, laws_of_motion, order_does_not_matter, window_of_errors,
-    correction_helps, window_is_centred, clock_hides_failure, slower_slides_farther,
+    checks.structure,
+    stamps,
+    laws_of_motion,
+    order_does_not_matter,
+    window_of_errors,
+    correction_helps,
+    window_is_centred,
+    clock_hides_failure,
+    slower_slides_farther,
     hovering_is_a_trap,
-)  # fmt: skip
+)

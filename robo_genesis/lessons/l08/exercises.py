@@ -17,8 +17,9 @@ MEASURES = False
 
 # Place of the lower face and height of an object [m]
 OBJECTS = {
-    "on_the_table": ((0.5, -0.1, 0.0), 0.07), "above_the_bowl": ((0.55, 0.22, 0.02), 0.031),
-}  # fmt: skip
+    "on_the_table": ((0.5, -0.1, 0.0), 0.07),
+    "above_the_bowl": ((0.55, 0.22, 0.02), 0.031),
+}
 
 
 @as_test
@@ -32,19 +33,24 @@ def grasp(grasp_pose: Callable[..., Any]) -> Iterator[Finding]:
 
 AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
 
-# Whether a phase of the arm ends and one of the fingers, and by array and joint what is added to an
-# arm at its goal with still fingers
+# Whether a phase of the arm ends and one of the fingers, and by array and joint what is
+# added to an arm at its goal with still fingers
 STATES: dict[str, tuple[bool, bool, dict[tuple[str, int], float]]] = {
-    "at_its_goal": (True, True, {}), "nan": (False, True, {("q", 2): nan}),
+    "at_its_goal": (True, True, {}),
+    "nan": (False, True, {("q", 2): nan}),
     "near": (True, True, {("q", k): 0.9 * AT * (-1) ** k for k in range(ARM)}),
     "slow": (True, True, {("qd", k): 0.9 * SLOW * (-1) ** k for k in range(ARM)}),
-    "first_joint_above": (False, True, {("q", 0): 1.1 * AT}), "v": (False, True, {("qd", 2): SLOW}),
-    "last_joint_below": (False, True, {("q", 6): -1.1 * AT}), "at": (False, True, {("q", 3): AT}),
-    "moves_back": (False, True, {("qd", 0): -1.1 * SLOW}), "v_nan": (False, True, {("qd", 4): nan}),
+    "first_joint_above": (False, True, {("q", 0): 1.1 * AT}),
+    "v": (False, True, {("qd", 2): SLOW}),
+    "last_joint_below": (False, True, {("q", 6): -1.1 * AT}),
+    "at": (False, True, {("q", 3): AT}),
+    "moves_back": (False, True, {("qd", 0): -1.1 * SLOW}),
+    "v_nan": (False, True, {("qd", 4): nan}),
     "fingers_opposed": (True, False, {("qd", 7): -0.1, ("qd", 8): 0.1}),
     "almost_still": (True, True, {("qd", 7): 0.9 * STILL, ("qd", 8): -0.9 * STILL}),
-    "left": (True, False, {("qd", 7): -1.1 * STILL}), "right": (True, False, {("qd", 8): -STILL}),
-}  # fmt: skip
+    "left": (True, False, {("qd", 7): -1.1 * STILL}),
+    "right": (True, False, {("qd", 8): -STILL}),
+}
 
 
 @as_test
@@ -58,7 +64,9 @@ def ends(ended: Callable[..., Any]) -> Iterator[Finding]:
             state[array][joint] += value
         for since in (1, 4, 5, 90):
             for of_fingers in (False, True):
-                right = expected[of_fingers] and (since >= picking.CLOSING or not of_fingers)
+                right = expected[of_fingers] and (
+                    since >= picking.CLOSING or not of_fingers
+                )
                 rows.append((*state.values(), goal[:ARM], of_fingers, since, right))
                 label = f"{name}.of_fingers_{of_fingers}_since_{since}"
                 yield equal(label, bool(ended(*rows[-1][:-1])), right)
@@ -71,24 +79,37 @@ def ends(ended: Callable[..., Any]) -> Iterator[Finding]:
 PHASES = np.array([0, 1, 2, 3, 3, 4, 4, 5, 6, 7, 8, 8, 8, 8, 8, 8])
 LATE, END, RIM = slice(5, None), slice(9, None), (0.55, 0.22, 0.05)
 
-# Array, index and value of each fault of an episode, and how many rungs the episode passes
+# Array, index and value of each fault of an episode, and how many rungs the episode
+# passes
 EPISODES: dict[str, tuple[Any, ...]] = {
-    "success": (7,), "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
-    "done_at_first": ("phase", 0, 8, 0), "no_lift": ("phase", [3, 4], 2, 1),
-    "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1), "held_once": ("force", 3, 0.0, 7),
-    "held_at_the_limit": ("force", [3, 4], 0.1, 1), "lightly": ("force", slice(3, 8), 0.11, 7),
-    "stays_in_the_lift": ("phase", LATE, 3, 2), "rises_late": ("pos", (5, 2), 0.08, 2),
+    "success": (7,),
+    "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
+    "done_at_first": ("phase", 0, 8, 0),
+    "no_lift": ("phase", [3, 4], 2, 1),
+    "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1),
+    "held_once": ("force", 3, 0.0, 7),
+    "held_at_the_limit": ("force", [3, 4], 0.1, 1),
+    "lightly": ("force", slice(3, 8), 0.11, 7),
+    "stays_in_the_lift": ("phase", LATE, 3, 2),
+    "rises_late": ("pos", (5, 2), 0.08, 2),
     "lifted_to_the_limit": ("pos", (0, 2), 0.0, "pos", (5, 2), metrics.RAISED, 7),
-    "move_is_short": ("phase", [5, 6], 5, 7), "no_move_no_lower": ("phase", [5, 6, 7], 6, 3),
-    "lost_then": ("force", (7, 1), 0.0, 3), "lost_at_the_limit": ("force", (5, 1), 0.1, 3),
-    "not_done": ("phase", -1, 7, 4), "touched_at_the_end": ("touches", -1, 1, 4),
-    "touched_before": ("touches", -2, 1, 7), "nan": ("lowest", (), nan, 5),
-    "diagonal": ("pos", (END, slice(0, 2)), [0.5, 0.27], 5), "on_rim": ("lowest", (), 0.041, 5),
-    "high_rim": ("rim", 2, 0.2, "lowest", (), 0.18, 7), "moved_before": ("pos", 10, 0.55, 7),
-    "moves_at_first": ("pos", (11, 0), 0.5503, 6), "moves_at_last": ("pos", (15, 2), 0.0403, 6),
+    "move_is_short": ("phase", [5, 6], 5, 7),
+    "no_move_no_lower": ("phase", [5, 6, 7], 6, 3),
+    "lost_then": ("force", (7, 1), 0.0, 3),
+    "lost_at_the_limit": ("force", (5, 1), 0.1, 3),
+    "not_done": ("phase", -1, 7, 4),
+    "touched_at_the_end": ("touches", -1, 1, 4),
+    "touched_before": ("touches", -2, 1, 7),
+    "nan": ("lowest", (), nan, 5),
+    "diagonal": ("pos", (END, slice(0, 2)), [0.5, 0.27], 5),
+    "on_rim": ("lowest", (), 0.041, 5),
+    "high_rim": ("rim", 2, 0.2, "lowest", (), 0.18, 7),
+    "moved_before": ("pos", 10, 0.55, 7),
+    "moves_at_first": ("pos", (11, 0), 0.5503, 6),
+    "moves_at_last": ("pos", (15, 2), 0.0403, 6),
     "in_all_directions": ("pos", 12, [0.55015, 0.22015, 0.04015], 6),
     "both_ways": ("pos", ([11, 12], 0), [0.55015, 0.54985], 7),
-}  # fmt: skip
+}
 
 
 def episode(*faults: Any) -> list[Any]:
@@ -96,8 +117,14 @@ def episode(*faults: Any) -> list[Any]:
     closed = (PHASES >= picking.LIFT) & (PHASES < picking.OPEN)
     pos = np.where(closed[:, None], [0.5, -0.1, 0.15], [0.5, -0.1, 0.035])
     pos[PHASES >= picking.OPEN] = *RIM[:2], 0.04
-    found = {"phase": PHASES.copy(), "force": np.outer(closed, [12.0, 12.0]), "pos": pos,
-             "touches": closed * 1, "lowest": np.array(0.005), "rim": np.array(RIM)}  # fmt: skip
+    found = {
+        "phase": PHASES.copy(),
+        "force": np.outer(closed, [12.0, 12.0]),
+        "pos": pos,
+        "touches": closed * 1,
+        "lowest": np.array(0.005),
+        "rim": np.array(RIM),
+    }
     for name, index, value in zip(faults[::3], faults[1::3], faults[2::3], strict=True):
         found[name][index] = value
     return [of if of.ndim else float(of) for of in found.values()]
@@ -110,7 +137,17 @@ def ladders(rungs: Callable[..., Any]) -> Iterator[Finding]:
         yield equal(name, int(rungs(*episode(*faults))), expected)
 
 
-RATES = (0, 1), (1, 1), (0, 64), (64, 64), (20, 20), (1, 3), (45, 64), (179, 256), (7, 1000)
+RATES = (
+    (0, 1),
+    (1, 1),
+    (0, 64),
+    (64, 64),
+    (20, 20),
+    (1, 3),
+    (45, 64),
+    (179, 256),
+    (7, 1000),
+)
 
 
 @as_test
@@ -118,7 +155,9 @@ def intervals(wilson: Callable[..., Any]) -> Iterator[Finding]:
     """Check `wilson(k, n)`: both ends of the interval, or ValueError."""
     for k, n in RATES:
         right = rates.wilson(k, n)
-        yield from compared(f"{k}_of_{n}", ("lower", "upper"), wilson(k, n), right, 1e-9)
+        yield from compared(
+            f"{k}_of_{n}", ("lower", "upper"), wilson(k, n), right, 1e-9
+        )
     for given in ((0, 0), (1, 0), (0, -3), (5, 4), (-1, 4)):
         raised = type(refused(partial(wilson, *given))).__name__
         yield equal(f"{given[0]}_of_{given[1]}.raises", raised, "ValueError")
@@ -126,10 +165,11 @@ def intervals(wilson: Callable[..., Any]) -> Iterator[Finding]:
 
 # Times [s], and distances by which the object has slid down [m]
 SLIDES = {
-    "steady": ([2.0, 2.05, 2.1], [0.0, 1e-4, 2e-4]), "upwards": ([0.0, 2.0], [0.09, 0.05]),
+    "steady": ([2.0, 2.05, 2.1], [0.0, 1e-4, 2e-4]),
+    "upwards": ([0.0, 2.0], [0.09, 0.05]),
     "outlier_at_the_end": ([3.0, 3.1, 3.2, 3.3, 3.4], [0.0, 1e-3, 2e-3, 3e-3, 9e-3]),
     "uneven_times": ([0.0, 0.1, 0.5, 0.6, 2.0], [0.0, 2e-3, 3e-3, 9e-3, 9e-3]),
-}  # fmt: skip
+}
 
 
 @as_test

@@ -16,8 +16,8 @@ PRESSES = 0.1  # Normal force from which a finger holds [N]
 
 RAISED = 0.05  # Height that an object must gain in the lift [m]
 
-# An object is in the bowl if its centre is this near to the axis, and its lowest point this far
-# below the rim [m].
+# An object is in the bowl if its centre is this near to the axis, and its lowest point
+# this far below the rim [m].
 CENTRED, BELOW = 0.06, 0.01
 
 # Time at the end [s] in which an object at rest moves by less than this [m], as in L07.
@@ -83,27 +83,55 @@ class EpisodesMetrics(CaseMetrics):
     held: float = metric("1", "held", "phase", "force_N")
     lifted: float = metric("1", "lifted", "phase", "force_N", "object_pos_m")
     carried: float = metric("1", "carried", "phase", "force_N", "object_pos_m")
-    released: float = metric("1", "released", "phase", "force_N", "object_pos_m", "touches")
-    contained: float = metric("1", "contained", "phase", "force_N", "object_pos_m", "touches")
-    resting: float = metric("1", "success", "phase", "force_N", "object_pos_m", "touches")
+    released: float = metric(
+        "1", "released", "phase", "force_N", "object_pos_m", "touches"
+    )
+    contained: float = metric(
+        "1", "contained", "phase", "force_N", "object_pos_m", "touches"
+    )
+    resting: float = metric(
+        "1", "success", "phase", "force_N", "object_pos_m", "touches"
+    )
     finished: float = metric("1", "all phases done", "phase")
     raised_once: float = metric("1", "lifted at some time", "object_pos_m")
-    in_bowl: float = metric("1", "in the bowl at the end", "object_pos_m", "object_quat_wxyz")
+    in_bowl: float = metric(
+        "1", "in the bowl at the end", "object_pos_m", "object_quat_wxyz"
+    )
     over_bowl: float = metric("1", "over the bowl at the end", "object_pos_m")
-    hanging: float = metric("1", "of these, above the rim and touched", "object_pos_m", "touches")
-    upper: float = metric("1", "success among the half with larger y", "phase", "force_N",
-                          "object_pos_m", "touches")  # fmt: skip
-    off_centre: float = metric("m", "median distance from the bowl's axis", "object_pos_m")
-    short: float = metric("m", "pads nearer to the base than believed", "q_rad_or_m", "phase")
+    hanging: float = metric(
+        "1", "of these, above the rim and touched", "object_pos_m", "touches"
+    )
+    upper: float = metric(
+        "1",
+        "success among the half with larger y",
+        "phase",
+        "force_N",
+        "object_pos_m",
+        "touches",
+    )
+    off_centre: float = metric(
+        "m", "median distance from the bowl's axis", "object_pos_m"
+    )
+    short: float = metric(
+        "m", "pads nearer to the base than believed", "q_rad_or_m", "phase"
+    )
     press: float = metric("N", "force of a finger in the move", "force_N", "phase")
-    creep: float = metric("m/s", "slide in the fingers in the move", "q_rad_or_m", "object_pos_m",
-                          noun="speed at which the object slides in the fingers")  # fmt: skip
+    creep: float = metric(
+        "m/s",
+        "slide in the fingers in the move",
+        "q_rad_or_m",
+        "object_pos_m",
+        noun="speed at which the object slides in the fingers",
+    )
 
 
 def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
     """Count episodes of one batch."""
     level, passed = reached(trace, case), rungs(trace, case)
-    rise, apart = trace.object_pos[..., 2] - trace.object_pos[0, :, 2], off_axis(trace, case)
+    rise, apart = (
+        trace.object_pos[..., 2] - trace.object_pos[0, :, 2],
+        off_axis(trace, case),
+    )
     over = apart[-1] < CENTRED
     values = [
         *((level > k).sum() for k in range(len(RUNGS))),
@@ -111,7 +139,9 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         (rise.max(axis=0) >= RAISED).sum(),
         passed["contained"].sum(),
         over.sum(),
-        (over & (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)).sum(),
+        (
+            over & (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)
+        ).sum(),
         (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
         np.median(apart[-1]),
         np.median(case.beliefs[:, 0] - at_closing(trace)[:, 0]),
@@ -121,10 +151,13 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
 
 
 def slides(trace: Episodes) -> tuple[FloatArray, FloatArray]:
-    """Return how long each object is held, from lift to lower (e,) [s], and how far it slides down
-    in the fingers meanwhile (e,) [m].
+    """Return how long each object is held, from lift to lower (e,) [s], and how far it
+    slides down in the fingers meanwhile (e,) [m].
     """
-    held, rows = (trace.phase >= LIFT) & (trace.phase <= LOWER), np.arange(trace.phase.shape[1])
+    held, rows = (
+        (trace.phase >= LIFT) & (trace.phase <= LOWER),
+        np.arange(trace.phase.shape[1]),
+    )
     above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
     first, last = held.argmax(axis=0), len(held) - 1 - held[::-1].argmax(axis=0)
     return trace.t[last] - trace.t[first], above[last, rows] - above[first, rows]
@@ -133,7 +166,9 @@ def slides(trace: Episodes) -> tuple[FloatArray, FloatArray]:
 def at_closing(trace: Episodes) -> FloatArray:
     """Return where the middle of the pads is (e, 3) when the fingers begin to close [m]."""
     hand = hand_pose(trace.q[first_closing(trace), np.arange(trace.phase.shape[1])])
-    return np.asarray(hand.position + rotate(hand.quat, np.array([0.0, 0.0, HAND_TO_PAD])))
+    return np.asarray(
+        hand.position + rotate(hand.quat, np.array([0.0, 0.0, HAND_TO_PAD]))
+    )
 
 
 def first_closing(trace: Episodes) -> np.ndarray:
@@ -144,7 +179,8 @@ def first_closing(trace: Episodes) -> np.ndarray:
 def grip(trace: Episodes, held: np.ndarray) -> tuple[float, float]:
     """Return force of a finger [N] and downward slide of the object [m/s], medians over the move.
 
-    `held` (e,) are the episodes that count. The first and the last sample of a move do not.
+    `held` (e,) are the episodes that count. The first and the last sample of a move do
+    not.
     """
     inner = inside_move(trace) & held
     above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]

@@ -32,8 +32,14 @@ def missing(function: Written, *given: Any) -> bool:
 def waypoints(grasp_pose: Written, case: PickCase) -> list[FloatArray]:
     """Return the waypoints of a case by a student's function, as `PickCase.waypoints`."""
     bowls = np.tile([*case.bowl_at, 0.0], (len(case.beliefs), 1))
-    places = np.insert(case.beliefs, 2, 0.0, axis=1), bowls, np.add(bowls, (0, 0, case.drop))
-    at, over, down = (np.array([grasp_pose(p, case.size[2]) for p in of]) for of in places)
+    places = (
+        np.insert(case.beliefs, 2, 0.0, axis=1),
+        bowls,
+        np.add(bowls, (0, 0, case.drop)),
+    )
+    at, over, down = (
+        np.array([grasp_pose(p, case.size[2]) for p in of]) for of in places
+    )
     rise = np.array([0, 0, case.rise])
     return [at[:, 0], at[:, 1], at[:, 1] + rise, over[:, 1] + rise, down[:, 1]]
 
@@ -43,15 +49,22 @@ def machine(ended: Written) -> type[picking.Expert]:
 
     class Own(picking.Expert):
         def ends(self, q: FloatArray, qd: FloatArray) -> np.ndarray:
-            goal, of_fingers = self.goals[self.phase, self.rows], np.isin(self.phase, (CLOSE, OPEN))
+            goal, of_fingers = (
+                self.goals[self.phase, self.rows],
+                np.isin(self.phase, (CLOSE, OPEN)),
+            )
             return np.asarray(ended(q, qd, goal, of_fingers, self.since), bool)
 
     return Own
 
 
-def run(world: World, joints: Any, case: PickCase, grasp_pose: Written, ended: Written) -> Episodes:
+def run(
+    world: World, joints: Any, case: PickCase, grasp_pose: Written, ended: Written
+) -> Episodes:
     """Let a student's expert work in all environments of a scene, and return its episodes."""
-    points = None if missing(grasp_pose, np.zeros(3), 0.1) else waypoints(grasp_pose, case)
+    points = (
+        None if missing(grasp_pose, np.zeros(3), 0.1) else waypoints(grasp_pose, case)
+    )
     q = np.zeros(ARM + 2)
     of = picking.Expert if missing(ended, q, q, q[:ARM], False, 1) else machine(ended)
     return picking.run(world, joints, case, of, points)[0]
@@ -59,10 +72,17 @@ def run(world: World, joints: Any, case: PickCase, grasp_pose: Written, ended: W
 
 def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray | None:
     """Return by a student's ladder how many rungs each episode passes, None if it is missing."""
-    lowest, rim = metrics.lowest(trace, case)[-1], np.array([*case.bowl_at, bowl.HEIGHT])
+    lowest, rim = (
+        metrics.lowest(trace, case)[-1],
+        np.array([*case.bowl_at, bowl.HEIGHT]),
+    )
     arrays = (trace.phase, trace.force, trace.object_pos, trace.touches)
     given = [(*(of[:, k] for of in arrays), lowest[k], rim) for k in range(len(lowest))]
-    return None if missing(rungs, *given[0]) else np.array([rungs(*each) for each in given])
+    return (
+        None
+        if missing(rungs, *given[0])
+        else np.array([rungs(*each) for each in given])
+    )
 
 
 def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
@@ -73,7 +93,9 @@ def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
         own = "-" if mine is None else (mine > k).sum()
         lines.append(f"{name:10} {own:>6} {(course > k).sum():>7}")
     if mine is not None and (mine != course).any():
-        lines.append(f"The ladders differ in the episodes {np.flatnonzero(mine != course)}.")
+        lines.append(
+            f"The ladders differ in the episodes {np.flatnonzero(mine != course)}."
+        )
     return "\n".join(
         [*lines, f"All phases are done in {(trace.phase[-1] == DONE).sum()} episodes."]
     )
@@ -82,7 +104,10 @@ def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
 def rate(rungs: Written, wilson: Written, trace: Episodes, case: PickCase) -> str:
     """Return the rate of success with its interval, by the student and by the course."""
     lines, course = [], metrics.reached(trace, case)
-    for level, interval in ((levels(rungs, trace, case), wilson), (course, rates.wilson)):
+    for level, interval in (
+        (levels(rungs, trace, case), wilson),
+        (course, rates.wilson),
+    ):
         k, n = int(np.sum(level == len(metrics.RUNGS))), len(course)
         absent = level is None or missing(interval, k, n)
         lines.append("-" if absent else f"{k} of {n}: {percent(interval(k, n))}")
@@ -102,7 +127,10 @@ def slide(creep: Written, trace: Episodes, case: PickCase) -> str:
         return "No episode is carried, so there is no slide to measure."
     rows, of = [(inner[:, k], k) for k in np.flatnonzero(inner.sum(axis=0) > 1)], "-"
     if not missing(creep, *np.eye(3)):
-        found = [creep(hand[at, k], trace.object_pos[at, k, 2], trace.t[at]) for at, k in rows]
+        found = [
+            creep(hand[at, k], trace.object_pos[at, k, 2], trace.t[at])
+            for at, k in rows
+        ]
         of = scaled_value(float(np.median(found)), "mm/s")
     return f"yours   {of}\ncourse  {scaled_value(metrics.grip(trace, held)[1], 'mm/s')}"
 
@@ -114,15 +142,20 @@ def conclusions(run: Experiment) -> str:
     first = ((rung, (level == k).sum()) for k, rung in enumerate(metrics.RUNGS))
     lost = [f"{count} at “{rung}”" for rung, count in first if count]
     differ = sum(finding.found for finding in order_does_not_matter(run))
-    return bullets([
-        f"{good} of {n} episodes reach the last rung. The interval of the rate is "
-        f"{percent(rates.wilson(good, n))}.",
-        f"Episodes fail first: {listed(lost)}." if lost else "No episode fails.",
-        f"All phases are done in {m.finished:.0f} episodes. At some time the object is lifted in "
-        f"{m.raised_once:.0f}.",
-        f"In the move a finger presses with {m.press:.1f} N, and the object slides down by "
-        f"{scaled_value(m.creep, 'mm/s')} (medians)." if m.carried else
-        "No episode is carried, so force and slide are not measured.",
-        f"Numbers that differ in the repeated batch: {differ}." if differ else
-        "The repeated batch is equal to the last bit.",
-    ])  # fmt: skip
+    return bullets(
+        [
+            f"{good} of {n} episodes reach the last rung. The interval of the rate is "
+            f"{percent(rates.wilson(good, n))}.",
+            f"Episodes fail first: {listed(lost)}." if lost else "No episode fails.",
+            f"All phases are done in {m.finished:.0f} episodes. At some "
+            "time the object is lifted in "
+            f"{m.raised_once:.0f}.",
+            f"In the move a finger presses with {m.press:.1f} N, and the object slides down by "
+            f"{scaled_value(m.creep, 'mm/s')} (medians)."
+            if m.carried
+            else "No episode is carried, so force and slide are not measured.",
+            f"Numbers that differ in the repeated batch: {differ}."
+            if differ
+            else "The repeated batch is equal to the last bit.",
+        ]
+    )

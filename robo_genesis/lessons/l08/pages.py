@@ -22,13 +22,18 @@ ONE = "one episode of a batch, at all its steps"
 
 
 # The frames that hold the films
-SHEETS = [of for name in spec.FILMS for of in film.sheet_names(name, spec.EXACT.steps + 1)]
+SHEETS = [
+    of for name in spec.FILMS for of in film.sheet_names(name, spec.EXACT.steps + 1)
+]
 
 
 def batches(cases: dict[str, Any]) -> dict[str, Run]:
     """Return runs of all episodes; those that are not counted copy others."""
     counted = {name: name in (*spec.COUNTED, *edge.COUNTED) for name in cases}
-    return {n: Run(cases[n], own, "" if own else COPY, Episodes) for n, own in counted.items()}
+    return {
+        n: Run(cases[n], own, "" if own else COPY, Episodes)
+        for n, own in counted.items()
+    }
 
 
 LECTURE = MeasuringPage(
@@ -52,8 +57,12 @@ LAB = with_functions(
         parameters=spec.lab_parameters,
         frames=("initial", "final", *SHEETS),
     ),
-    "grasp_pose", "ended", "rungs", "wilson", "creep",
-)  # fmt: skip
+    "grasp_pose",
+    "ended",
+    "rungs",
+    "wilson",
+    "creep",
+)
 
 RATES = replace(
     LECTURE,
@@ -83,6 +92,12 @@ LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys((*spec.COUNTED, *edge.COUNTED), EpisodesMetrics)
     | dict.fromkeys(CREEP.cases, HeldMetrics),
-    pages={"lecture": LECTURE, "lab": LAB, "mistakes": MISTAKES, "rates": RATES, "creep": CREEP},
+    pages={
+        "lecture": LECTURE,
+        "lab": LAB,
+        "mistakes": MISTAKES,
+        "rates": RATES,
+        "creep": CREEP,
+    },
     replays={"episodes": EPISODES, "together": TOGETHER},
 )

@@ -31,7 +31,9 @@ def phases(run: Experiment) -> Figure:
     for label, z, mark in (("hand", hand, "first"), ("object", body, "baseline")):
         above.plot(trace.t, 1000 * z, label=label, **look(mark))
     below.step(trace.t, trace.phase[:, row], where="post", **look("baseline"))
-    below.set(yticks=range(len(picking.PHASES)), yticklabels=picking.PHASES, xlabel="time [s]")
+    below.set(
+        yticks=range(len(picking.PHASES)), yticklabels=picking.PHASES, xlabel="time [s]"
+    )
     above.set_ylabel("z [mm]")
     plotting.label_ends(above, "Height of hand and object, and the phase")
     return figure
@@ -45,10 +47,16 @@ def errors(run: Experiment, batch: str = "askew") -> Figure:
     level = metrics.reached(run.traces[batch], case)
     for (name, mark), sign in zip(spec.CASE_MARKS.items(), "os^x", strict=True):
         own = error[level == spec.REACH[name]]
-        style = {"color": look(mark)["color"], "markersize": 4, "label": spec.LABELS[name]}
+        style = {
+            "color": look(mark)["color"],
+            "markersize": 4,
+            "label": spec.LABELS[name],
+        }
         ax.plot(*own.T, sign, **style)
     ax.axvline(0, **LINE)
-    ax.set(xlabel="error along the pads, x [mm]", ylabel="error across the pads, y [mm]")
+    ax.set(
+        xlabel="error along the pads, x [mm]", ylabel="error across the pads, y [mm]"
+    )
     legend_above(ax, "Each sign is an episode")
     return figure
 
@@ -59,7 +67,10 @@ def slide(run: Experiment) -> Figure:
     trace, row = run.traces["askew"], spec.SHOWN["placed"]
     held = (picking.LIFT, picking.MOVE, picking.LOWER)
     inside = np.flatnonzero(np.isin(trace.phase[:, row], held))
-    above = hand_pose(trace.q[inside, row]).position[:, 2] - trace.object_pos[inside, row, 2]
+    above = (
+        hand_pose(trace.q[inside, row]).position[:, 2]
+        - trace.object_pos[inside, row, 2]
+    )
     ax.plot(trace.t[inside], 1000 * (above - above[0]), **look("baseline"))
     ax.set(xlabel="time [s]", ylabel="slid down [mm]")
     ax.set_title("Slide of the object in the closed fingers")
@@ -78,15 +89,23 @@ def creep_scans(run: Experiment) -> Figure:
         names = [*creep.SCANS[setting]]
         values = [getattr(run.cases[name], setting) for name in names]
         ax.plot(
-            values, [1000 * run.metrics[n].creep for n in names], "o", color=look("first")["color"]
+            values,
+            [1000 * run.metrics[n].creep for n in names],
+            "o",
+            color=look("first")["color"],
         )
         fine = np.linspace(values[0], values[-1], 200)
         cases = [HeldCase(**{setting: value}) for value in fine]
         ax.plot(
-            fine, [1000 * creep.formulas(c)[1] for c in cases], ":", color=look("other")["color"]
+            fine,
+            [1000 * creep.formulas(c)[1] for c in cases],
+            ":",
+            color=look("other")["color"],
         )
         ax.set_xlabel(label)
     axes[-1].axvline(creep.LIGHT, **LINE)
-    axes[-1].annotate("mg = µN", (creep.LIGHT, 0.1), rotation=90, va="bottom", ha="right")
+    axes[-1].annotate(
+        "mg = µN", (creep.LIGHT, 0.1), rotation=90, va="bottom", ha="right"
+    )
     axes[0].set(ylabel="creep [mm/s]", ylim=(0, None))
     return figure

@@ -1,7 +1,8 @@
 """Specification of lesson L08: the episodes of a scripted expert, limits and tolerances.
 
-Pages, checks, verification and tests read the experiment here. The module is data and computes
-nothing. `parameters()` has the values that decide what runs; all other values only judge.
+Pages, checks, verification and tests read the experiment here. The module is data and
+computes nothing. `parameters()` has the values that decide what runs; all other values
+only judge.
 """
 
 from dataclasses import replace
@@ -46,7 +47,9 @@ def starts(
     Neighbours along x follow each other.
     """
     y, x = np.divmod(np.arange(cells**2), cells)
-    share = (np.column_stack([x, y]) + np.random.default_rng(seed).random((cells**2, 2))) / cells
+    share = (
+        np.column_stack([x, y]) + np.random.default_rng(seed).random((cells**2, 2))
+    ) / cells
     least, most = np.transpose(region)
     return read_only(least + share * (most - least))
 
@@ -62,10 +65,18 @@ STARTS = starts()
 
 # 256 episodes with a camera that is turned by 4°.
 ASKEW = PickCase(
-    shape="cylinder", size=(0.05, 0.05, 0.07), place=(0.5, -0.05, 0.0), kp=KP, kv=KV,
-    starts=STARTS, beliefs=turned(STARTS, 4.0), settings=reaching.ONE_START,
-    dt=0.05, substeps=10, steps=130,
-)  # fmt: skip
+    shape="cylinder",
+    size=(0.05, 0.05, 0.07),
+    place=(0.5, -0.05, 0.0),
+    kp=KP,
+    kv=KV,
+    starts=STARTS,
+    beliefs=turned(STARTS, 4.0),
+    settings=reaching.ONE_START,
+    dt=0.05,
+    substeps=10,
+    steps=130,
+)
 
 FEW = starts(8, seed=2)
 
@@ -77,7 +88,8 @@ ORDER = np.random.default_rng(3).permutation(len(STARTS))
 
 PERMUTED = replace(ASKEW, starts=STARTS[ORDER], beliefs=ASKEW.beliefs[ORDER])
 
-# Batches of the lecture; `again` repeats `exact`, `permuted` has the episodes of `askew`.
+# Batches of the lecture; `again` repeats `exact`, `permuted` has the episodes of
+# `askew`.
 BATCHES = {"exact": EXACT, "again": EXACT, "askew": ASKEW, "permuted": PERMUTED}
 
 # Batches that have metrics.
@@ -97,9 +109,16 @@ def one(row: int, of: PickCase = ASKEW) -> SceneCase:
     """Return the settings of one episode of a batch, at all its outer steps."""
     control = of.control
     return SceneCase(
-        shape=of.shape, size=of.size, place=(*of.starts[row].tolist(), 0.0), ball_radius=0.0,
-        kp=KP, kv=KV, steps=control.steps, dt=control.dt, substeps=control.substeps,
-    )  # fmt: skip
+        shape=of.shape,
+        size=of.size,
+        place=(*of.starts[row].tolist(), 0.0),
+        ball_radius=0.0,
+        kp=KP,
+        kv=KV,
+        steps=control.steps,
+        dt=control.dt,
+        substeps=control.substeps,
+    )
 
 
 EPISODES = {name: one(row) for name, row in SHOWN.items()}
@@ -123,12 +142,22 @@ CASES = {name: BATCHES[name] for name in COUNTED}
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 
 # Words of a reader for runs.
-LABELS = {"exact": "place known", "one": "one episode", "askew": "camera turned by 4°"} | {
-    "placed": "in the bowl", "slipped": "grip lost on the way", "tipped": "lost in the lift",
-    "pushed": "never held", "grid": "grid of errors", "plain": "plain",
-    "corrected": "sag corrected", "timed": "descent by a clock", "boxes": "yaw ignored",
-    "paced": "three speeds",
-} | creep.LABELS  # fmt: skip
+LABELS = (
+    {"exact": "place known", "one": "one episode", "askew": "camera turned by 4°"}
+    | {
+        "placed": "in the bowl",
+        "slipped": "grip lost on the way",
+        "tipped": "lost in the lift",
+        "pushed": "never held",
+        "grid": "grid of errors",
+        "plain": "plain",
+        "corrected": "sag corrected",
+        "timed": "descent by a clock",
+        "boxes": "yaw ignored",
+        "paced": "three speeds",
+    }
+    | creep.LABELS
+)
 
 # The mark of each case in the palette.
 CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=True))
@@ -136,9 +165,12 @@ CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=Tr
 # By unit, the difference below which two values are equal.
 RESOLUTION = {"1": 0.5, "m": 1e-4, "N": 0.05} | creep.RESOLUTION
 
-# Contacts make rounding grow: another version of the engine had three more successes of 256.
+# Contacts make rounding grow: another version of the engine had three more successes of
+# 256.
 TOLERANCES = check_spec.TOLERANCES | creep.TOLERANCES | {"off_centre": (0.02, 0.0)}
-TOLERANCES |= dict.fromkeys(("askew", "grid", "plain", "corrected", "timed", "boxes"), (20.0, 0.0))
+TOLERANCES |= dict.fromkeys(
+    ("askew", "grid", "plain", "corrected", "timed", "boxes"), (20.0, 0.0)
+)
 
 # No metric of two cases is compared.
 RELATIONS: tuple[Any, ...] = ()

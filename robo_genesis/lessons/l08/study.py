@@ -39,7 +39,11 @@ def episodes(
 
 def keep(page: Any, batch: Batch) -> None:
     """Give a page all states of the episodes that its replay or its schematic shows."""
-    rows = {name: row for name, (_, row) in spec.ROWS.items() if name in page.experiment.cases}
+    rows = {
+        name: row
+        for name, (_, row) in spec.ROWS.items()
+        if name in page.experiment.cases
+    }
     page.traces |= {name: batch.trace(row) for name, row in rows.items()}
 
 
@@ -55,7 +59,10 @@ def demonstrate(page: Any, world: World, batch: Batch) -> None:
     for row, name in enumerate(spec.FILMS if page.render else ()):
         pictures = []
         for k in range(len(trace.t)):
-            picking.pose(world, page.joints, *(of[k, row] for of in (
-                trace.q, trace.object_pos, trace.object_quat)))  # fmt: skip
+            picking.pose(
+                world,
+                page.joints,
+                *(of[k, row] for of in (trace.q, trace.object_pos, trace.object_quat)),
+            )
             pictures.append(film.shrunk(frames.capture(world.cameras["world"])))
         page.frames |= film.sheets(name, np.stack(pictures))

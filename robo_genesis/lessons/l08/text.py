@@ -39,16 +39,18 @@ def rate(successes: float, of: int) -> dict[str, str]:
     """Return a rate with its interval as columns of a table."""
     low, high = rates.wilson(successes, of)
     return {
-        "episodes": f"{successes:.0f} of {of}", "rate [%]": f"{100 * successes / of:.1f}",
+        "episodes": f"{successes:.0f} of {of}",
+        "rate [%]": f"{100 * successes / of:.1f}",
         "95 % interval [%]": f"{100 * low:.1f} to {100 * high:.1f}",
-    }  # fmt: skip
+    }
 
 
 def rate_table(run: Experiment, head: str) -> str:
     """Return the rates of a table of `COUNTED`, with their intervals."""
     return tables.markdown(
         [
-            {head: words} | rate(getattr(run.metrics[batch], name), len(run.cases[batch].starts))
+            {head: words}
+            | rate(getattr(run.metrics[batch], name), len(run.cases[batch].starts))
             for words, (batch, name) in COUNTED[head].items()
         ]
     )
@@ -60,8 +62,12 @@ def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
     left = len(spec.STARTS)
     for rung in metrics.RUNGS:
         exact, askew = (int(getattr(run.metrics[name], rung)) for name in spec.COUNTED)
-        yield {"rung": rung, spec.LABELS["exact"]: exact, spec.LABELS["askew"]: askew,
-               "of these fail here first": left - askew}  # fmt: skip
+        yield {
+            "rung": rung,
+            spec.LABELS["exact"]: exact,
+            spec.LABELS["askew"]: askew,
+            "of these fail here first": left - askew,
+        }
         left = askew
 
 
@@ -70,12 +76,19 @@ def pair_table(run: Experiment) -> Iterator[dict[str, Any]]:
     """Return the outcomes of both experts at the first starts, and p of the paired test."""
     for n in (16, 32, 64, edge.PAIRS):
         both, alone, worse, none = pairs(run, n)
-        plain, other = (rate(k, n)["95 % interval [%]"] for k in (both + worse, both + alone))
+        plain, other = (
+            rate(k, n)["95 % interval [%]"] for k in (both + worse, both + alone)
+        )
         yield {
-            "starts": n, "plain [%]": plain, "corrected [%]": other, "both": both,
-            "only corrected": alone, "only plain": worse, "none": none,
+            "starts": n,
+            "plain [%]": plain,
+            "corrected [%]": other,
+            "both": both,
+            "only corrected": alone,
+            "only plain": worse,
+            "none": none,
             "p": f"{rates.paired(alone, worse):.2g}",
-        }  # fmt: skip
+        }
 
 
 @tables.as_table
@@ -87,7 +100,9 @@ def side_table(run: Experiment) -> Iterator[dict[str, str]]:
         own = (along >= low) & (along < high)
         words = f"from {low:g} to {high:g}".replace("from -inf to", "below")
         yield {"noise [mm]": words.replace(" to inf", " on").replace("-", "−")} | {
-            spec.LABELS[n]: f"{metrics.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
+            spec.LABELS[
+                n
+            ]: f"{metrics.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
             for n in ("plain", "corrected")
         }
 
@@ -95,7 +110,9 @@ def side_table(run: Experiment) -> Iterator[dict[str, str]]:
 @tables.as_table
 def pace_table(run: Experiment) -> Iterator[dict[str, str]]:
     """Return how long cylinders are held at each speed of the arm, and how far they slide."""
-    found = (of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"]))
+    found = (
+        of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
+    )
     for stride, seconds, slid in zip(edge.STRIDES, *found, strict=True):
         yield {
             "command, at most [rad/s]": decimal(stride / DT, 1),
@@ -124,5 +141,7 @@ def time_of(run: Experiment, name: str) -> str:
     (scene,) = (one for one, cases in creep.SCENES.items() if name in cases)
     if scene not in creep.TIMED:
         return "–"
-    step, least, most = (f"{1000 * run.readings['step'][f'{of}_{scene}']:.1f}" for of in KEPT)
+    step, least, most = (
+        f"{1000 * run.readings['step'][f'{of}_{scene}']:.1f}" for of in KEPT
+    )
     return f"{step} ({least}–{most})"

@@ -18,12 +18,15 @@ from robo_genesis.pipeline.pages.store import Verify, failed_mark
 
 
 def verify_results(
-    verify: Verify, results: Iterable[PageResult], progress: Progress, stage: str = "verify"
+    verify: Verify,
+    results: Iterable[PageResult],
+    progress: Progress,
+    stage: str = "verify",
 ) -> tuple[dict[str, Any], list[str]]:
     """Verify the bundles of pages, and compare what the pages show with them.
 
-    A refused page of the store is marked, so that it is executed again. One that was executed now
-    is verified once more by the next build, because the rule may be wrong.
+    A refused page of the store is marked, so that it is executed again. One that was
+    executed now is verified once more by the next build, because the rule may be wrong.
 
     Args:
         verify: verifies one bundle.
@@ -45,10 +48,14 @@ def verify_results(
             require_contract(manifest.predicate, contract)
             compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
-            progress(stage, result.page.docname, f"accepted, {compared} outputs compared")
+            progress(
+                stage, result.page.docname, f"accepted, {compared} outputs compared"
+            )
         except BundleRefused as error:
             progress(stage, result.page.docname, f"refused: {error}")
-            line = f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
+            line = (
+                f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
+            )
             if result.status == "reused":
                 (result.folder / MARK).write_text(line, "utf8")
                 failed_mark(result.folder).touch()
@@ -60,7 +67,8 @@ def verify_results(
 def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     """Compare the outputs of a page with its bundle, and return their number.
 
-    A page is compared once: the result is kept for the record of its files with their digests, for
+    A page is compared once: the result is kept for the record of its files with their
+        digests, for
     the values that its cells name, and for the code that compares.
 
     Raises:
@@ -68,11 +76,15 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     """
     folder, bundle = result.folder, result.bundle
     assert bundle is not None
-    code = [path.read_text("utf8") for path in Tree().closure([shown.__name__]).values()]
+    code = [
+        path.read_text("utf8") for path in Tree().closure([shown.__name__]).values()
+    ]
     inputs = [(folder / RECORD).read_text("utf8"), declared(result.page.notebook), code]
 
     def compare() -> int:
-        return shown.require_shown(result.page, stored_notebook(result), bundle, manifest)
+        return shown.require_shown(
+            result.page, stored_notebook(result), bundle, manifest
+        )
 
     return int(derived_value("shown", inputs, compare))
 
@@ -92,4 +104,6 @@ def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
     mode = "camera" if camera else "skip"
     found = predicate.backend.requested
     expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
-    expect("frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy)
+    expect(
+        "frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy
+    )

@@ -10,7 +10,12 @@ from robo_genesis.core import project
 from robo_genesis.core.checks import FAILED
 from robo_genesis.core.comparison import HELD, outcome
 from robo_genesis.evidence import copies
-from robo_genesis.evidence.bundle import Manifest, by_full_name, read_manifest, read_metrics
+from robo_genesis.evidence.bundle import (
+    Manifest,
+    by_full_name,
+    read_manifest,
+    read_metrics,
+)
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
@@ -23,11 +28,13 @@ RECORDED_PAGE = "lab"
 # State by the code of a refusal; every other code is `refused`.
 STATE_OF_CODE = {"stale": "stale", "older-schema": "stale", "failed": "failed"}
 
-# States with which a build continues; a lesson shows the figures of a verified run only.
+# States with which a build continues; a lesson shows the figures of a verified run
+# only.
 PASSING = ("verified", "inconclusive", "missing", "stale")
 
 UNREADABLE = (
-    "The bundle was refused. The command make verify shows the found and the expected value."
+    "The bundle was refused. The command make verify shows the found and "
+    "the expected value."
 )
 
 # What a reader of the site learns about a refusal, by its code.
@@ -38,7 +45,8 @@ SUMMARIES = {
 
 RECORDED_WITH = "it was recorded with {name} {{}}; this site uses {{}}"
 
-# What a stale bundle's change is called, by the beginning of its path in the evidence key.
+# What a stale bundle's change is called, by the beginning of its path in the evidence
+# key.
 CHANGES = {
     "engine.version": ("engine", RECORDED_WITH.format(name="Genesis")),
     "engine.quadrants_version": ("engine", RECORDED_WITH.format(name="Quadrants")),
@@ -62,8 +70,8 @@ class Status:
     | `failed` | sound, but its own checks did not all pass |
     | `refused` | damaged, mislabelled, incomplete or of an unknown form |
 
-    `code` is the code of the refusal, None without one. `reason` names the found and the expected
-    value; `summary` is the short form for a reader of the site.
+    `code` is the code of the refusal, None without one. `reason` names the found and
+    the expected value; `summary` is the short form for a reader of the site.
     """
 
     state: str
@@ -87,7 +95,11 @@ class Status:
         by_make = predicate.command.startswith("make ")
         kernel = "Lab in a clean notebook kernel" if by_make else "Lab run by hand"
         passed = sum(check.passed for check in predicate.checks)
-        camera = f"camera frames by {render.renderer}" if render.mode == "camera" else "camera SKIP"
+        camera = (
+            f"camera frames by {render.renderer}"
+            if render.mode == "camera"
+            else "camera SKIP"
+        )
         more = f" {self.summary}" if self.summary else ""
         return (
             f"{kernel}, Genesis {predicate.engine.version}, "
@@ -110,17 +122,21 @@ def recorded_status(
         book: the folder of the pages.
         lesson: of the lab.
         backend: names the folder of the bundle.
-        labs: by lesson, the bundle of a build's lab, of which it must not be a copy, nor of the
-            recorded run on the CPU.
+        labs: by lesson, the bundle of a build's lab, of which it must not be a copy,
+            nor of the recorded run on the CPU.
         root: the checkout, for pin, lock and modules.
     """
-    absent = f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
+    absent = (
+        f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
+    )
     folder = book / "evidence" / lesson / backend
     if folder.parent.is_symlink():
         reason = f"evidence/{lesson} is a link, expected a folder. Replace the link."
         return Status("refused", backend, reason, None, "path", UNREADABLE)
     runs = [folder.with_name("cpu"), *([lab] if (lab := labs.get(lesson)) else [])]
-    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root, cpu_runs=runs)
+    return bundle_status(
+        folder, lesson, RECORDED_PAGE, absent, book, root=root, cpu_runs=runs
+    )
 
 
 def bundle_status(
@@ -143,7 +159,8 @@ def bundle_status(
         absent: the reason if there is no bundle.
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
-        cpu_runs: bundles of CPU runs, of which one of an accelerator must not be a copy.
+        cpu_runs: bundles of CPU runs, of which one of an accelerator must not be a
+            copy.
         once: see `verify_bundle`.
 
     Raises:
@@ -153,7 +170,9 @@ def bundle_status(
     if not os.path.lexists(folder):
         return Status("missing", backend, absent, None)
     try:
-        manifest = verify_bundle(folder, lesson=lesson, page=page, root=root, book=book, once=once)
+        manifest = verify_bundle(
+            folder, lesson=lesson, page=page, root=root, book=book, once=once
+        )
         copies.require_own_run(folder, cpu_runs)
     except BundleRefused as refusal:
         code, reason = refusal.code, str(refusal)
@@ -177,11 +196,15 @@ def bundle_status(
 def not_shown(folder: Path, manifest: Manifest) -> list[str]:
     """Return a line for each claimed ordering that an accepted bundle does not show."""
     numbers, lines = by_full_name(read_metrics(folder)), []
-    for claimed in specification(manifest.predicate.lesson, manifest.predicate.page).relations:
+    for claimed in specification(
+        manifest.predicate.lesson, manifest.predicate.page
+    ).relations:
         (first, second), metric, claim, _ = claimed
         held, values = outcome(numbers, claimed)
         if held != HELD:
-            lines.append(f"{metric} {claim} in {second} than in {first} is {held} ({values})")
+            lines.append(
+                f"{metric} {claim} in {second} than in {first} is {held} ({values})"
+            )
     return lines
 
 
@@ -198,7 +221,9 @@ def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
     return f"{text[0].upper()}{text[1:]}."
 
 
-def changes(manifest: Manifest, book: Path, root: Path = project.ROOT) -> list[tuple[str, str]]:
+def changes(
+    manifest: Manifest, book: Path, root: Path = project.ROOT
+) -> list[tuple[str, str]]:
     """Return (kind, words) of each change since a bundle was recorded; see `why_stale`.
 
     The kinds are those of `advice.BY_CHANGE`.
@@ -214,8 +239,8 @@ def changes(manifest: Manifest, book: Path, root: Path = project.ROOT) -> list[t
 def recorded_folders(book: Path) -> list[Path]:
     """Return the recorded bundles of a book: `evidence/<lesson>/<backend>`.
 
-    Anything with the name of a backend counts, so that a file or link is refused rather than
-    overlooked.
+    Anything with the name of a backend counts, so that a file or link is refused rather
+    than overlooked.
     """
     return [
         path
@@ -234,5 +259,6 @@ def refused_records(book: Path, labs: Mapping[str, Path | None]) -> list[str]:
     return [
         f"{path.relative_to(book)}: the recorded bundle is {status.state}: {status.reason}"
         for path in recorded_folders(book)
-        if (status := recorded_status(book, *path.parts[-2:], labs=labs)).state not in PASSING
+        if (status := recorded_status(book, *path.parts[-2:], labs=labs)).state
+        not in PASSING
     ]

@@ -30,7 +30,9 @@ from robo_genesis.sim import session
 # The files of a commit that decide `question`.
 DECIDING = ("book", "robo_genesis", "pyproject.toml", "requirements.lock")
 
-SQUASHED = "Merge the branch that recorded it without squashing, or record the bundle again."
+SQUASHED = (
+    "Merge the branch that recorded it without squashing, or record the bundle again."
+)
 
 
 def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
@@ -52,7 +54,9 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
     digest, imports = page_code(lesson, page, book)
     locked = project.locked_versions((root / "requirements.lock").read_text("utf8"))
     if "quadrants" not in locked:
-        raise project.ProjectError("requirements.lock lacks quadrants. Run `make lock`.")
+        raise project.ProjectError(
+            "requirements.lock lacks quadrants. Run `make lock`."
+        )
     return {
         "schema_version": bundle.SCHEMA_VERSION,
         "lesson": lesson,
@@ -64,7 +68,10 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
         },
         "seed": SEED,
         "parameters": json.loads(json.dumps(measuring.parameters())),
-        "source": {"page": digest, "modules": sources.measuring_modules(lesson, imports, root)},
+        "source": {
+            "page": digest,
+            "modules": sources.measuring_modules(lesson, imports, root),
+        },
     }
 
 
@@ -89,16 +96,20 @@ def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
 
 def _page_files(book: Path) -> list[Path]:
     """Return the table of contents and every file that may be a page, also in linked folders."""
-    found = glob("**/*.md", root_dir=book, recursive=True)  # follows links, skips hidden names
-    pages = sorted(name for name in found if not name.startswith(f"{project.PUBLISHED}{os.sep}"))
+    found = glob(
+        "**/*.md", root_dir=book, recursive=True
+    )  # follows links, skips hidden names
+    pages = sorted(
+        name for name in found if not name.startswith(f"{project.PUBLISHED}{os.sep}")
+    )
     return [*book.glob("_toc.yml"), *(book / name for name in pages)]
 
 
 def _read_codes(book: Path) -> bytes:
     """Return lesson, page, digest and imports of each page that declares a bundle, as JSON.
 
-    The reader of pages is imported here, because MyST-NB and Jupyter take longer to load than a
-    whole verification.
+    The reader of pages is imported here, because MyST-NB and Jupyter take longer to
+    load than a whole verification.
     """
     from robo_genesis.pipeline.pages import book as pages
 
@@ -107,7 +118,9 @@ def _read_codes(book: Path) -> bytes:
     return json.dumps(codes).encode()
 
 
-def changed(manifest: bundle.Manifest, root: Path, book: Path) -> list[tuple[str, Any, Any]] | None:
+def changed(
+    manifest: bundle.Manifest, root: Path, book: Path
+) -> list[tuple[str, Any, Any]] | None:
     """Return (path, recorded, current) of what differs; None if a bundle has the current key.
 
     Raises:
@@ -132,7 +145,8 @@ def check_current(manifest: bundle.Manifest, root: Path, book: Path) -> None:
     if found is None:
         return
     named = "; ".join(
-        f"{path} is {quoted(here)}, expected {quoted(there)}" for path, here, there in found
+        f"{path} is {quoted(here)}, expected {quoted(there)}"
+        for path, here, there in found
     )
     raise BundleRefused(
         "stale",
@@ -144,9 +158,9 @@ def check_current(manifest: bundle.Manifest, root: Path, book: Path) -> None:
 def check_commit(manifest: bundle.Manifest, root: Path) -> None:
     """Require that the commit that a bundle names is older than the run, and has its code.
 
-    Code of a tree with changes is that of no commit. A shallow clone lacks older commits, and each
-    clone those of a student's run on the CPU: these cannot be compared. A run of an accelerator is
-    recorded at a commit of this repository.
+    Code of a tree with changes is that of no commit. A shallow clone lacks older
+    commits, and each clone those of a student's run on the CPU: these cannot be
+    compared. A run of an accelerator is recorded at a commit of this repository.
 
     Raises:
         BundleRefused: `commit`; `time` for a run that ended before its commit.
@@ -164,11 +178,17 @@ def check_commit(manifest: bundle.Manifest, root: Path) -> None:
             raise unexpected("commit", MANIFEST, "git.commit", commit, known, SQUASHED)
         return
     if datetime.fromisoformat(predicate.ended) < datetime.fromisoformat(made) - CLOCKS:
-        raise unexpected("time", MANIFEST, "ended", predicate.ended, f"after its commit, {made}")
+        raise unexpected(
+            "time", MANIFEST, "ended", predicate.ended, f"after its commit, {made}"
+        )
     if not recorded.dirty:
         inputs = [commit, predicate.evidence_key]
-        found = derived_value("commit", inputs, lambda: _changed_since(commit, manifest, root))
-        expect("commit", MANIFEST, f"list of what differs from commit {commit}", found, [])
+        found = derived_value(
+            "commit", inputs, lambda: _changed_since(commit, manifest, root)
+        )
+        expect(
+            "commit", MANIFEST, f"list of what differs from commit {commit}", found, []
+        )
 
 
 def _changed_since(commit: str, manifest: bundle.Manifest, root: Path) -> list[str]:
@@ -181,7 +201,10 @@ def _changed_since(commit: str, manifest: bundle.Manifest, root: Path) -> list[s
         shutil.unpack_archive(archive, tree)
         try:
             return [path for path, *_ in changed(manifest, tree, tree / "book") or ()]
-        except (project.ProjectError, BundleRefused):  # today's code cannot read that tree
+        except (
+            project.ProjectError,
+            BundleRefused,
+        ):  # today's code cannot read that tree
             return []
 
 
@@ -197,7 +220,8 @@ def verify_bundle(
 ) -> bundle.Manifest:
     """Check one bundle against its files, the checkout and the pin.
 
-    Damaged and false bundles are refused before `stale`, so that a stale bundle is sound.
+    Damaged and false bundles are refused before `stale`, so that a stale bundle is
+    sound.
 
     Args:
         folder: the bundle, named after its actual backend.
@@ -206,15 +230,16 @@ def verify_bundle(
         page: the required page, None for any.
         root: the checkout, for pin, lock and modules.
         book: the folder of the pages.
-        once: whether metrics and checks are not computed again if they were accepted before, with
-            the same files of the bundle and the same code of the course. All other rules apply each
-            time, and a refusal is not kept.
+        once: whether metrics and checks are not computed again if they were accepted
+            before, with the same files of the bundle and the same code of the course.
+            All other rules apply each time, and a refusal is not kept.
 
     Returns:
         The accepted manifest; its checks have today's verdicts.
 
     Raises:
-        BundleRefused: with a code, and a message that names the found and the expected value.
+        BundleRefused: with a code, and a message that names the found and the expected
+            value.
         ProjectError, PageError: the checkout itself cannot be read.
     """
     present = bundle_files.scan(folder)
@@ -239,5 +264,9 @@ def verify_bundle(
 @lru_cache(maxsize=1)
 def _code() -> bytes:
     """Return the whole code of the course and its data files."""
-    files = sorted(path for path in (project.ROOT / "robo_genesis").rglob("*") if path.is_file())
-    return b"\0".join(path.read_bytes() for path in files if "__pycache__" not in path.parts)
+    files = sorted(
+        path for path in (project.ROOT / "robo_genesis").rglob("*") if path.is_file()
+    )
+    return b"\0".join(
+        path.read_bytes() for path in files if "__pycache__" not in path.parts
+    )

@@ -12,7 +12,9 @@ from robo_genesis.core.project import ProjectError, solutions_shown
 
 SITE_URL = "SITE_URL"
 # An address without a user's name, query, fragment and file of a page.
-FOLDER = re.compile(r"(?i)https?://[^\s/?#@\"<>\\]+(/[^\s?#\"<>\\]*)?(?<!\.html)(?<!\.htm)")
+FOLDER = re.compile(
+    r"(?i)https?://[^\s/?#@\"<>\\]+(/[^\s?#\"<>\\]*)?(?<!\.html)(?<!\.htm)"
+)
 
 
 def site_address(environment: Mapping[str, str] = os.environ) -> str | None:
@@ -43,11 +45,17 @@ def described(book: Path) -> list[str]:
     Args:
         book: the folder of the pages and their configuration.
     """
-    address = site_address() or f"none. {SITE_URL}=https://example.org/course/ gives one."
+    address = (
+        site_address() or f"none. {SITE_URL}=https://example.org/course/ gives one."
+    )
     if solutions_shown():
         return ["Solutions: shown. SOLUTIONS=0 leaves them out.", f"Address: {address}"]
-    config = yaml.safe_load((book / "_config.yml").read_text("utf8"))["sphinx"]["config"]
+    config = yaml.safe_load((book / "_config.yml").read_text("utf8"))["sphinx"][
+        "config"
+    ]
     lines = ["Solutions: left out.", f"Address: {address}"]
     if repository := config.get("course_repository"):
-        lines.append(f"Pages link to {repository}: whoever may read it finds the solutions there.")
+        lines.append(
+            f"Pages link to {repository}: whoever may read it finds the solutions there."
+        )
     return lines

@@ -11,7 +11,8 @@ from bs4 import BeautifulSoup
 from robo_genesis.core.files import derived, write_whole
 from robo_genesis.core.project import ProjectError
 
-# The archive's place in the site, for the link of the home page: unpack it, open `index.html`.
+# The archive's place in the site, for the link of the home page: unpack it, open
+# `index.html`.
 ARCHIVE = "offline/robo-genesis-site.zip"
 FOLDER = "robo-genesis-site"  # The folder that unpacking makes
 
@@ -19,7 +20,8 @@ FOLDER = "robo-genesis-site"  # The folder that unpacking makes
 OFFER = ".offline-offer"
 # Suffixes of files that compression makes no smaller.
 COMPRESSED = {".jpg", ".png", ".webp", ".whl", ".woff2", ".zip"}
-# The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 % smaller.
+# The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 %
+# smaller.
 LEVEL = 3
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
@@ -31,14 +33,17 @@ def pack(html: Path) -> Path:
     """Put the archive of a site into the site.
 
     Args:
-        html: the folder of the complete site, before its checks: they include links to the archive.
+        html: the folder of the complete site, before its checks: they include links to
+            the archive.
 
     Returns:
         The archive. The same files make the same bytes.
     """
     archive = html / ARCHIVE
     archive.parent.mkdir(exist_ok=True)
-    files = sorted(path for path in html.rglob("*") if path.is_file() and path != archive)
+    files = sorted(
+        path for path in html.rglob("*") if path.is_file() and path != archive
+    )
     names = (f"{FOLDER}/{path.relative_to(html).as_posix()}" for path in files)
     write_zip(archive, zip(names, map(content, files), strict=True))
     return archive
@@ -74,15 +79,19 @@ def write_sums(html: Path, known: Mapping[str, str]) -> Path:
     """Write the digests of a complete site into the site; return the file.
 
     Args:
-        html: the folder of the site with its archive. The archive holds no SHA256SUMS: its pages
-            differ from the site's by the offer of the archive, and its own digest is in the file.
+        html: the folder of the site with its archive. The archive holds no SHA256SUMS:
+            its pages differ from the site's by the offer of the archive, and its own
+            digest is in the file.
         known: digests by name of the file; the other files are read.
 
     Raises:
-        ProjectError: a file is a link, or its name has a character that `sha256sum` would escape.
+        ProjectError: a file is a link, or its name has a character that `sha256sum`
+            would escape.
     """
     lines = []
-    for path in sorted(html.rglob("*"), key=lambda path: path.relative_to(html).as_posix()):
+    for path in sorted(
+        html.rglob("*"), key=lambda path: path.relative_to(html).as_posix()
+    ):
         name = path.relative_to(html).as_posix()
         if path.is_symlink() or set(name) & set("\\\n\r"):
             raise ProjectError(

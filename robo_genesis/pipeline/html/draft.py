@@ -39,7 +39,9 @@ class Draft:
             OSError: a file or folder cannot be read.
         """
         names = self._names()
-        for name in self.digests.keys() - names:  # first: a folder may have taken a file's name
+        for name in (
+            self.digests.keys() - names
+        ):  # first: a folder may have taken a file's name
             (self.html / name).unlink()
             with suppress(OSError):  # the folder has other files
                 os.removedirs((self.html / name).parent)
@@ -62,7 +64,9 @@ class Draft:
 
         return {
             Path(here, file).relative_to(self.rendered).as_posix()
-            for here, _, files in os.walk(self.rendered, onerror=report, followlinks=True)
+            for here, _, files in os.walk(
+                self.rendered, onerror=report, followlinks=True
+            )
             for file in files
             if file != BUILD_INFO
         }

@@ -1,8 +1,8 @@
 """The folder in which a build keeps Sphinx's doctrees and pages, and what they were made from.
 
-The next build then reads and writes only the pages that changed. Everything else that decides a
-page empties the folder. A render that did not succeed leaves a folder without `STATE`, which the
-next build empties: a warning is given only when a page is read.
+The next build then reads and writes only the pages that changed. Everything else that
+decides a page empties the folder. A render that did not succeed leaves a folder without
+`STATE`, which the next build empties: a warning is given only when a page is read.
 """
 
 import json
@@ -21,8 +21,8 @@ from robo_genesis.pipeline.pages.folder import RECORD
 
 STATE = "state.json"
 
-# Sphinx writes this file if it found something that an incremental render could get wrong; see
-# `site.frame.incremental`.
+# Sphinx writes this file if it found something that an incremental render could get
+# wrong; see `site.frame.incremental`.
 UNFIT = "unfit"
 
 
@@ -39,15 +39,20 @@ def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
 
     Args:
         book: the folder of the pages.
-        built: the executed pages. Whether this build ran them is not in the state: no page shows
-            it.
+        built: the executed pages. Whether this build ran them is not in the state: no
+            page shows it.
         root: the checkout.
     """
     sources = page_files(book)
-    pages = {name: sha256(path.read_bytes()).hexdigest() for name, path in sources.items()}
+    pages = {
+        name: sha256(path.read_bytes()).hexdigest() for name, path in sources.items()
+    }
     # A page's record has digests of all files that its run left.
     records = [(folder / RECORD).read_bytes() for folder in built.folders.values()]
-    runs = [built.model_dump(mode="json"), [sha256(record).hexdigest() for record in records]]
+    runs = [
+        built.model_dump(mode="json"),
+        [sha256(record).hexdigest() for record in records],
+    ]
     others = up_to_date.other_inputs(root, book, set(sources.values()))
     return State(json_digest(others | {"runs": runs}), pages)
 
@@ -69,7 +74,9 @@ def prepare(folder: Path, state: State) -> bool:
     if not usable and folder.exists():
         shutil.rmtree(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    read_again(folder, {n for n, digest in state.pages.items() if last.pages.get(n) != digest})
+    read_again(
+        folder, {n for n, digest in state.pages.items() if last.pages.get(n) != digest}
+    )
     return usable
 
 

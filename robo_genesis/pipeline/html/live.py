@@ -1,7 +1,8 @@
 """`make live`: shows a book while it is written, and publishes nothing.
 
-A process with Sphinx loaded renders each changed page; see `sphinx_process`. The browser gets the
-last state without warnings and errors, and reloads when there is a new one.
+A process with Sphinx loaded renders each changed page; see `sphinx_process`. The
+browser gets the last state without warnings and errors, and reloads when there is a new
+one.
 """
 
 import asyncio
@@ -29,7 +30,8 @@ from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
 from robo_genesis.pipeline.pages.folder import PageRefused, read_record
 from robo_genesis.pipeline.pages.store import folders, places
 
-# Below the cache folder: what is rendered and shown, separate from the results of `make book`.
+# Below the cache folder: what is rendered and shown, separate from the results of `make
+# book`.
 FOLDER = "live"
 SHOWN_LINES = 2  # Lines of warnings and errors of Sphinx that the terminal shows
 
@@ -48,14 +50,20 @@ class LiveEndedError(project.ProjectError):
 class Live:
     """A book that is rendered again after each change.
 
-    One thread calls the methods; another may call `stop`. `execute` runs the pages that changed,
-    with `timeout` seconds for a cell; otherwise they are shown with the outputs of their last run.
+    One thread calls the methods; another may call `stop`. `execute` runs the pages that
+    changed, with `timeout` seconds for a cell; otherwise they are shown with the
+    outputs of their last run.
     """
 
     def __init__(
         self, book: Path, cache: Path, execute: bool = False, timeout: int = TIMEOUT
     ) -> None:
-        self.book, self.cache, self.execute, self.timeout = book, cache, execute, timeout
+        self.book, self.cache, self.execute, self.timeout = (
+            book,
+            cache,
+            execute,
+            timeout,
+        )
         self.folder = cache / FOLDER
         self.work, self.site = self.folder / "work", self.folder / "site" / "html"
         self.sphinx: SphinxProcess | None = None
@@ -85,7 +93,9 @@ class Live:
         """Render after some files changed; return whether there is a new state to show."""
         try:
             built = self.built(find_pages(self.book))
-            names = [name for name, path in page_files(self.book).items() if path in paths]
+            names = [
+                name for name, path in page_files(self.book).items() if path in paths
+            ]
             ended = self.sphinx is None or self.sphinx.process.poll() is not None
             if ended or len(names) < len(paths) or built != self.runs:
                 self.restart(built)
@@ -100,7 +110,10 @@ class Live:
             complaints = str(error).splitlines()
         if not self.is_ended:
             more = len(complaints) - SHOWN_LINES
-            say("\n".join(complaints[:SHOWN_LINES]) + (f"  (+{more} lines)" * (more > 0)))
+            say(
+                "\n".join(complaints[:SHOWN_LINES])
+                + (f"  (+{more} lines)" * (more > 0))
+            )
             say("The browser keeps the last good state.")
         return False
 
@@ -109,7 +122,9 @@ class Live:
         found, into = BuiltPages(), places(pages, self.cache / project.STORE)
         for page in pages:
             place = into[page.docname]  # another after any change that may help
-            told = place if self.execute else page.docname  # a failed run, or a run that is needed
+            told = (
+                place if self.execute else page.docname
+            )  # a failed run, or a run that is needed
             if place.is_dir():
                 self.reported -= {place, page.docname}
             elif told not in self.reported:
@@ -130,8 +145,9 @@ class Live:
 
         Args:
             page: the page now.
-            place: where the store has it if nothing changed. Without that folder, the newest run of
-                the same code cells is shown, and without such a run, the newest.
+            place: where the store has it if nothing changed. Without that folder, the
+                newest run of the same code cells is shown, and without such a run, the
+                newest.
         """
         digest = code_digest(page)
 
@@ -146,10 +162,15 @@ class Live:
         """Execute a page as `make execute` does, and report a failure."""
         say(f"{page.docname}: runs ...")
         command = [sys.executable, str(project.ROOT / "build_scripts" / "execute.py")]
-        command += [f"--book={self.book}", f"--cache={self.cache}", f"--timeout={self.timeout}"]
+        command += [
+            f"--book={self.book}",
+            f"--cache={self.cache}",
+            f"--timeout={self.timeout}",
+        ]
         running = subprocess.Popen(
             command,
-            env=os.environ | {"PAGE": page.docname, "TO": str(self.folder / "executed")},
+            env=os.environ
+            | {"PAGE": page.docname, "TO": str(self.folder / "executed")},
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
@@ -170,8 +191,12 @@ class Live:
         Raises:
             LiveEndedError: `stop` was called meanwhile; the process was ended.
         """
-        self.started = [other for other in self.started if other.poll() is None] + [process]
-        if self.is_ended:  # set before `stop` reads the list, so one of the two finds the process
+        self.started = [other for other in self.started if other.poll() is None] + [
+            process
+        ]
+        if (
+            self.is_ended
+        ):  # set before `stop` reads the list, so one of the two finds the process
             end(process)
             raise LiveEndedError
 
@@ -180,7 +205,10 @@ class Live:
         if self.sphinx is not None:
             end(self.sphinx.process)
         kept.prepare(self.work, kept.read_state(self.book, built))
-        self.runs, self.sphinx = built, SphinxProcess(self.book, self.folder / "sphinx.log")
+        self.runs, self.sphinx = (
+            built,
+            SphinxProcess(self.book, self.folder / "sphinx.log"),
+        )
         self.note(self.sphinx.process)
 
     def show(self) -> None:
@@ -193,7 +221,8 @@ class Live:
     def remember(self) -> None:
         """Mark the last state as good, so that a restart of Sphinx need not read all pages.
 
-        Nothing is marked if a file cannot be read, for example while an editor replaces it.
+        Nothing is marked if a file cannot be read, for example while an editor replaces
+        it.
         """
         with suppress(project.ProjectError, OSError, ValueError):
             state = kept.read_state(self.book, self.runs)
@@ -252,7 +281,8 @@ async def serve(live: Live, port: int) -> None:
         port: of localhost; 0 takes a free one.
 
     Raises:
-        ProjectError: the port cannot be used, or another process shows a book with this cache.
+        ProjectError: the port cannot be used, or another process shows a book with this
+            cache.
     """
     with locked(live.folder / "lock", "Another make live"):
         at = listen(port, live.site, LiveFile, (("/live-reload", State),))

@@ -15,15 +15,17 @@ from robo_genesis.pipeline.html.draft import Draft
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
     from robo_genesis.pipeline.pages.results import PageResult
 
-PAGES = "pages"  # The folder beside `evidence` with the bundles of other pages than labs
+PAGES = (
+    "pages"  # The folder beside `evidence` with the bundles of other pages than labs
+)
 
 
 def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
     """Copy the bundles of executed pages into a draft.
 
     Args:
-        draft: bundles of pages named `lab` become `evidence/<lesson>/<backend>` in its folder,
-            others `pages/<lesson>/<page>/<backend>`.
+        draft: bundles of pages named `lab` become `evidence/<lesson>/<backend>` in its
+            folder, others `pages/<lesson>/<page>/<backend>`.
         results: the executed pages.
 
     Raises:
@@ -33,10 +35,14 @@ def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
         if result.bundle is not None:
             lesson, page = str(result.page.lesson), str(result.page.page)
             own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
-            shutil.copytree(result.bundle, draft.folder.joinpath(*own, result.bundle.name))
+            shutil.copytree(
+                result.bundle, draft.folder.joinpath(*own, result.bundle.name)
+            )
 
 
-def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None) -> Path:
+def publish(
+    book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None
+) -> Path:
     """Replace the published site and its pages' bundles by new ones, which everybody may read.
 
     A web server has a user of its own, so the modes do not depend on the umask.
@@ -66,7 +72,8 @@ def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda fo
 def staging_folder(cache: Path) -> Iterator[Path]:
     """Make the folder in which one build renders; remove it in the end.
 
-    The build lock must be held: folders of killed builds are removed first. A process that a killed
+    The build lock must be held: folders of killed builds are removed first. A process
+        that a killed
     build left would write into its own folder and not into this one.
 
     Args:

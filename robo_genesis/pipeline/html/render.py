@@ -1,6 +1,7 @@
 """Render the book with Sphinx, from executed pages and nothing else.
 
-A kept folder saves Sphinx from reading and writing unchanged pages; the site is the same.
+A kept folder saves Sphinx from reading and writing unchanged pages; the site is the
+same.
 """
 
 import shutil
@@ -12,7 +13,8 @@ from robo_genesis.pipeline.html.kept import UNFIT, keep, prepare, read_state
 from robo_genesis.pipeline.html.sphinx_process import HTML, SphinxProcess
 from robo_genesis.pipeline.pages.built import BuiltPages
 
-# The folder of the states of runs. Every change on which they depend empties the kept folder.
+# The folder of the states of runs. Every change on which they depend empties the kept
+# folder.
 STATES = "states"
 
 
@@ -29,10 +31,10 @@ def render(
         sphinx: the process that has loaded the book's configuration.
         staging: folder for the result; its older content is removed.
         built: the executed pages.
-        kept_folder: has the doctrees, pages and states of runs of the last render, and gets those
-            of this one. None renders from nothing.
-        meanwhile: called once, while Sphinx works. What it raises is raised here; the next render
-            then starts from nothing.
+        kept_folder: has the doctrees, pages and states of runs of the last render, and
+            gets those of this one. None renders from nothing.
+        meanwhile: called once, while Sphinx works. What it raises is raised here; the
+            next render then starts from nothing.
 
     Returns:
         The site, complete but for archive and sums.
@@ -62,7 +64,9 @@ def _render_changes(
     was_kept = prepare(folder, before)
     kept = built.model_copy(update={"states": folder / STATES})
     sphinx.render(folder, kept, meanwhile)
-    if was_kept and (folder / UNFIT).exists():  # the state is gone, so this one starts from nothing
+    if (
+        was_kept and (folder / UNFIT).exists()
+    ):  # the state is gone, so this one starts from nothing
         with SphinxProcess(sphinx.book, sphinx.log) as another:
             return _render_changes(another, folder, built)
     keep(folder, before, read_state(sphinx.book, built))

@@ -1,9 +1,10 @@
 """The check of scripts: a page runs the scripts of the theme and of the course, and no others.
 
-A page reaches this check as it will be published. An inline script is known by its digest, a script
-file by its folder. Whatever else could run script is refused, whoever wrote it: handlers other than
-the theme's own, `javascript:` addresses, frames, plug-ins, refreshes. Two rules keep this parser
-and a browser's from disagreeing: each `<script` of the text is an element, and no tag contains `<`.
+A page reaches this check as it will be published. An inline script is known by its
+digest, a script file by its folder. Whatever else could run script is refused, whoever
+wrote it: handlers other than the theme's own, `javascript:` addresses, frames,
+plug-ins, refreshes. Two rules keep this parser and a browser's from disagreeing: each
+`<script` of the text is an element, and no tag contains `<`.
 """
 
 import hashlib
@@ -21,8 +22,9 @@ from bs4 import BeautifulSoup, Comment, Tag
 
 from robo_genesis.core.files import derived_value
 
-# The inline scripts of the theme and the course by the first 16 digits of their SHA-256. After an
-# upgrade of the theme, the check names the new ones: read them, and replace the old digests.
+# The inline scripts of the theme and the course by the first 16 digits of their
+# SHA-256. After an upgrade of the theme, the check names the new ones: read them, and
+# replace the old digests.
 KNOWN = {
     "b08c20317fb3eb19": "light or dark before the page shows; the second half is postprocess.py's",
     "d32b2040e449378e": "a word of sphinx-togglebutton",
@@ -40,15 +42,27 @@ PAGE_NAME = "DOCUMENTATION_OPTIONS.pagename = '{}';"
 HANDLERS = {("button", "onclick", "window.print()")}  # The theme's own event handlers
 
 # Elements that load another document, a plug-in, or change what addresses mean.
-REFUSED = {"applet", "base", "embed", "foreignobject", "frame", "frameset", "iframe", "object"}
+REFUSED = {
+    "applet",
+    "base",
+    "embed",
+    "foreignobject",
+    "frame",
+    "frameset",
+    "iframe",
+    "object",
+}
 
 VIEWER = "model-viewer.js"
 
-# The digest of `replay/model-viewer.js`, which `site/replay/viewer.py` makes of npm's file.
+# The digest of `replay/model-viewer.js`, which `site/replay/viewer.py` makes of npm's
+# file.
 VIEWER_SHA256 = "4ba524218533577b1acd9a14afa2a1584ad70290ffd15fe72a65f85aaa72a875"
 
 # The whole of a script that holds the model of a replay.
-MODEL = re.compile(rb'\(globalThis\.replayModels \?\?= \{\}\)\["[\w-]+"\] = "[A-Za-z0-9+/=]+";\n')
+MODEL = re.compile(
+    rb'\(globalThis\.replayModels \?\?= \{\}\)\["[\w-]+"\] = "[A-Za-z0-9+/=]+";\n'
+)
 
 # Attributes whose address the script of the replays adds to the page as a script.
 LOADED_BY_SCRIPTS = {"data-model", "data-viewer"}
@@ -61,12 +75,17 @@ DISGUISED = {".HTML", ".SVG", ".Html", ".Svg"}
 
 SCRIPT_TYPES = (None, "module", "application/json")
 RUNNING_ADDRESS = re.compile(
-    r"(?:javascript|vbscript):|^blob:|^data:(?!image/(?:png|jpeg);base64,)", re.IGNORECASE
+    r"(?:javascript|vbscript):|^blob:|^data:(?!image/(?:png|jpeg);base64,)",
+    re.IGNORECASE,
 )
-UNSEEN = re.compile(r"[\x00-\x20\x7f]+")  # Characters that browsers leave out of an address
+UNSEEN = re.compile(
+    r"[\x00-\x20\x7f]+"
+)  # Characters that browsers leave out of an address
 CONTENT = re.compile(r"<(script|style)\b.*?</\1\s*>", re.IGNORECASE | re.DOTALL)
 TAG_IN_TAG = re.compile(r"<[a-z/!?][^<>]*<", re.IGNORECASE)
-EARLY_END = re.compile(r"^-?>|--!>|<!--")  # What ends or begins a comment for some parsers only
+EARLY_END = re.compile(
+    r"^-?>|--!>|<!--"
+)  # What ends or begins a comment for some parsers only
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +138,9 @@ def file_problems(root: Path) -> Iterator[str]:
         name, suffix = path.relative_to(root).as_posix(), path.suffix.lower()
         if suffix == ".js" and not _known_file(root, path):
             yield f"{name}: the build writes no such script. Valid: scripts in book/_static/."
-        elif name != "sitemap.xml" and (suffix in OTHER_PAGES or path.suffix in DISGUISED):
+        elif name != "sitemap.xml" and (
+            suffix in OTHER_PAGES or path.suffix in DISGUISED
+        ):
             yield f"{name}: a browser may run script in it. Valid: pages .html, drawings .svg."
         elif suffix == ".svg":
             text = path.read_bytes()
@@ -130,14 +151,20 @@ def _script(page: Page, script: Tag) -> Iterator[str]:
     """Yield why a script element is not a known one."""
     kind, text = script.get("type"), script.string or script.get_text()
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
-    own_name = PAGE_NAME.format(page.path.relative_to(page.root).as_posix().removesuffix(".html"))
+    own_name = PAGE_NAME.format(
+        page.path.relative_to(page.root).as_posix().removesuffix(".html")
+    )
     if script.parent is not None and script.find_parent(["svg", "math"]):
         yield f"a script is inside a drawing or formula: {text[:80]!r}. Remove it."
-    elif kind not in SCRIPT_TYPES or (kind == "application/json" and script.has_attr("src")):
+    elif kind not in SCRIPT_TYPES or (
+        kind == "application/json" and script.has_attr("src")
+    ):
         yield f"a script has the type {kind!r}. Valid: none, 'module', or data as application/json."
     elif script.has_attr("src"):
         address = str(script["src"])
-        if text.strip() or not _is_script_of(page, address, "_static", "searchindex.js"):
+        if text.strip() or not _is_script_of(
+            page, address, "_static", "searchindex.js"
+        ):
             yield f"the script file {address!r} is not known. Valid: files in _static/."
     elif kind == "application/json":
         if "<" in text or not _is_json(text):

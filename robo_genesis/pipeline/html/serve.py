@@ -13,7 +13,8 @@ from robo_genesis.core.project import ProjectError
 class SiteFile(StaticFileHandler):
     """Sends files of a site, and no list of a folder or file to which a link leads out of it.
 
-    Browsers take each file for the type that it is sent with, and ask for it again each time.
+    Browsers take each file for the type that it is sent with, and ask for it again each
+    time.
     """
 
     def set_default_headers(self) -> None:
@@ -27,7 +28,10 @@ class SiteFile(StaticFileHandler):
 
 
 def listen(
-    port: int, site: Path, handler: type[SiteFile] = SiteFile, more: tuple[Any, ...] = ()
+    port: int,
+    site: Path,
+    handler: type[SiteFile] = SiteFile,
+    more: tuple[Any, ...] = (),
 ) -> int:
     """Serve a site as long as the running loop of asyncio; return the port.
 
@@ -45,6 +49,8 @@ def listen(
     try:
         sockets = bind_sockets(port, "127.0.0.1")
     except OSError as error:
-        raise ProjectError(f"PORT={port}: {error.strerror}. Choose a free port.") from error
+        raise ProjectError(
+            f"PORT={port}: {error.strerror}. Choose a free port."
+        ) from error
     server.add_sockets(sockets)
     return sockets[0].getsockname()[1]

@@ -1,8 +1,11 @@
 """A process that loads Sphinx while pages are executed or written, and then renders a book.
 
-Each line of its input is an order in JSON: the folder of the output, variables, the pages to read
-again, and whether it is the last. It answers with a line: the warnings and errors, none if the
-render succeeded, and whether it ends, because Sphinx cannot build again after an exception.
+Each line of its input is an order in JSON: the folder of the output, variables, the
+    pages to read
+again, and whether it is the last. It answers with a line: the warnings and errors, none
+    if the
+render succeeded, and whether it ends, because Sphinx cannot build again after an
+exception.
 """
 
 import importlib
@@ -29,7 +32,9 @@ if TYPE_CHECKING:  # the process is started before the packages of Jupyter are l
 LOG = "render.log"  # Its name in the folder of the caches
 HTML = "_build/html"  # The folder of the pages in the folder that Sphinx gets
 DOCTREES = "_build/.doctrees"
-EXECUTED = "executed-pages.json"  # The file in that folder which lists the executed pages
+EXECUTED = (
+    "executed-pages.json"  # The file in that folder which lists the executed pages
+)
 
 
 class SphinxProcess:
@@ -40,16 +45,20 @@ class SphinxProcess:
 
         Args:
             book: folder with `_config.yml`, `_toc.yml` and the pages.
-            log: file for the output of Sphinx; it is written only during a render, so that a
-                process which waits for nothing does not disturb another build.
+            log: file for the output of Sphinx; it is written only during a render, so
+                that a process which waits for nothing does not disturb another build.
         """
         self.book, self.log = book, log
         self.process = subprocess.Popen(
             [sys.executable, "-m", __name__, str(book), str(log)],
             env={**os.environ, "PYTHONPATH": str(ROOT)},
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-            start_new_session=True, preexec_fn=end_with_parent(),
-        )  # fmt: skip
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
+            preexec_fn=end_with_parent(),
+        )
 
     def __enter__(self) -> Self:
         return self
@@ -64,21 +73,27 @@ class SphinxProcess:
         self.process.wait()
 
     def render(
-        self, folder: Path, built: "BuiltPages", meanwhile: Callable[[], None] = lambda: None
+        self,
+        folder: Path,
+        built: "BuiltPages",
+        meanwhile: Callable[[], None] = lambda: None,
     ) -> None:
         """Render the book, and end the process.
 
         Args:
-            folder: of Sphinx's output; its folder `HTML` gets the pages. What is there is taken
-                for current, unless Sphinx finds it outdated.
+            folder: of Sphinx's output; its folder `HTML` gets the pages. What is there
+                is taken for current, unless Sphinx finds it outdated.
             built: the executed pages.
-            meanwhile: called while Sphinx works. What it raises ends Sphinx and is raised here.
+            meanwhile: called while Sphinx works. What it raises ends Sphinx and is
+                raised here.
 
         Raises:
             ProjectError: Sphinx failed or gave a warning.
         """
         self.order(folder, built.write(folder / EXECUTED), last=True)
-        with self:  # nothing writes into the folder after an interrupt, or a refusal meanwhile
+        with (
+            self
+        ):  # nothing writes into the folder after an interrupt, or a refusal meanwhile
             meanwhile()
             said = self.complaints()
             self.process.wait()
@@ -111,7 +126,9 @@ class SphinxProcess:
         """Wait for the end of the render; return its warnings and errors."""
         assert self.process.stdout is not None
         if not (line := self.process.stdout.readline()):
-            return [f"Sphinx stopped with {ended(self.process.wait())}. Log: {self.log}"]
+            return [
+                f"Sphinx stopped with {ended(self.process.wait())}. Log: {self.log}"
+            ]
         said, ends = json.loads(line)
         if ends:
             self.process.wait()
@@ -132,12 +149,22 @@ def load(book: Path, folder: Path, warnings: io.StringIO) -> Any:
     toc = str(book / "_toc.yml")
     given = {"external_toc_path": toc, "nitpicky": True, "latex_individualpages": False}
     config, _ = get_final_config(
-        user_yaml=book / "_config.yml", cli_config=given, sourcedir=book, use_external_toc=True
+        user_yaml=book / "_config.yml",
+        cli_config=given,
+        sourcedir=book,
+        use_external_toc=True,
     )
     return Sphinx(
-        book, None, folder / HTML, folder / DOCTREES, "html", config,
-        status=sys.stdout, warning=warnings, keep_going=True,
-    )  # fmt: skip
+        book,
+        None,
+        folder / HTML,
+        folder / DOCTREES,
+        "html",
+        config,
+        status=sys.stdout,
+        warning=warnings,
+        keep_going=True,
+    )
 
 
 def main() -> None:
@@ -171,10 +198,16 @@ def main() -> None:
             vars(app.env)["_pickled_doctree_cache"].clear()
             vars(app.env).pop("master_doctree", None)
             app.build()
-        except Exception as error:  # an extension, or the author's page, may raise anything
+        except (
+            Exception
+        ) as error:  # an extension, or the author's page, may raise anything
             traceback.print_exc()
             failed = [f"{type(error).__name__}: {error}"]
-        said = [line for line in ANSI.sub("", warnings.getvalue()).splitlines() if line.strip()]
+        said = [
+            line
+            for line in ANSI.sub("", warnings.getvalue()).splitlines()
+            if line.strip()
+        ]
         print(warnings.getvalue(), end="", flush=True)
         if said and app:  # what was not written correctly is written again
             vars(app.env).pop("robo_genesis_shown", None)
@@ -183,7 +216,9 @@ def main() -> None:
         print(json.dumps(answer), file=answers, flush=True)
         if failed or last:
             break
-    for child in multiprocessing.active_children():  # the sitemap's, which ends at a usual exit
+    for (
+        child
+    ) in multiprocessing.active_children():  # the sitemap's, which ends at a usual exit
         child.kill()
     os._exit(0)  # freeing all doctrees takes half a second
 

@@ -30,7 +30,9 @@ STRAY = (
     "no line of _toc.yml names this file, so no reader finds it. Add it there as a .md file, or "
     "move it out of the book or into a folder whose name begins with _."
 )
-TWICE = "the front matter declares {}/{}, as {} does. Declare another page of the lesson."
+TWICE = (
+    "the front matter declares {}/{}, as {} does. Declare another page of the lesson."
+)
 
 
 class PageError(ProjectError):
@@ -41,8 +43,9 @@ class PageError(ProjectError):
 class Page:
     """One page whose code cells are executed.
 
-    `lesson` and `page` come from the front matter's `robo_genesis: {lesson, page}`: such a page
-    runs the engine and must leave an evidence bundle. Both are None on other pages.
+    `lesson` and `page` come from the front matter's `robo_genesis: {lesson, page}`:
+    such a page runs the engine and must leave an evidence bundle. Both are None on
+    other pages.
     """
 
     docname: str
@@ -62,7 +65,9 @@ class Page:
 
         From there on it measures time: no other page is executed meanwhile.
         """
-        return next((n for n, tags in enumerate(self._tags(), 1) if "alone" in tags), None)
+        return next(
+            (n for n, tags in enumerate(self._tags(), 1) if "alone" in tags), None
+        )
 
     @property
     def own_kernels(self) -> bool:
@@ -91,15 +96,21 @@ def find_pages(book: Path) -> list[Page]:
         The MyST text notebooks among the pages that the table of contents names.
 
     Raises:
-        PageError: naming file, line and cure of each problem of the book's and the package's files.
+        PageError: naming file, line and cure of each problem of the book's and the
+            package's files.
     """
     own = sorted(files_below(book, (PUBLISHED, f".{PUBLISHED}"), NO_SOURCE))
-    others = [*files_below(ROOT / PACKAGE, left_out=NO_SOURCE), *(ROOT / name for name in FILES)]
+    others = [
+        *files_below(ROOT / PACKAGE, left_out=NO_SOURCE),
+        *(ROOT / name for name in FILES),
+    ]
     _refuse(_said(path, rules.file_problems(path)) for path in [*own, *others])
     files = page_files(book)
     found = [_said(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)]
     sheets = [path for path in own if path.name == WORK_SHEET]
-    found += [_said(path, rules.sheet_problems(path.read_text("utf8"))) for path in sheets]
+    found += [
+        _said(path, rules.sheet_problems(path.read_text("utf8"))) for path in sheets
+    ]
     pages: list[Page] = []
     measuring: dict[tuple[str | None, str | None], Path] = {}
     for name, path in files.items():
@@ -123,7 +134,9 @@ def find_pages(book: Path) -> list[Page]:
 def _read(path: Path, name: str, toc: Path) -> NotebookNode | None:
     """Return a page that has code cells; raise PageError with all that it may not contain."""
     if ".." in name or not path.is_file():
-        raise PageError(_said(toc, [(_line_of(name, toc), f"there is no {path}. {CREATE}")]))
+        raise PageError(
+            _said(toc, [(_line_of(name, toc), f"there is no {path}. {CREATE}")])
+        )
     notebook = read_notebook(path)
     _refuse([_said(path, rules.page_problems(path.read_text("utf8"), notebook))])
     return notebook
@@ -135,9 +148,13 @@ def page_files(book: Path) -> dict[str, Path]:
     try:
         site_map = parse_toc_yaml(toc)
     except (OSError, ValueError, yaml.YAMLError, MalformedError) as error:
-        raise PageError(_said(toc, [(1, f"it cannot be read: {error}\nCorrect it.")])) from error
+        raise PageError(
+            _said(toc, [(1, f"it cannot be read: {error}\nCorrect it.")])
+        ) from error
     if site_map.globs():
-        raise PageError(f"_toc.yml uses globs {sorted(site_map.globs())}. List every page instead.")
+        raise PageError(
+            f"_toc.yml uses globs {sorted(site_map.globs())}. List every page instead."
+        )
     names = [str(docname).removesuffix(".md") for docname in site_map]
     return {name: book / f"{name}.md" for name in names}
 
@@ -185,7 +202,8 @@ def read_notebook(path: Path) -> NotebookNode | None:
     """
     try:
         text = path.read_text("utf8")
-        # Parse first: MyST-NB mistakes a notebook with a broken front matter for plain text.
+        # Parse first: MyST-NB mistakes a notebook with a broken front matter for plain
+        # text.
         notebook = deepcopy(_parsed(path, text)) if text.startswith("---") else None
     except Exception as error:  # the parser raises exceptions of many types
         why = f"the page cannot be read: {error}\nFront matter and options of cells are YAML."
@@ -203,7 +221,9 @@ def _is_notebook(text: str) -> bool:
 def _parsed(path: Path, text: str) -> NotebookNode:
     """Return a page as a notebook; a build needs each page several times, in two processes."""
     read = derived(
-        "parsed", [text.encode()], lambda: pickle.dumps(myst_nb_reader_plugin(str(path)))
+        "parsed",
+        [text.encode()],
+        lambda: pickle.dumps(myst_nb_reader_plugin(str(path))),
     )
     return cast(NotebookNode, pickle.loads(read))
 

@@ -2,11 +2,13 @@
 
 Three rules, from the strongest:
 
-1. Each `page.show(function, ...)` leaves one output, and the metadata of the output name the
-   function. The same function, called on the experiment of the bundle with the accepted metrics,
-   must give the same output.
-2. A number that a cell prints, and names with the option `prints`, is that value of the bundle.
-3. Every output, also of these two kinds, is the one in the bundle's `printed.json`. Nothing else
+1. Each `page.show(function, ...)` leaves one output, and the metadata of the output
+name the
+   function. The same function, called on the experiment of the bundle with the accepted
+   metrics, must give the same output.
+2. A number that a cell prints, and names with the option `prints`, is that value of the
+bundle. 3. Every output, also of these two kinds, is the one in the bundle's
+`printed.json`. Nothing else
    confirms other outputs, and the site says below them that the run printed them.
 """
 
@@ -29,14 +31,16 @@ from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.pages import printed
 from robo_genesis.pipeline.pages.book import Page
 
-# The calls that show a measured output; pages give this name to the result of `rg.open_page`.
+# The calls that show a measured output; pages give this name to the result of
+# `rg.open_page`.
 SHOW, FINISH = "page.show", "page.finish"
 
 AGAIN = "The page was edited, or the environment moved: `make clean book` executes the page again."
 ONCE = "Call page.show once for each output, outside of loops and conditions."
 BOUNDARY = 60  # Characters that a message shows on both sides of a difference
 
-# Difference up to which coordinates count as equal [px]: other processors round differently.
+# Difference up to which coordinates count as equal [px]: other processors round
+# differently.
 NEAR = 0.1
 # The coordinates of a drawing.
 PLACE = re.compile(
@@ -48,12 +52,14 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 NAME = re.compile(r'(\sid="|url\(#|href="#)([^")]*)')
 
 
-# One call that shows an output: its `function`, the name, and its `arguments`, a list; so is the
-# metadata of the output.
+# One call that shows an output: its `function`, the name, and its `arguments`, a list;
+# so is the metadata of the output.
 Shown = dict[str, Any]
 
 
-def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Manifest) -> int:
+def require_shown(
+    page: Page, executed: NotebookNode, folder: Path, manifest: Manifest
+) -> int:
     """Require that all outputs of an executed page are those of its bundle.
 
     Args:
@@ -81,7 +87,9 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
             _compare(place, call, output, experiment)
             compared += 1
         if values and (reason := printed.contradiction(values, cell, folder)):
-            raise BundleRefused("shown", f"{place}: {reason}. Correct the option or the cell.")
+            raise BundleRefused(
+                "shown", f"{place}: {reason}. Correct the option or the cell."
+            )
     require_printed(page.docname, executed, folder)
     return compared
 
@@ -90,15 +98,18 @@ def require_printed(docname: str, executed: NotebookNode, folder: Path) -> None:
     """Require that the outputs of an executed page are those that its bundle has kept.
 
     Raises:
-        BundleRefused: `shown`, naming page, cell, output and place of the first difference;
-            `missing-file` if the build did not write the bundle's last file.
+        BundleRefused: `shown`, naming page, cell, output and place of the first
+            difference; `missing-file` if the build did not write the bundle's last
+            file.
     """
     found, kept = printed.outputs_of(executed), read_printed(folder)
     for cell, outputs in enumerate(zip_longest(found, kept, fillvalue=()), start=1):
         for number, (here, there) in enumerate(zip_longest(*outputs), start=1):
             if here != there:
                 what = difference_of(str(here), str(there), False)
-                raise _refused(f"{docname}, code cell {cell}, output {number} of its run: {what}.")
+                raise _refused(
+                    f"{docname}, code cell {cell}, output {number} of its run: {what}."
+                )
 
 
 def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
@@ -109,7 +120,9 @@ def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
     recorded = read_metrics(folder)
     run = from_bundle(folder, manifest, recorded)
     metrics = {
-        case: type(found)(**{name: recorded[case][name].value for name in found.about("unit")})
+        case: type(found)(
+            **{name: recorded[case][name].value for name in found.about("unit")}
+        )
         for case, found in run.metrics.items()
     }
     return replace(run, accepted=metrics)
@@ -120,7 +133,11 @@ def calls_of(page: Page) -> list[list[ast.Call]]:
     found = []
     for source in page.code.sources:
         try:
-            nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
+            nodes = [
+                node
+                for node in ast.walk(ast.parse(source))
+                if isinstance(node, ast.Call)
+            ]
         except SyntaxError:  # an expected error of the page
             nodes = []
         calls = (node for node in nodes if ast.unparse(node.func) in (SHOW, FINISH))
@@ -133,16 +150,25 @@ def names(call: ast.Call, says: Shown) -> bool:
     if ast.unparse(call.func) == FINISH:
         return says == {"function": shown.CHECKS, "arguments": []}
     name, *arguments = map(ast.unparse, [*call.args, *call.keywords] or [call.func])
-    written = {"function": says.get("function"), "arguments": [*map(ast.literal_eval, arguments)]}
+    written = {
+        "function": says.get("function"),
+        "arguments": [*map(ast.literal_eval, arguments)],
+    }
     return written == says and f".{says['function']}".endswith(f".{name}")
 
 
 def marked(cell: NotebookNode) -> list[NotebookNode]:
     """Return the outputs of an executed cell whose metadata name a function."""
-    return [out for out in cell.get("outputs", []) if shown.METADATA in out.get("metadata", {})]
+    return [
+        out
+        for out in cell.get("outputs", [])
+        if shown.METADATA in out.get("metadata", {})
+    ]
 
 
-def _compare(place: str, call: ast.Call, output: NotebookNode, experiment: Experiment) -> None:
+def _compare(
+    place: str, call: ast.Call, output: NotebookNode, experiment: Experiment
+) -> None:
     """Raise BundleRefused unless an output is that of its call."""
     says = output.metadata[shown.METADATA]
     try:
@@ -157,21 +183,41 @@ def _compare(place: str, call: ast.Call, output: NotebookNode, experiment: Exper
     place = f"{place}, {says['function']}"
     try:
         valid = shown.mime_data(says["function"], experiment, says["arguments"])
-    except (shown.ShownError, LookupError, ValueError, ArithmeticError, TypeError) as error:
-        raise _refused(f"{place}: it cannot be called on the bundle: {error!r}") from error
+    except (
+        shown.ShownError,
+        LookupError,
+        ValueError,
+        ArithmeticError,
+        TypeError,
+    ) as error:
+        raise _refused(
+            f"{place}: it cannot be called on the bundle: {error!r}"
+        ) from error
     data: Mapping[str, Any] = output.get("data", {})
-    expect("shown", place, "type of the output", output.output_type, "display_data", AGAIN)
-    expect("shown", place, "list of kinds of the output", sorted(data), sorted(valid), AGAIN)
+    expect(
+        "shown", place, "type of the output", output.output_type, "display_data", AGAIN
+    )
+    expect(
+        "shown",
+        place,
+        "list of kinds of the output",
+        sorted(data),
+        sorted(valid),
+        AGAIN,
+    )
     for kind, text in valid.items():
         if difference := difference_of(str(data[kind]), text, kind == shown.DRAWING):
-            raise _refused(f"{place}: the page shows another {kind} than the bundle: {difference}.")
+            raise _refused(
+                f"{place}: the page shows another {kind} than the bundle: {difference}."
+            )
 
 
 def difference_of(found: str, valid: str, drawn: bool) -> str | None:
     """Return the first difference of two texts or two drawings, None if they count as equal.
 
-    Drawings are equal if their texts are, except for the choice of names, and for coordinates that
-    differ by less than `NEAR`. They are compared as texts: no parser reads what a page contains.
+    Drawings are equal if their texts are, except for the choice of names, and for
+    coordinates that differ by less than `NEAR`. They are compared as texts: no parser
+    reads what a page contains.
 
     Args:
         found: what a page shows.
@@ -184,8 +230,14 @@ def difference_of(found: str, valid: str, drawn: bool) -> str | None:
         found, at = _without_places(found)
         valid, expected = _without_places(valid)
         if found == valid and len(at) == len(expected):
-            far = (pair for pair in zip(at, expected, strict=True) if abs(pair[0] - pair[1]) > NEAR)
-            return next((f"found the coordinate {a}, expected {b}" for a, b in far), None)
+            far = (
+                pair
+                for pair in zip(at, expected, strict=True)
+                if abs(pair[0] - pair[1]) > NEAR
+            )
+            return next(
+                (f"found the coordinate {a}, expected {b}" for a, b in far), None
+            )
     pairs = enumerate(zip(found, valid, strict=False))
     start = next((k for k, (a, b) in pairs if a != b), min(len(found), len(valid)))
     part = slice(max(0, start - BOUNDARY), start + BOUNDARY)
@@ -196,7 +248,9 @@ def _without_places(svg: str) -> tuple[str, list[float]]:
     """Return a drawing without coordinates, its names numbered by their first use; coordinates."""
     names: dict[str, int] = {}
     numbered = NAME.sub(lambda m: f"{m[1]}{names.setdefault(m[2], len(names))}", svg)
-    places = [float(n) for place in PLACE.findall(numbered) for n in NUMBER.findall(place)]
+    places = [
+        float(n) for place in PLACE.findall(numbered) for n in NUMBER.findall(place)
+    ]
     return PLACE.sub(lambda m: NUMBER.sub("#", m[0]), numbered), places
 
 

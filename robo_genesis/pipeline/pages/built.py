@@ -16,17 +16,18 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, OUTPUTS, Record, read_record
 from robo_genesis.pipeline.pages.results import PageResult
 
-# A variable: if it is set, a page whose code changed is shown with the outputs of its last run.
+# A variable: if it is set, a page whose code changed is shown with the outputs of its
+# last run.
 LAST_OUTPUTS = "ROBO_GENESIS_LAST_OUTPUTS"
 
 
 class BuiltPages(Strict):
     """A file that the environment names.
 
-    `folders` has the folder in the store of each executed page by name, and `outputs` the files
-    that the run of each measuring page left, by `lesson/page`. `states` is a folder that keeps the
-    states of runs for the next render; None keeps nothing. `agreed` is what a second execution of
-    the pages showed; see `pipeline.agreement`.
+    `folders` has the folder in the store of each executed page by name, and `outputs`
+    the files that the run of each measuring page left, by `lesson/page`. `states` is a
+    folder that keeps the states of runs for the next render; None keeps nothing.
+    `agreed` is what a second execution of the pages showed; see `pipeline.agreement`.
     """
 
     folders: dict[str, Path] = Field(default_factory=dict)
@@ -64,8 +65,8 @@ def executed_notebook(docname: str, page: NotebookNode) -> NotebookNode:
 
     Args:
         docname: the name of the page.
-        page: the page as a notebook. Its code cells differ from those of the run only if it is
-            shown with the outputs of its last run.
+        page: the page as a notebook. Its code cells differ from those of the run only
+            if it is shown with the outputs of its last run.
 
     Raises:
         KeyError: the page is not executed.
@@ -82,16 +83,20 @@ def with_last_outputs(
 ) -> list[NotebookNode]:
     """Return code cells with the outputs of a run of other cells.
 
-    A cell gets the outputs of the cell with equal source. Changed cells get the outputs of those in
-    their places, if there are as many. Others get none.
+    A cell gets the outputs of the cell with equal source. Changed cells get the outputs
+    of those in their places, if there are as many. Others get none.
 
     Args:
         cells: of the page now.
         ran: the cells of the run.
     """
-    found = [NotebookNode(cell | {"outputs": [], "execution_count": None}) for cell in cells]
+    found = [
+        NotebookNode(cell | {"outputs": [], "execution_count": None}) for cell in cells
+    ]
     before, now = ([cell.source for cell in some] for some in (ran, cells))
-    for _, begin, end, at, to in SequenceMatcher(None, before, now, False).get_opcodes():
+    for _, begin, end, at, to in SequenceMatcher(
+        None, before, now, False
+    ).get_opcodes():
         if end - begin == to - at:
             for cell, old in zip(found[at:to], ran[begin:end], strict=True):
                 cell.outputs, cell.execution_count = old.outputs, old.execution_count
@@ -113,14 +118,17 @@ def page_record(docname: str) -> Record:
 def measuring_page(docname: str) -> str:
     """Return the lesson and page of an executed page: `l04/lab`, or a name without a bundle."""
     pages, folder = built_pages(), built_pages().folders.get(docname)
-    return next((n for n, left in pages.outputs.items() if folder in left.parents), docname)
+    return next(
+        (n for n, left in pages.outputs.items() if folder in left.parents), docname
+    )
 
 
 def page_outputs(lesson_page: str) -> Path:
     """Return the folder of what a page's run left, with the bundle in `<backend>/`.
 
     Args:
-        lesson_page: `l04/lab`. Without such a page in this build, the folder does not exist.
+        lesson_page: `l04/lab`. Without such a page in this build, the folder does not
+            exist.
     """
     absent = Path(os.environ[EXECUTED_PAGES]).with_name("not executed") / lesson_page
     return built_pages().outputs.get(lesson_page, absent)

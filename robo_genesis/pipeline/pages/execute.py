@@ -18,7 +18,10 @@ from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import TIMEOUT
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
-from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
+from robo_genesis.pipeline.pages.kernels import (
+    interrupts_blocked,
+    kill_with_descendants,
+)
 from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
 from robo_genesis.pipeline.pages.store import failed_mark, last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
@@ -28,9 +31,10 @@ from robo_genesis.pipeline.pages.worker import PageRun, work
 class Underway:
     """One page that runs.
 
-    `cells` is the number of its code cells and `cell` the one that runs, from 1; 0 while the kernel
-    starts. It `waits` before its first cell that must run alone, and is `alone` from there on.
-    `last` is its last stored record, `log` the engine's log. Times are of the monotonic clock [s].
+    `cells` is the number of its code cells and `cell` the one that runs, from 1; 0
+    while the kernel starts. It `waits` before its first cell that must run alone, and
+    is `alone` from there on. `last` is its last stored record, `log` the engine's log.
+    Times are of the monotonic clock [s].
     """
 
     name: str
@@ -54,7 +58,11 @@ class Underway:
         cell += " waits" if self.waits else ""
         elapsed = now - self.begin
         left = self.last.seconds - elapsed if self.last else 0.0
-        rest = f", ~{left:.0f} s left" if left > 0 else ", longer than last time" * (left < 0)
+        rest = (
+            f", ~{left:.0f} s left"
+            if left > 0
+            else ", longer than last time" * (left < 0)
+        )
         return f"{cell}, {elapsed:.0f} s{rest}"
 
 
@@ -62,7 +70,9 @@ class Lines:
     """Reports pages as lines: each start and end, and now and then how far the pages are."""
 
     def __init__(
-        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = 30.0
+        self,
+        say: Callable[[str, str], None] = lambda what, event: None,
+        every: float = 30.0,
     ) -> None:
         """Report to `say`, which takes a page's name and an event, or the running pages and "".
 
@@ -89,7 +99,8 @@ class Lines:
             self.say(f"{len(pages)} running: {states}", "")
 
 
-# The workers that run: process, run and how far it is, by the connection of its messages.
+# The workers that run: process, run and how far it is, by the connection of its
+# messages.
 Running = dict[Any, tuple[Any, PageRun, Underway]]
 
 
@@ -107,27 +118,29 @@ def execute_pages(
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
 
-    Those whose last run with this engine failed start first, then the longest. From its first cell
-    tagged `alone`, a page runs when no other does; it starts last. If no kernel is compiled yet,
-    the first lab starts first, and until it ends only pages with kernels of their own run beside
-    it: the engine saves kernels when a page ends, so others would compile the same ones.
+    Those whose last run with this engine failed start first, then the longest. From its
+    first cell tagged `alone`, a page runs when no other does; it starts last. If no
+    kernel is compiled yet, the first lab starts first, and until it ends only pages
+    with kernels of their own run beside it: the engine saves kernels when a page ends,
+    so others would compile the same ones.
 
-    A `multiprocessing.Pool` waits for ever when a worker is killed, and leaves kernels on Ctrl-C.
+    A `multiprocessing.Pool` waits for ever when a worker is killed, and leaves kernels
+    on Ctrl-C.
 
     Args:
         pages: the pages of the book.
-        places: where the store has each page, or will have it; see `page_store.places`. A page
-            that fails leaves its place as it is.
+        places: where the store has each page, or will have it; see `page_store.places`.
+            A page that fails leaves its place as it is.
         reuse: whether a page that the store has is not executed again.
         jobs: how many pages run at once.
         timeout: seconds for one cell; a page's front matter may set another.
         environment: variables for the kernels.
-        logs: the folder that keeps, for each page, a file with all that its last run wrote. By
-            default it is not kept.
-        report: gets each event, and shows how far the running pages are; by default nothing
-            is shown.
-        accept: called once for each page that was executed and did not fail, after the next page
-            started; returns whether the page counts as one that did not fail.
+        logs: the folder that keeps, for each page, a file with all that its last run
+            wrote. By default it is not kept.
+        report: gets each event, and shows how far the running pages are; by default
+            nothing is shown.
+        accept: called once for each page that was executed and did not fail, after the
+            next page started; returns whether the page counts as one that did not fail.
 
     Returns:
         One result for each page, in the order of `pages`.
@@ -137,16 +150,29 @@ def execute_pages(
     """
     report, environment = report or Lines(), environment or {}
     results = _reused(pages, places, report) if reuse else {}
-    last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
+    last = {
+        page.docname: last_record(places[page.docname].parents[1], page)
+        for page in pages
+    }
     waiting = [page for page in pages if page.docname not in results]
-    failed = [page.docname for page in waiting if failed_mark(places[page.docname]).exists()]
+    failed = [
+        page.docname for page in waiting if failed_mark(places[page.docname]).exists()
+    ]
     labs = [page for page in waiting if page.page == "lab" and not page.alone]
     waiting = in_order(waiting, last, failed)
     first = []
     if labs and project.nothing_compiled(environment):
-        first = [labs[0], *(page for page in waiting if page.own_kernels and not page.alone)]
-        waiting.sort(key=lambda page: first.index(page) if page in first else len(first))
-    for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
+        first = [
+            labs[0],
+            *(page for page in waiting if page.own_kernels and not page.alone),
+        ]
+        waiting.sort(
+            key=lambda page: first.index(page) if page in first else len(first)
+        )
+    for folder in [
+        *(places[page.docname].parent for page in waiting),
+        *([logs] if logs else []),
+    ]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
     ended: list[PageResult] = []
@@ -154,11 +180,17 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running or ended:
-                while waiting and (waiting[0] in first or not first) and _room(running, jobs):
+                while (
+                    waiting
+                    and (waiting[0] in first or not first)
+                    and _room(running, jobs)
+                ):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
-                    run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
+                    run = PageRun(
+                        page, uuid.uuid4().hex, place, own, log, timeout, environment
+                    )
                     before, kept = last[page.docname], log if logs else None
                     underway = Underway(page.docname, cells, last=before, log=kept)
                     report.say(page.docname, underway.started())
@@ -172,7 +204,9 @@ def execute_pages(
                 ended = []
                 if not running:
                     continue
-                _let_one_go_on(running)  # after `accept`, which would disturb what it measures
+                _let_one_go_on(
+                    running
+                )  # after `accept`, which would disturb what it measures
                 for connection in wait(list(running), timeout=report.pause()):
                     result = _receive(connection, *running[connection])
                     if result is None:
@@ -188,7 +222,9 @@ def execute_pages(
     return [results[page.docname] for page in pages]
 
 
-def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -> dict[str, str]:
+def kernel_environment(
+    root: Path, cache: Path, command: str, **settings: str
+) -> dict[str, str]:
     """Return the variables that every kernel of a command gets.
 
     Args:
@@ -205,14 +241,16 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
 
 
 def in_order(
-    pages: Iterable[Page], last: Mapping[str, Record | None], failed: Collection[str] = ()
+    pages: Iterable[Page],
+    last: Mapping[str, Record | None],
+    failed: Collection[str] = (),
 ) -> list[Page]:
     """Return pages in the order in which they start: the longest first, those with `alone` last.
 
     Args:
         pages: the pages to execute.
-        last: the record of the last execution of each page, by name. Pages without one come before
-            the others, and among them those with the most cells.
+        last: the record of the last execution of each page, by name. Pages without one
+            come before the others, and among them those with the most cells.
         failed: the names of pages that come before all others.
     """
     seconds = {name: record.seconds for name, record in last.items() if record}
@@ -231,7 +269,9 @@ def in_order(
 
 def _room(running: Running, jobs: int) -> bool:
     """Whether one more page may run: fewer than `jobs` do, and none is alone or waits for that."""
-    return len(running) < jobs and not any(underway.alone for *_, underway in running.values())
+    return len(running) < jobs and not any(
+        underway.alone for *_, underway in running.values()
+    )
 
 
 def _let_one_go_on(running: Running) -> None:
@@ -253,7 +293,9 @@ def _reused(
             result = stored_result(page, places[page.docname])
         except PageRefused as refused:
             reason = str(refused).splitlines()[0]
-            report.say(page.docname, f"its stored run is not used; executed again ({reason})")
+            report.say(
+                page.docname, f"its stored run is not used; executed again ({reason})"
+            )
             continue
         if result is not None:
             results[page.docname] = result
@@ -267,13 +309,17 @@ def _start(run: PageRun, underway: Underway, running: Running) -> None:
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe()
     process = context.Process(target=work, args=(run, sender))
-    with interrupts_blocked():  # a Ctrl-C from here on finds the worker among the running
+    with (
+        interrupts_blocked()
+    ):  # a Ctrl-C from here on finds the worker among the running
         process.start()
         running[receiver] = process, run, underway
     sender.close()
 
 
-def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) -> PageResult | None:
+def _receive(
+    connection: Any, process: Any, run: PageRun, underway: Underway
+) -> PageResult | None:
     """Return the result of a page whose worker sent it, or died without sending it.
 
     It is None if a cell starts.

@@ -1,7 +1,8 @@
 """Sentences of a page that name the check that guards them.
 
-A sentence that claims an order or a bound ends with the role `{guard}` and the name of a check of
-its page, or of `lesson/page check`. If the check fails, the sentence must be written again.
+A sentence that claims an order or a bound ends with the role `{guard}` and the name of
+a check of its page, or of `lesson/page check`. If the check fails, the sentence must be
+written again.
 """
 
 import re
@@ -9,7 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 GUARD = re.compile(r"\s*\{guard\}`([^`]+)`")
-DECLARED = re.compile(r"^robo_genesis:\s*\{?\s*lesson: *(\w+),?\s*page: *(\w+)", re.MULTILINE)
+DECLARED = re.compile(
+    r"^robo_genesis:\s*\{?\s*lesson: *(\w+),?\s*page: *(\w+)", re.MULTILINE
+)
 START = re.compile(r"(?<=[.!?])\s+(?=\S)|\n\s*(?:[-*]|\d+\.|\|)\s|\n\s*\n|\|")
 
 

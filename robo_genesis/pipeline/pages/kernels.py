@@ -18,8 +18,9 @@ from jupyter_client.manager import AsyncKernelManager
 
 from robo_genesis.core.project import ENGINE_PREFIXES
 
-# The variables of the user that a kernel gets: the machine's own, and the engine's switches, which
-# are part of the pages' fingerprint. Others (MPLBACKEND, PYTHONSTARTUP …) would change pages.
+# The variables of the user that a kernel gets: the machine's own, and the engine's
+# switches, which are part of the pages' fingerprint. Others (MPLBACKEND, PYTHONSTARTUP
+# …) would change pages.
 MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
 ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 
@@ -30,8 +31,9 @@ ARGUMENTS = [f"--IPKernelApp.exec_lines={START}"]
 class CleanKernelManager(AsyncKernelManager):
     """Starts the kernel of this interpreter and knows no installed kernelspec.
 
-    `busy` is set while a cell runs, `process` when the kernel starts. They are class attributes
-    because nbclient takes a class, not an instance; each worker process has one kernel.
+    `busy` is set while a cell runs, `process` when the kernel starts. They are class
+    attributes because nbclient takes a class, not an instance; each worker process has
+    one kernel.
     """
 
     busy = False
@@ -40,13 +42,16 @@ class CleanKernelManager(AsyncKernelManager):
     def __init__(self, **given: Any) -> None:
         """Set what differs from a usual kernel.
 
-        The engine saves what it compiled in its exit handler, for which the usual 5 s are too
-        short; SIGTERM comes after the first half. The sockets have names, because kernels that
-        start at the same time can draw the same TCP port. With `@`, a name is one of Linux and not
-        of a file, whose path may have 107 characters only.
+        The engine saves what it compiled in its exit handler, for which the usual 5 s
+        are too short; SIGTERM comes after the first half. The sockets have names,
+        because kernels that start at the same time can draw the same TCP port. With
+        `@`, a name is one of Linux and not of a file, whose path may have 107
+        characters only.
         """
         sockets = {"transport": "ipc", "ip": f"@robo-{uuid.uuid4().hex}"}
-        no_specs = KernelSpecManager(kernel_dirs=[])  # so that only the native kernel is left
+        no_specs = KernelSpecManager(
+            kernel_dirs=[]
+        )  # so that only the native kernel is left
         own = {"shutdown_wait_time": 120.0, "kernel_spec_manager": no_specs}
         super().__init__(**given | sockets | own)
 
@@ -64,10 +69,14 @@ class CleanKernelManager(AsyncKernelManager):
 
 def users_variables() -> dict[str, str]:
     """Return the variables of this process that a kernel gets."""
-    return {n: v for n, v in os.environ.items() if n in MACHINE or n.startswith(ALLOWED)}
+    return {
+        n: v for n, v in os.environ.items() if n in MACHINE or n.startswith(ALLOWED)
+    }
 
 
-def clean_environment(home: Path, root: Path, extra: Mapping[str, str]) -> dict[str, str]:
+def clean_environment(
+    home: Path, root: Path, extra: Mapping[str, str]
+) -> dict[str, str]:
     """Return the whole environment for a kernel.
 
     Args:
@@ -92,7 +101,8 @@ def clean_environment(home: Path, root: Path, extra: Mapping[str, str]) -> dict[
         "PYTHONHASHSEED": "0",
         "PYTHONNOUSERSITE": "1",
         "PYTHONPATH": str(root),
-        "QD_ENABLE_PYBUF": "0",  # with 1, each call of a compiled kernel prints an empty text
+        # with 1, each call of a compiled kernel prints an empty text
+        "QD_ENABLE_PYBUF": "0",
         "TZ": "UTC",
         **extra,
     }
@@ -133,8 +143,9 @@ def wait_or_kill(
 def kill_with_descendants(pids: Iterable[int]) -> None:
     """Kill processes and everything below them.
 
-    Kernels lead sessions of their own, so no process group contains them all. The processes are
-    stopped first: a stopped worker cannot start one more kernel while the list is made.
+    Kernels lead sessions of their own, so no process group contains them all. The
+    processes are stopped first: a stopped worker cannot start one more kernel while the
+    list is made.
 
     Args:
         pids: process ids; processes that are gone are skipped.

@@ -1,9 +1,11 @@
 """Every output of a page's cells as its bundle keeps it, and the measured numbers among them.
 
-`printed.json` has the outputs of each code cell in their order: text as it is, the digest of
-anything else. The build writes it when the run ends, so a notebook that was run by hand has none.
+`printed.json` has the outputs of each code cell in their order: text as it is, the
+digest of anything else. The build writes it when the run ends, so a notebook that was
+run by hand has none.
 
-A cell with the option `prints: {2: baseline.drop mm}` says that the second decimal number in its
+A cell with the option `prints: {2: baseline.drop mm}` says that the second decimal
+    number in its
 text is this measured value, in the words of the role `{measured}`.
 """
 
@@ -29,7 +31,8 @@ OPTION = "prints"  # The option of a cell that names the measured values which i
 DECIMAL = re.compile(r"(?<![\w.])[-+−]?\d+\.\d+(?:e[-+]?\d+)?(?!\.?\d)")
 LOG = re.compile(r"^\[Genesis\].*", re.MULTILINE)
 
-# Relative difference of a printed value from the recorded one: a float32 has seven digits.
+# Relative difference of a printed value from the recorded one: a float32 has seven
+# digits.
 ROUNDED = 1e-7
 
 
@@ -56,7 +59,10 @@ def keep_outputs(folder: Path, executed: NotebookNode) -> None:
     """
     write_json(folder / bundle.PRINTED, outputs_of(executed))
     statement = json.loads((folder / MANIFEST).read_text("utf8"))
-    entry = {"name": bundle.PRINTED, "digest": {"sha256": bundle.sha256(folder / bundle.PRINTED)}}
+    entry = {
+        "name": bundle.PRINTED,
+        "digest": {"sha256": bundle.sha256(folder / bundle.PRINTED)},
+    }
     statement["subject"] = [*statement.get("subject", []), entry]
     write_json(folder / MANIFEST, statement)
 
@@ -70,8 +76,8 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
         unit: in which it will be shown, such as mm or %; without one, its own.
 
     Raises:
-        LookupError: the bundle lacks the value, or the value cannot have the unit; the message
-            lists what is valid.
+        LookupError: the bundle lacks the value, or the value cannot have the unit; the
+            message lists what is valid.
         BundleRefused: the bundle cannot be read.
     """
     found: Mapping[str, Mapping[str, Any]] = bundle.read_metrics(folder)
@@ -87,7 +93,11 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
     given, origin = None, f"found by the check {group}"
     valid = SCALES.keys() | DIGITS.keys()
     if isinstance(record, bundle.Metric):
-        value, given, origin = record.value, record.unit, f"from {', '.join(record.source)}"
+        value, given, origin = (
+            record.value,
+            record.unit,
+            f"from {', '.join(record.source)}",
+        )
         valid = {given, SCALED.get(given, given), MICRO.get(given, given)}
     if unit and not (isinstance(value, int | float) and unit in valid):
         raise LookupError(
@@ -99,10 +109,14 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
 
 def declared(page: NotebookNode) -> list[dict[int, str]]:
     """Return the option `prints` of each code cell of a page, an empty one if it has none."""
-    return [cell.metadata.get(OPTION, {}) for cell in page.cells if cell.cell_type == "code"]
+    return [
+        cell.metadata.get(OPTION, {}) for cell in page.cells if cell.cell_type == "code"
+    ]
 
 
-def contradiction(values: Mapping[int, str], cell: NotebookNode, folder: Path) -> str | None:
+def contradiction(
+    values: Mapping[int, str], cell: NotebookNode, folder: Path
+) -> str | None:
     """Return which number that a cell printed is not the value that its option names, or None.
 
     Args:

@@ -23,7 +23,8 @@ LOG_LINES = 15
 Status = Literal["executed", "reused", "taken over", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 
-# What a cell may put out. HTML could hide or imitate what the site says about its evidence.
+# What a cell may put out. HTML could hide or imitate what the site says about its
+# evidence.
 KINDS = PICTURES | {"text/plain", "text/markdown"}
 
 INSTEAD = (
@@ -31,7 +32,9 @@ INSTEAD = (
     "`frame.to_dict('records')` of pandas; frames and arrays in a figure, as `plotting.stacked` "
     "does; and a motion by the directive {replay}."
 )
-TAG_IT = "Tag it figure, and describe the picture in the option `mystnb: {image: {alt: …}}`."
+TAG_IT = (
+    "Tag it figure, and describe the picture in the option `mystnb: {image: {alt: …}}`."
+)
 MOST_LINES, MOST_LETTERS, MOST_IN_PICTURE = 1_000, 100_000, 2_000_000
 LESS = (
     f"A page shows at most {MOST_LINES:,} lines and {MOST_LETTERS:,} characters of a cell, and "
@@ -44,7 +47,8 @@ ANEW = (
 
 # Begins the kind of an output that is kept for another place of its page.
 GLUED = "application/papermill.record/"
-# Addresses and temporary folders, which differ in each run, and characters for terminals.
+# Addresses and temporary folders, which differ in each run, and characters for
+# terminals.
 CHANGING = re.compile(
     r"\bat 0x[0-9a-f]+|\b0x[0-9a-f]{9,}|/(?:tmp|robo-)[a-z0-9_]{8}\b|[\0-\x08\x0b\x0c\x0e-\x1f\x7f]"
 )
@@ -54,10 +58,10 @@ CHANGING = re.compile(
 class Failure:
     """Why a page failed.
 
-    `cell` counts the code cells from 1; `line` is the number of the failing line in the page's
-    source, and `source` that line: the one that raised, or called what raised, or the cell's first
-    if no line is known. Number and cell are None when the failure belongs to no cell. `log` holds
-    the last lines that were written.
+    `cell` counts the code cells from 1; `line` is the number of the failing line in the
+    page's source, and `source` that line: the one that raised, or called what raised,
+    or the cell's first if no line is known. Number and cell are None when the failure
+    belongs to no cell. `log` holds the last lines that were written.
     """
 
     error: str
@@ -75,9 +79,10 @@ class Failure:
 class PageResult:
     """The result of one page in one build.
 
-    `bundle` is None if the page declares none. `folder` is the page's folder: in the store, where a
-    failed page may be absent, or outside if it is taken over from another machine. `log` is the
-    file with all that an executed page wrote, None if that is not kept.
+    `bundle` is None if the page declares none. `folder` is the page's folder: in the
+    store, where a failed page may be absent, or outside if it is taken over from
+    another machine. `log` is the file with all that an executed page wrote, None if
+    that is not kept.
     """
 
     page: Page
@@ -92,7 +97,11 @@ class PageResult:
     @property
     def ended(self) -> str:
         """What the line at its end says; a failure in one line."""
-        why = f": {printable(' '.join(str(self.failure).split()))}" if self.failure else ""
+        why = (
+            f": {printable(' '.join(str(self.failure).split()))}"
+            if self.failure
+            else ""
+        )
         return f"{self.status} in {self.seconds:.0f} s{why}"
 
 
@@ -130,13 +139,15 @@ def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
     """Return the first cell with another exception than expected, or with a wrong output.
 
     Args:
-        page: the page now; tags and `expects` are read here, because a stored notebook keeps those
-            of its execution.
+        page: the page now; tags and `expects` are read here, because a stored notebook
+            keeps those of its execution.
         executed: the same code cells with outputs.
     """
     source = page.notebook
     ran = [cell for cell in executed.cells if cell.cell_type == "code"]
-    places = [index for index, cell in enumerate(source.cells) if cell.cell_type == "code"]
+    places = [
+        index for index, cell in enumerate(source.cells) if cell.cell_type == "code"
+    ]
     for index, cell in zip(places, ran, strict=True):
         metadata = source.cells[index].metadata
         if wrong := _wrong_output(metadata.get("tags", []), cell.outputs):
@@ -147,33 +158,61 @@ def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
     return None
 
 
-def _wrong_output(tags: Sequence[str], outputs: Sequence[NotebookNode]) -> tuple[str, str] | None:
+def _wrong_output(
+    tags: Sequence[str], outputs: Sequence[NotebookNode]
+) -> tuple[str, str] | None:
     """Return the name of the first rule that the outputs of a cell break, with reason and cure."""
     data = [item for out in outputs for item in out.get("data", {}).items()]
     shown = PICTURES.intersection(kind for kind, _ in data)
     data = [(kind.removeprefix(GLUED), content) for kind, content in data]
     odd = ", ".join(sorted({kind for kind, _ in data} - KINDS))
     pictures = [content for kind, content in data if kind in PICTURES]
-    colours = ", ".join(sorted({each for of in pictures for each in outside_the_palette(of)}))
+    colours = ", ".join(
+        sorted({each for of in pictures for each in outside_the_palette(of)})
+    )
     texts = [out.get("text", out.get("evalue", "")) for out in outputs]
     texts += [content for kind, content in data if kind.startswith("text/")]
     lines, size = sum(len(text.splitlines()) for text in texts), sum(map(len, texts))
     too_long = lines > MOST_LINES or size > MOST_LETTERS
     changing = CHANGING.search("\n".join(texts))
     rules = (
-        ("FigureMissing", "figure" in tags and not shown, "is tagged figure, but shows none."),
+        (
+            "FigureMissing",
+            "figure" in tags and not shown,
+            "is tagged figure, but shows none.",
+        ),
         ("OutputKind", odd, f"puts out {odd}. {INSTEAD}"),
-        ("FigureUntagged", shown and "figure" not in tags, f"shows a picture. {TAG_IT}"),
-        ("FigureOfInputs", pictures and "inputs" in tags, "has the tag inputs, for tables alone."),
+        (
+            "FigureUntagged",
+            shown and "figure" not in tags,
+            f"shows a picture. {TAG_IT}",
+        ),
+        (
+            "FigureOfInputs",
+            pictures and "inputs" in tags,
+            "has the tag inputs, for tables alone.",
+        ),
         ("Colour", colours, f"draws in {colours}. {VALID_COLOURS}"),
-        ("OutputSize", too_long, f"puts out {lines:,} lines, {size:,} characters. {LESS}"),
-        ("OutputSize", any(len(of) > MOST_IN_PICTURE for of in pictures), f"draws more. {LESS}"),
+        (
+            "OutputSize",
+            too_long,
+            f"puts out {lines:,} lines, {size:,} characters. {LESS}",
+        ),
+        (
+            "OutputSize",
+            any(len(of) > MOST_IN_PICTURE for of in pictures),
+            f"draws more. {LESS}",
+        ),
         ("OutputChanges", changing, f"puts out {changing and changing[0]!r}. {ANEW}"),
     )
-    return next(((name, f"the cell {why}") for name, broken, why in rules if broken), None)
+    return next(
+        ((name, f"the cell {why}") for name, broken, why in rules if broken), None
+    )
 
 
-def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> str | None:
+def _contradiction(
+    metadata: NotebookNode, raised: Sequence[NotebookNode]
+) -> str | None:
     """Return how a cell's exception contradicts its metadata, None if it does not."""
     expects = metadata.get("expects")
     happened = f"{raised[-1].ename}: {raised[-1].evalue}" if raised else "no exception"
@@ -181,7 +220,11 @@ def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> st
         but = "but is not tagged raises-exception."
         return f"the cell raised {happened}, {but}" if raised else None
     name, _, text = str(expects).partition(":")
-    if raised and raised[-1].ename == name.strip() and text.strip() in raised[-1].evalue:
+    if (
+        raised
+        and raised[-1].ename == name.strip()
+        and text.strip() in raised[-1].evalue
+    ):
         return None
     return f"expected was {expects!r}, but the cell raised {happened}."
 
@@ -199,10 +242,14 @@ def at_cell(
         ran: the cell with its outputs; the traceback among them names the failing line.
     """
     cells, text = page.notebook.cells, []
-    with suppress(OSError, UnicodeError):  # the page may have been edited since it was read
+    with suppress(
+        OSError, UnicodeError
+    ):  # the page may have been edited since it was read
         text = page.path.read_text("utf8").split("\n")
     lines = cells[index].source.splitlines() or [""]
-    same = ran and ran.source == cells[index].source  # no comment was added after the run
+    same = (
+        ran and ran.source == cells[index].source
+    )  # no comment was added after the run
     failing = min(_failing_line(ran), len(lines)) if same else 1
     if error == CheckFailed.__name__:
         book = page.path.parents[page.docname.count("/")]
@@ -219,13 +266,16 @@ def at_cell(
 def _failing_line(ran: NotebookNode) -> int:
     """Return which line of an executed cell failed, 1 if its outputs do not say so.
 
-    It is the last line of this cell in the traceback: later frames are of other cells and files.
+    It is the last line of this cell in the traceback: later frames are of other cells
+        and files.
     """
     errors = [out for out in ran.get("outputs", []) if out.output_type == "error"]
     if not errors:
         return 1
     text = ANSI.sub("", "\n".join(errors[-1].traceback))
-    found = re.findall(rf"^ *Cell In\[{ran.execution_count}\], line (\d+)", text, re.MULTILINE)
+    found = re.findall(
+        rf"^ *Cell In\[{ran.execution_count}\], line (\d+)", text, re.MULTILINE
+    )
     # A syntax error that is found before the cell is compiled has a line, but no frame.
     found = found or re.findall(r"\(<\w+>, line (\d+)\)$", errors[-1].evalue)
     # IPython counts from the first line that is not empty.
@@ -249,9 +299,14 @@ def failure_report(results: Sequence[PageResult]) -> str:
     for page, failure, log in failed:
         place = page.docname
         if failure.cell is not None:
-            place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
+            place += (
+                f", code cell {failure.cell}, line {failure.line}: {failure.source}"
+            )
         lines += ["", place, *(f"    {line}" for line in str(failure).splitlines())]
         if failure.log:
             whole = f" of {log}" if log else ""
-            lines += [f"    last lines{whole}:", *(f"    | {line}" for line in failure.log)]
+            lines += [
+                f"    last lines{whole}:",
+                *(f"    | {line}" for line in failure.log),
+            ]
     return "\n".join(lines)

@@ -1,7 +1,8 @@
 """The modules behind a page, by the import statements of their sources; nothing is imported.
 
-Two keys use them. The *evidence key* of a bundle covers the modules that measure its numbers. The
-*fingerprint* of a page decides whether the page has to run again, and covers whatever it imports.
+Two keys use them. The *evidence key* of a bundle covers the modules that measure its
+numbers. The *fingerprint* of a page decides whether the page has to run again, and
+covers whatever it imports.
 """
 
 import os
@@ -20,7 +21,12 @@ from robo_genesis.core import project
 from robo_genesis.core.files import NO_SOURCE, files_below, json_digest
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence.bundle import sha256
-from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_names, syntax_digest
+from robo_genesis.pipeline.pages.syntax import (
+    PACKAGE,
+    claims_in,
+    imported_names,
+    syntax_digest,
+)
 
 if TYPE_CHECKING:  # a verification loads no Jupyter
     from robo_genesis.pipeline.pages.book import Page
@@ -39,23 +45,30 @@ class Tree:
     def __init__(self, root: Path = ROOT) -> None:
         self.root = root
         self.module: Callable[[str], Path | None] = cache(self._module)
-        self.text: Callable[[Path], str] = cache(partial(Path.read_text, encoding="utf8"))
+        self.text: Callable[[Path], str] = cache(
+            partial(Path.read_text, encoding="utf8")
+        )
         self.digest: Callable[[Path], str] = cache(sha256)
 
     def _module(self, name: str) -> Path | None:
         """Return the file of a module, None if the name is not a module."""
-        base = os.path.join(self.root, *name.split("."))  # called for thousands of names
+        base = os.path.join(
+            self.root, *name.split(".")
+        )  # called for thousands of names
         candidates = (f"{base}.py", os.path.join(base, "__init__.py"))
         return next((Path(path) for path in candidates if os.path.isfile(path)), None)
 
     def closure(
-        self, names: Iterable[str], enter: Callable[[str, Path], bool] = lambda name, path: True
+        self,
+        names: Iterable[str],
+        enter: Callable[[str, Path], bool] = lambda name, path: True,
     ) -> dict[str, Path]:
         """Return the package's modules behind some dotted names, directly or through others.
 
         Args:
             names: of modules or of something in them; others are ignored.
-            enter: whether a module belongs to the result; what only others import does not.
+            enter: whether a module belongs to the result; what only others import does
+                not.
 
         Returns:
             Module name to file, packages by their `__init__.py`.
@@ -70,16 +83,18 @@ class Tree:
                 if path is None or not enter(name, path):
                     continue
                 found[name] = path
-                package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+                package = (
+                    name if path.name == "__init__.py" else name.rpartition(".")[0]
+                )
                 waiting += imported_names(self.text(path), package)
         return found
 
     def measures(self, name: str, path: Path) -> bool:
         """Whether a module belongs to evidence keys, if a measuring page uses it.
 
-        It is in `core`, `sim` or `lessons`, it is not the `__init__.py` of a package, and it does
-        not say `MEASURES = False`: such a module draws or words results, judges them, or holds data
-        that `parameters()` covers.
+        It is in `core`, `sim` or `lessons`, it is not the `__init__.py` of a package,
+        and it does not say `MEASURES = False`: such a module draws or words results,
+        judges them, or holds data that `parameters()` covers.
         """
         inside = name.removeprefix(f"{PACKAGE}.").split(".")[0] in COMPUTING
         silent = path.name == "__init__.py" or MEASURES_NOTHING.search(self.text(path))
@@ -94,7 +109,8 @@ class Tree:
     def data_for(self, used: Iterable[Path]) -> dict[str, str]:
         """Return digests by names below the package: of a lesson only if a file of it is used.
 
-        Others are not read, because a page that runs must read nothing of another lesson.
+        Others are not read, because a page that runs must read nothing of another
+        lesson.
 
         Args:
             used: the files of modules, or any others.
@@ -117,7 +133,9 @@ class Tree:
 def lesson_modules(lesson: str, root: Path) -> list[str]:
     """Return the modules below the folder of a lesson."""
     files = sorted(files_below(root / PACKAGE / "lessons" / lesson, left_out=NO_SOURCE))
-    names = (path.relative_to(root).with_suffix("") for path in files if path.suffix == ".py")
+    names = (
+        path.relative_to(root).with_suffix("") for path in files if path.suffix == ".py"
+    )
     return [".".join(name.parts) for name in names]
 
 
@@ -125,10 +143,13 @@ def require_keyed_imports(root: Path) -> None:
     """Require that Python runs what the keys of pages cover; the checkout is its PYTHONPATH.
 
     Raises:
-        ProjectError: naming each importable file or package beside the course's package, and each
-            file in it that Python would run in the place of a module's source.
+        ProjectError: naming each importable file or package beside the course's
+            package, and each file in it that Python would run in the place of a
+            module's source.
     """
-    found = [module.name for module in iter_modules([str(root)]) if module.name != PACKAGE]
+    found = [
+        module.name for module in iter_modules([str(root)]) if module.name != PACKAGE
+    ]
     found += [
         path.relative_to(root).as_posix()
         for path in files_below(root / PACKAGE)
@@ -143,12 +164,15 @@ def require_keyed_imports(root: Path) -> None:
         )
 
 
-def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) -> dict[str, str]:
+def measuring_modules(
+    lesson: str, imports: Iterable[str], root: Path = ROOT
+) -> dict[str, str]:
     """Return the modules and data that decide what a page measures, with their digests.
 
-    They are all modules of the lesson that measure, what its `__init__.py` imports from `sim`, what
-    the page itself imports, and what these import; see `Tree.measures`. The digest of a module is
-    that of its syntax. With them go the data files of the lesson and of `core` and `sim`.
+    They are all modules of the lesson that measure, what its `__init__.py` imports from
+    `sim`, what the page itself imports, and what these import; see `Tree.measures`. The
+    digest of a module is that of its syntax. With them go the data files of the lesson
+    and of `core` and `sim`.
 
     Args:
         lesson: the name of its folder.
@@ -162,12 +186,20 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
     own, tree = f"{PACKAGE}.lessons.{lesson}", Tree(root)
     given = imported_names(tree.text(init), own) if (init := tree.module(own)) else ()
     of_sim = [name for name in given if name.startswith(f"{PACKAGE}.sim.")]
-    modules = tree.closure([*lesson_modules(lesson, root), *of_sim, *imports], tree.measures)
-    data = tree.data_for([*modules.values(), root / PACKAGE / "lessons" / lesson / "__init__.py"])
+    modules = tree.closure(
+        [*lesson_modules(lesson, root), *of_sim, *imports], tree.measures
+    )
+    data = tree.data_for(
+        [*modules.values(), root / PACKAGE / "lessons" / lesson / "__init__.py"]
+    )
     return {
         name.removeprefix(f"{PACKAGE}."): syntax_digest(tree.text(path))
         for name, path in sorted(modules.items())
-    } | {name: digest for name, digest in data.items() if name.partition("/")[0] in COMPUTING}
+    } | {
+        name: digest
+        for name, digest in data.items()
+        if name.partition("/")[0] in COMPUTING
+    }
 
 
 def running_modules(lesson: str) -> dict[str, str]:
@@ -178,13 +210,16 @@ def running_modules(lesson: str) -> dict[str, str]:
     return measuring_modules(lesson, os.environ.get(project.PAGE_IMPORTS, "").split())
 
 
-def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | None = None) -> str:
+def page_fingerprint(
+    page: "Page", tree: Tree, environment: Mapping[str, str] | None = None
+) -> str:
     """Return a digest of everything that decides the outputs of a page.
 
-    It covers the lock, all installed versions, the version of Python, the environment contract,
-    from which cell on the page is executed alone, the syntax of the page's cells, of the modules
-    that they import and of the modules of its lesson, the claims of checks in them, and the data
-    files of the package, except those of lessons from which nothing is imported.
+    It covers the lock, all installed versions, the version of Python, the environment
+    contract, from which cell on the page is executed alone, the syntax of the page's
+    cells, of the modules that they import and of the modules of its lesson, the claims
+    of checks in them, and the data files of the package, except those of lessons from
+    which nothing is imported.
 
     Args:
         page: an executed page.
@@ -201,7 +236,9 @@ def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | 
         "python": platform.python_version(),
         "environment": project.environment_contract(environment),
         "cells": page.code.digests,
-        "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
+        "modules": {
+            name: syntax_digest(tree.text(path)) for name, path in modules.items()
+        },
         "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
         "data": tree.data_for(modules.values()),
         "alone": page.alone,

@@ -14,8 +14,16 @@ from robo_genesis.core.files import require_replaceable, require_writable
 from robo_genesis.core.project import ENGINE, ROOT, ProjectError, installed_version
 from robo_genesis.pipeline.pages import folder
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.results import PageResult, find_bundle, unexpected_outcome
-from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint, require_keyed_imports
+from robo_genesis.pipeline.pages.results import (
+    PageResult,
+    find_bundle,
+    unexpected_outcome,
+)
+from robo_genesis.pipeline.pages.sources import (
+    Tree,
+    page_fingerprint,
+    require_keyed_imports,
+)
 
 # Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused.
 Verify = Callable[[Path, str], Any]
@@ -74,8 +82,8 @@ def result_of(page: Page, place: Path, fingerprint: str) -> PageResult:
     """Return the result of a page from a folder that holds it as this checkout executes it.
 
     Raises:
-        PageRefused: the folder is not this page, or its outputs contradict the tags and expected
-            exceptions of the page.
+        PageRefused: the folder is not this page, or its outputs contradict the tags and
+            expected exceptions of the page.
     """
     record = folder.read_record(place)
     notebook = folder.require_this_page(place, record, page, fingerprint)
@@ -113,8 +121,8 @@ def forget(store: Path, pages: Iterable[Page], into: Mapping[str, Path]) -> None
     Args:
         store: the folder of all executed pages.
         pages: those of the book.
-        into: the folder of each; see `places`. It is kept with the newest others of its page, even
-            if these have times in the future.
+        into: the folder of each; see `places`. It is kept with the newest others of its
+            page, even if these have times in the future.
     """
     kept: set[Path] = set()
     for page in pages:
@@ -139,11 +147,14 @@ def exported(page: Page, to: Path) -> Path:
     return place
 
 
-def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -> list[PageResult]:
+def handed_over(
+    source: Path, pages: Sequence[Page], into: Mapping[str, Path]
+) -> list[PageResult]:
     """Return the results of pages that another machine executed, in the order of `pages`.
 
-    All of them are compared with this checkout. The names and paths that they state are compared,
-    never followed. Nothing is stored: their bundles and outputs are not verified yet.
+    All of them are compared with this checkout. The names and paths that they state are
+    compared, never followed. Nothing is stored: their bundles and outputs are not
+    verified yet.
 
     Args:
         source: holds the folders of `exported`, at any depth.
@@ -151,7 +162,8 @@ def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -
         into: where the store would have each page; see `places`.
 
     Raises:
-        ProjectError: it names each page that is missing, or each refused one with code and reason.
+        ProjectError: it names each page that is missing, or each refused one with code
+            and reason.
     """
     if not source.is_dir():
         raise ProjectError(
@@ -169,7 +181,9 @@ def handed_over(source: Path, pages: Sequence[Page], into: Mapping[str, Path]) -
             result = result_of(known[name], place, into[name].name)
             if name in found:
                 other = found[name].folder
-                raise folder.PageRefused("twice", f"{name} is in {other} as well. Remove one.")
+                raise folder.PageRefused(
+                    "twice", f"{name} is in {other} as well. Remove one."
+                )
             found[name] = replace(result, status="taken over")
         except folder.PageRefused as error:
             problems.append(f"{place}: {error}")

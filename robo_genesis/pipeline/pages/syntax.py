@@ -18,10 +18,11 @@ NOT_CODE = ("kind", "type_comment")  # Fields of a syntax tree that decide nothi
 def syntax_digest(source: str) -> str:
     """Return the sha256 of what a module does: of its syntax tree, not of its text.
 
-    Comments, layout, quotes and strings that are statements of their own do not count. Python
-    3.11 to 3.14 give the same digest, because fields that are empty or have to do with positions
-    are left out, and the constant parts of f-strings are joined. An exception is a backslash in the
-    format of an f-string: Python 3.11 and later versions read it differently.
+    Comments, layout, quotes and strings that are statements of their own do not count.
+    Python 3.11 to 3.14 give the same digest, because fields that are empty or have to
+    do with positions are left out, and the constant parts of f-strings are joined. An
+    exception is a backslash in the format of an f-string: Python 3.11 and later
+    versions read it differently.
 
     Args:
         source: Python. One that does not parse counts by its text.
@@ -41,8 +42,9 @@ def syntax_digest(source: str) -> str:
 class Code:
     """The code cells of a page.
 
-    `sources` are plain Python, in which magics of IPython are translated; `digests` has that of the
-    syntax of each cell; `imports` has the dotted names below the course package that they import.
+    `sources` are plain Python, in which magics of IPython are translated; `digests` has
+    that of the syntax of each cell; `imports` has the dotted names below the course
+    package that they import.
     """
 
     sources: list[str]
@@ -59,7 +61,9 @@ def read_code(cells: Iterable[str]) -> Code:
         return {
             "sources": sources,
             "digests": [cell_digest(source) for source in sources],
-            "imports": sorted({name for source in sources for name in _names(source, "")}),
+            "imports": sorted(
+                {name for source in sources for name in _names(source, "")}
+            ),
         }
 
     return Code(**derived_value("code", texts, make))
@@ -67,7 +71,9 @@ def read_code(cells: Iterable[str]) -> Code:
 
 def plain_python(cell: str) -> str:
     """Return the code of a cell as Python, its magics translated."""
-    from IPython.core.inputtransformer2 import TransformerManager  # which no verification loads
+    from IPython.core.inputtransformer2 import (
+        TransformerManager,
+    )  # which no verification loads
 
     try:
         return TransformerManager().transform_cell(cell)
@@ -78,8 +84,8 @@ def plain_python(cell: str) -> str:
 def cell_digest(source: str) -> str:
     """Return the sha256 of the syntax of one code cell, in which IPython's magics are translated.
 
-    A string that is a statement counts, other than in a module, because it may be the output of the
-    cell. So does a semicolon at the end, which hides the output.
+    A string that is a statement counts, other than in a module, because it may be the
+    output of the cell. So does a semicolon at the end, which hides the output.
     """
     try:
         tree = ast.parse(source)
@@ -152,10 +158,13 @@ def imported_names(source: str, package: str = "") -> tuple[str, ...]:
     A name may be that of a module or of something in a module.
 
     Args:
-        source: Python. One that does not parse imports nothing: its page fails when it is executed.
+        source: Python. One that does not parse imports nothing: its page fails when it
+            is executed.
         package: the package of the source, to which relative imports refer.
     """
-    return tuple(derived_value("imports", [source, package], lambda: _names(source, package)))
+    return tuple(
+        derived_value("imports", [source, package], lambda: _names(source, package))
+    )
 
 
 def _names(source: str, package: str) -> list[str]:

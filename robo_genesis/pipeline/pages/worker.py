@@ -14,7 +14,13 @@ import nbclient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
 
-from robo_genesis.core.project import OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
+from robo_genesis.core.project import (
+    OUTPUTS_DIR,
+    PAGE_IMPORTS,
+    PAGE_SHA256,
+    ROOT,
+    RUN_ID,
+)
 from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages import kernels, results
@@ -29,9 +35,9 @@ from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 class PageRun:
     """One run of one page: what its worker process needs to know.
 
-    `place` is the page's folder in the store; `scratch` is temporary, and is removed with the build
-    even where the worker is killed; `log` is the file that gets what cells and kernel write;
-    `timeout` is in seconds, for one cell.
+    `place` is the page's folder in the store; `scratch` is temporary, and is removed
+    with the build even where the worker is killed; `log` is the file that gets what
+    cells and kernel write; `timeout` is in seconds, for one cell.
     """
 
     page: Page
@@ -58,9 +64,9 @@ def work(run: PageRun, connection: Connection) -> None:
 
     Args:
         run: what to execute.
-        connection: takes the number of each code cell that starts, counted from 1, and in the end
-            one pair; a process that ends without sending it has failed as well. The first cell
-            that must run alone waits until something is received.
+        connection: takes the number of each code cell that starts, counted from 1, and
+            in the end one pair; a process that ends without sending it has failed as
+            well. The first cell that must run alone waits until something is received.
     """
 
     def starts(cell: int) -> None:
@@ -79,9 +85,11 @@ def work(run: PageRun, connection: Connection) -> None:
     environment = kernels.clean_environment(home, ROOT, {**run.environment, **own})
     os.environ.clear()
     os.environ.update(environment)
-    # The engine's compiled parts write past Python: to a file, because the build prints its
-    # progress here, and because a crash would lose the last lines.
-    descriptor = os.open(run.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o644)
+    # The engine's compiled parts write past Python: to a file, because the build prints
+    # its progress here, and because a crash would lose the last lines.
+    descriptor = os.open(
+        run.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o644
+    )
     for standard in (1, 2):
         os.dup2(descriptor, standard)
     begin = time.monotonic()
@@ -92,17 +100,20 @@ def work(run: PageRun, connection: Connection) -> None:
     connection.send((time.monotonic() - begin, failure))
 
 
-# What a warning names in the place of a file: a temporary one with the number of the process.
+# What a warning names in the place of a file: a temporary one with the number of the
+# process.
 CELL_FILE = re.compile(rf"{re.escape(tempfile.gettempdir())}/ipykernel_\d+/\d+\.py")
 
 
 class LoggingClient(nbclient.NotebookClient):
     """Writes what cells print to this process's standard output, which is the page's log.
 
-    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal. It becomes
-    one text for each stream, because kernels flush at random moments, with the last state of each
-    line. nbclient does the same, in a time that grows with the square of a line's length. Text far
-    beyond the limit is dropped, so that no loop fills memory and disk; then the page is refused.
+    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal.
+        It becomes
+    one text for each stream, because kernels flush at random moments, with the last
+    state of each line. nbclient does the same, in a time that grows with the square of
+    a line's length. Text far beyond the limit is dropped, so that no loop fills memory
+    and disk; then the page is refused.
     """
 
     def process_message(
@@ -111,12 +122,18 @@ class LoggingClient(nbclient.NotebookClient):
         """Keep one message of the kernel in the notebook, and write its text."""
         if msg["msg_type"] != "stream":
             return super().process_message(msg, cell, cell_index)
-        if sum(len(out.get("text", "")) for out in cell.outputs) > 10 * results.MOST_LETTERS:
+        if (
+            sum(len(out.get("text", "")) for out in cell.outputs)
+            > 10 * results.MOST_LETTERS
+        ):
             return None
         text = CELL_FILE.sub("cell", ANSI.sub("", msg["content"]["text"]))
         os.write(1, text.encode("utf8", errors="replace"))
         for out in cell.outputs:
-            if out.get("name") == msg["content"]["name"] and not self.clear_before_next_output:
+            if (
+                out.get("name") == msg["content"]["name"]
+                and not self.clear_before_next_output
+            ):
                 out.text = last_states(out.text + text)
                 return out
         msg["content"]["text"] = last_states(text)
@@ -128,8 +145,12 @@ class LoggingClient(nbclient.NotebookClient):
 
 def last_states(text: str) -> str:
     """Return a text with each line as a terminal shows it, after its last carriage return."""
-    lines = ([state for state in line.split("\r") if state] for line in text.split("\n"))
-    return "\n".join(states[-1] if states else "" for states in lines) + "\r" * text.endswith("\r")
+    lines = (
+        [state for state in line.split("\r") if state] for line in text.split("\n")
+    )
+    return "\n".join(
+        states[-1] if states else "" for states in lines
+    ) + "\r" * text.endswith("\r")
 
 
 def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None:
@@ -147,10 +168,14 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     def cell_starts(cell: NotebookNode, cell_index: int) -> None:
         nonlocal begin
         asked = time.monotonic()
-        on_cell([each.cell_type for each in notebook.cells[: cell_index + 1]].count("code"))
+        on_cell(
+            [each.cell_type for each in notebook.cells[: cell_index + 1]].count("code")
+        )
         kernels.CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
-        begin += begins[cell_index] - asked  # waiting for other pages is not part of the run
+        begin += (
+            begins[cell_index] - asked
+        )  # waiting for other pages is not part of the run
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         kernels.CleanKernelManager.busy = False
@@ -161,14 +186,18 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
             LoggingClient(
                 notebook,
                 resources={"metadata": {"path": folder}},
-                timeout=notebook.metadata.get("execution", {}).get("timeout", run.timeout),
+                timeout=notebook.metadata.get("execution", {}).get(
+                    "timeout", run.timeout
+                ),
                 kernel_manager_class=kernels.CleanKernelManager,
                 extra_arguments=kernels.ARGUMENTS,
                 record_timing=False,
                 on_cell_execute=cell_starts,
                 on_cell_executed=cell_ends,
             ).execute()
-        except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
+        except (
+            Exception
+        ) as caught:  # a dead kernel, or none that starts, is a failed page as well
             error = caught
     elapsed = time.monotonic() - begin
     if failure := _failure(run, error, list(begins)):
@@ -177,7 +206,9 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
     try:
         if failure := _unkeyed(run):
             return failure
-        write_page(run.place, run.page, notebook, run.left, run.run_id, elapsed, seconds)
+        write_page(
+            run.place, run.page, notebook, run.left, run.run_id, elapsed, seconds
+        )
     except (PageRefused, OSError, RuntimeError, ValueError) as caught:
         return Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return None
@@ -188,7 +219,9 @@ def _unkeyed(run: PageRun) -> Failure | None:
     tree = Tree()
     modules = tree.behind(run.page).values()
     data = (ROOT / PACKAGE / name for name in tree.data_for(modules))
-    names = unkeyed_files([*modules, *data, ROOT / "pyproject.toml", ROOT / "requirements.lock"])
+    names = unkeyed_files(
+        [*modules, *data, ROOT / "pyproject.toml", ROOT / "requirements.lock"]
+    )
     if not names:
         return None
     return Failure(
@@ -200,7 +233,9 @@ def _unkeyed(run: PageRun) -> Failure | None:
     )
 
 
-def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failure | None:
+def _failure(
+    run: PageRun, error: Exception | None, started: list[int]
+) -> Failure | None:
     """Return why a page failed, None if it did not."""
     notebook = run.page.notebook
     if error is None:
@@ -212,7 +247,9 @@ def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failu
         name, message = error.ename, error.evalue
     elif isinstance(error, CellTimeoutError):
         message = message.splitlines()[0]
-    elif isinstance(error, DeadKernelError) and (process := kernels.CleanKernelManager.process):
+    elif isinstance(error, DeadKernelError) and (
+        process := kernels.CleanKernelManager.process
+    ):
         message += f" with {ended(process.wait())}"
     if not started:
         return Failure(name, message)

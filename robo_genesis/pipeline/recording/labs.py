@@ -9,7 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
-from robo_genesis.core.files import put, require_replaceable, require_writable, settle_below
+from robo_genesis.core.files import (
+    put,
+    require_replaceable,
+    require_writable,
+    settle_below,
+)
 from robo_genesis.core.git import require_history
 from robo_genesis.core.project import BACKEND, RENDER
 from robo_genesis.core.text import printable
@@ -44,10 +49,10 @@ def probe_here(expected: str | None) -> tuple[str, list[StepResult]]:
 class Recording:
     """Which labs to record, and where their bundles go.
 
-    `lesson` names one, and is empty for all. `expected` is the backend that must be found; None
-    accepts any accelerator. `to` gets the folder `<lesson>/<actual backend>`; None is the book's
-    own `evidence`. `probe` returns, before the run, the backend that it would find, and the
-    results of its steps.
+    `lesson` names one, and is empty for all. `expected` is the backend that must be
+    found; None accepts any accelerator. `to` gets the folder `<lesson>/<actual
+    backend>`; None is the book's own `evidence`. `probe` returns, before the run, the
+    backend that it would find, and the results of its steps.
     """
 
     lesson: str = ""
@@ -75,20 +80,22 @@ class Recording:
 def record(recording: Recording) -> int:
     """Run labs in clean kernels, verify their bundles and put them in their places; print a table.
 
-    Without a lesson, each lab that has no accepted bundle of this backend is run. A lab that fails
-    has its report printed at once, and the next one follows.
+    Without a lesson, each lab that has no accepted bundle of this backend is run. A lab
+    that fails has its report printed at once, and the next one follows.
 
     Args:
         recording: see there.
 
     Returns:
-        The exit status: 0 every lab has a bundle, 1 some failed, 130 interrupted. An older bundle
+        The exit status: 0 every lab has a bundle, 1 some failed, 130 interrupted. An
+            older bundle
         is unchanged unless a new one is accepted.
 
     Raises:
-        ProjectError: the lesson or backend is not valid, or a step of the probe is broken.
-        ProjectError: checkout, environment or the folder of bundles is not fit for it, or a build
-            or another recording runs here.
+        ProjectError: the lesson or backend is not valid, or a step of the probe is
+            broken.
+        ProjectError: checkout, environment or the folder of bundles is not fit for it,
+            or a build or another recording runs here.
     """
     if recording.expected not in (None, *BACKENDS):
         raise project.ProjectError(
@@ -100,7 +107,11 @@ def record(recording: Recording) -> int:
         require_writable(recording.evidence)
         require_history(recording.root)
         project.require_pinned_engine(recording.root)
-        labs, progress, outcomes = _labs(recording), Progress(recording.say), list[Outcome]()
+        labs, progress, outcomes = (
+            _labs(recording),
+            Progress(recording.say),
+            list[Outcome](),
+        )
         backend = _found_backend(recording, progress)
         for number, page in enumerate(labs, start=1):
             progress("lab", f"{number} of {len(labs)}", str(page.lesson))
@@ -148,12 +159,16 @@ def _found_backend(recording: Recording, progress: Progress) -> str:
     return found
 
 
-def _kept(recording: Recording, page: Page, backend: str, progress: Progress) -> Outcome | None:
+def _kept(
+    recording: Recording, page: Page, backend: str, progress: Progress
+) -> Outcome | None:
     """Return the outcome of a lab whose bundle is accepted as it is, None if it needs a run."""
     lesson = str(page.lesson)
     place = recording.evidence / lesson / backend
     runs, book, root = [place.with_name("cpu")], recording.book, recording.root
-    status = bundle_status(place, lesson, RECORDED_PAGE, book=book, root=root, cpu_runs=runs)
+    status = bundle_status(
+        place, lesson, RECORDED_PAGE, book=book, root=root, cpu_runs=runs
+    )
     if status.manifest is None:
         return None
     facts = status.manifest.predicate
@@ -164,7 +179,9 @@ def _kept(recording: Recording, page: Page, backend: str, progress: Progress) ->
     return Outcome(lesson, "kept", str(place), facts)
 
 
-def _outcome(recording: Recording, page: Page, backend: str, progress: Progress) -> Outcome:
+def _outcome(
+    recording: Recording, page: Page, backend: str, progress: Progress
+) -> Outcome:
     """Return the outcome of a lab: its bundle is kept, or it is run."""
     begin, facts = time.monotonic(), None
     try:
@@ -180,14 +197,18 @@ def _outcome(recording: Recording, page: Page, backend: str, progress: Progress)
     return Outcome(str(page.lesson), state, where, facts, time.monotonic() - begin)
 
 
-def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Path, Any]:
+def record_lab(
+    recording: Recording, page: Page, progress: Progress
+) -> tuple[Path, Any]:
     """Run one lab, and return the place of its verified bundle and the facts in its manifest.
 
     Raises:
         ProjectError: see `record`.
     """
     project.remove_stale_kernel_lock(recording.cache)
-    folder = recording.cache / project.RECORDING  # new each time: nothing is ever reused
+    folder = (
+        recording.cache / project.RECORDING
+    )  # new each time: nothing is ever reused
     shutil.rmtree(folder, ignore_errors=True)
     try:
         bundle, facts = _run(recording, page, folder, progress)
@@ -200,11 +221,15 @@ def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Pa
     return place, facts
 
 
-def _run(recording: Recording, page: Page, folder: Path, progress: Progress) -> tuple[Path, Any]:
+def _run(
+    recording: Recording, page: Page, folder: Path, progress: Progress
+) -> tuple[Path, Any]:
     """Run the lab in a clean kernel; return its bundle, and what its manifest says, verified."""
     contract = recording.contract
     progress("execute", page.docname, f"{BACKEND}={contract[BACKEND]}")
-    environment = kernel_environment(recording.root, recording.cache, COMMAND, **contract)
+    environment = kernel_environment(
+        recording.root, recording.cache, COMMAND, **contract
+    )
     [result] = execute_pages(
         [page],
         places([page], folder, recording.root, environment),
@@ -223,7 +248,9 @@ def _run(recording: Recording, page: Page, folder: Path, progress: Progress) -> 
         outputs_compared(result, manifest)
         expect("command", "manifest.json", "command", facts.command, COMMAND)
     except BundleRefused as error:
-        raise project.ProjectError(f"The bundle of this run is refused: {error}") from error
+        raise project.ProjectError(
+            f"The bundle of this run is refused: {error}"
+        ) from error
     require_expected(recording, facts.backend.actual)
     progress("verify", page.docname, "accepted")
     return result.bundle, facts
@@ -234,7 +261,9 @@ def require_expected(recording: Recording, actual: str) -> None:
     if actual in ((recording.expected,) if recording.expected else ACCELERATORS):
         return
     expected = recording.expected or f"none given, so one of {', '.join(ACCELERATORS)}"
-    on_purpose = f", or record {actual} on purpose with BACKEND={actual}" * (actual in BACKENDS)
+    on_purpose = f", or record {actual} on purpose with BACKEND={actual}" * (
+        actual in BACKENDS
+    )
     raise project.ProjectError(
         f"Expected backend: {expected}; {BACKEND}={recording.contract[BACKEND]} finds {actual!r}. "
         f"Nothing is relabelled. Check driver, device and Torch build{on_purpose}."

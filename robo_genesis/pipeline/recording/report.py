@@ -38,7 +38,9 @@ def report(outcomes: Sequence[Outcome], backend: str, evidence: Path) -> Iterato
     rows = [COLUMNS, *(_row(outcome, backend) for outcome in outcomes)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
-        yield "  ".join(f"{text:{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
+        yield "  ".join(
+            f"{text:{width}}" for text, width in zip(row, widths, strict=True)
+        ).rstrip()
     facts = [outcome.facts for outcome in outcomes if outcome.facts]
     yield from dict.fromkeys(checkout(fact.git) for fact in facts)
     if facts:
@@ -51,7 +53,9 @@ def report(outcomes: Sequence[Outcome], backend: str, evidence: Path) -> Iterato
 def checkout(git: Any) -> str:
     """Return a line that says which sources ran."""
     if git is None:
-        return "Checkout: no git here, so no commit is recorded; a release refuses that."
+        return (
+            "Checkout: no git here, so no commit is recorded; a release refuses that."
+        )
     if git.dirty:
         return (
             f"Checkout: changed since commit {git.commit[:12]}, and the manifest says so; a "
@@ -66,4 +70,12 @@ def _row(outcome: Outcome, backend: str) -> tuple[str, ...]:
         device = printable(facts.backend.device_name)
         checks = f"{sum(check.passed for check in facts.checks)} of {len(facts.checks)}"
     seconds = "–" if outcome.seconds is None else f"{outcome.seconds:.0f}"
-    return outcome.lesson, backend, device, outcome.state, checks, seconds, printable(outcome.where)
+    return (
+        outcome.lesson,
+        backend,
+        device,
+        outcome.state,
+        checks,
+        seconds,
+        printable(outcome.where),
+    )

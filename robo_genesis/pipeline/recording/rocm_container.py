@@ -22,7 +22,9 @@ PLACE = "/course"  # Where the container sees the checkout
 DEVICES = (Path("/dev/kfd"), Path("/dev/dri"))
 
 # How the variables begin that the container gets; the image has a ROCm of its own.
-PASSED = tuple(name for name in ENGINE_PREFIXES if name not in ("ROCM_", "NVIDIA_TF32_"))
+PASSED = tuple(
+    name for name in ENGINE_PREFIXES if name not in ("ROCM_", "NVIDIA_TF32_")
+)
 
 WITHOUT = "book/evidence/recording.md describes the steps without a container."
 
@@ -57,9 +59,9 @@ def record(host: Host) -> int:
 def commands(host: Host) -> list[list[str]]:
     """Return the command that builds the image and the one that records a lab in it.
 
-    Docker's options are those of AMD's page on ROCm containers. The process has the ids of the
-    user, so that the bundle belongs to the user, and the groups of the devices, `video` and
-    `render`. Podman keeps the user's own groups.
+    Docker's options are those of AMD's page on ROCm containers. The process has the ids
+    of the user, so that the bundle belongs to the user, and the groups of the devices,
+    `video` and `render`. Podman keeps the user's own groups.
 
     Args:
         host: see there. LESSON of its environment names the lab.
@@ -86,11 +88,17 @@ def commands(host: Host) -> list[list[str]]:
     if engine == "podman":
         run += ["--group-add=keep-groups", "--userns=keep-id"]
     else:
-        nodes = [node for device in host.devices for node in (device, *device.glob("*"))]
-        groups = {node.stat().st_gid for node in nodes if stat.S_ISCHR(node.stat().st_mode)}
+        nodes = [
+            node for device in host.devices for node in (device, *device.glob("*"))
+        ]
+        groups = {
+            node.stat().st_gid for node in nodes if stat.S_ISCHR(node.stat().st_mode)
+        }
         run += [f"--group-add={group}" for group in sorted(groups)]
         run += [f"--user={os.getuid()}:{os.getgid()}"]
     run += [f"--volume={host.root}:{PLACE}", f"--workdir={PLACE}"]
-    passed = sorted(n for n in host.environment if n.startswith(PASSED) or n == "LESSON")
+    passed = sorted(
+        n for n in host.environment if n.startswith(PASSED) or n == "LESSON"
+    )
     run += [f"--env={given}" for given in ("HOME=/tmp", "USER=course", *passed)]
     return [build, [*run, IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]]

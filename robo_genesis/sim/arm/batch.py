@@ -1,7 +1,7 @@
 """One robot in each environment of a batched scene: reset, command and step all or some of them.
 
-Row k of an array belongs to environment k. A scene that was built without environments has arrays
-without this axis; here it counts as one row.
+Row k of an array belongs to environment k. A scene that was built without environments
+has arrays without this axis; here it counts as one row.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,15 +22,25 @@ class Batch:
     """The robot in all environments from a complete reset on, and the record of its states."""
 
     def __init__(
-        self, scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase],
-        bodies: Sequence[Any] = (), begin: Callable[[], None] | None = None,
-    ) -> None:  # fmt: skip
+        self,
+        scene: Any,
+        robot: Any,
+        joints: JointMap,
+        cases: Sequence[ControlCase],
+        bodies: Sequence[Any] = (),
+        begin: Callable[[], None] | None = None,
+    ) -> None:
         """Reset every environment to the start of its case; raises as `reset_batch`.
 
-        Traces also have the links of `bodies`, as in `joint_control.run_case`. `begin` is called
-        after the reset, as to place them.
+        Traces also have the links of `bodies`, as in `joint_control.run_case`. `begin`
+        is called after the reset, as to place them.
         """
-        self.scene, self.robot, self.cases, self.bodies = scene, robot, list(cases), bodies
+        self.scene, self.robot, self.cases, self.bodies = (
+            scene,
+            robot,
+            list(cases),
+            bodies,
+        )
         self.dofs: list[int] = joints.dofs_idx_local.tolist()
         batch = reset_batch(scene, robot, joints, self.cases)
         if begin:
@@ -48,12 +58,13 @@ class Batch:
         """Command positions to all environments, or to some of them; the others keep theirs.
 
         Args:
-            q_target: (k, d), row j for environment `envs[j]` [rad or m]. Nothing broadcasts.
+            q_target: (k, d), row j for environment `envs[j]` [rad or m]. Nothing
+                broadcasts.
             envs: numbers of k environments; all, in their order, by default.
 
         Raises:
-            CaseError: the rows are not one for each environment, or an environment does not exist
-                or is named twice.
+            CaseError: the rows are not one for each environment, or an environment does
+                not exist or is named twice.
         """
         chosen = self._chosen(envs)
         if np.shape(q_target) != (len(chosen), len(self.dofs)):
@@ -79,8 +90,8 @@ class Batch:
     def reset_rows(self, envs: Sequence[int]) -> None:
         """Reset some environments to the start of their cases; the others keep their state.
 
-        Gains and ranges of force remain; the command of the chosen environments ends, so send a
-        new one before the next step. Their traces begin here.
+        Gains and ranges of force remain; the command of the chosen environments ends,
+        so send a new one before the next step. Their traces begin here.
 
         Raises:
             CaseError: an environment does not exist, or is named twice.
@@ -98,7 +109,10 @@ class Batch:
         first, case = int(self.begin[row]), self.cases[row]
         return joint_control.assemble(
             replace(case, steps=len(self.sent) - first),
-            [tuple(values[row] for values in reading) for reading in self.readings[first:]],
+            [
+                tuple(values[row] for values in reading)
+                for reading in self.readings[first:]
+            ],
             [target[row] for target in self.sent[first:]],
             self.effort_limit[row],
         )
@@ -117,7 +131,11 @@ class Batch:
         """Return the numbers of environments as a list, of all where none are given."""
         known = range(len(self.cases))
         chosen = list(known) if envs is None else [int(k) for k in envs]
-        if not chosen or not set(chosen) <= set(known) or len(set(chosen)) != len(chosen):
+        if (
+            not chosen
+            or not set(chosen) <= set(known)
+            or len(set(chosen)) != len(chosen)
+        ):
             raise CaseError(
                 f"Environments {chosen} were given. Valid are different numbers from 0 to "
                 f"{len(self.cases) - 1}, at least one. The engine itself does not check them."
@@ -131,8 +149,8 @@ def run_batch(
     """Do as `joint_control.run_case` does, with each case in an environment of its own.
 
     Args:
-        scene: built with `n_envs` = number of cases, and with `batch_dofs_info`, without which all
-            environments share one set of gains.
+        scene: built with `n_envs` = number of cases, and with `batch_dofs_info`,
+            without which all environments share one set of gains.
         robot: the scene's robot.
         joints: its map.
         cases: by name, of equal `dt`, `substeps` and `steps`.
@@ -155,11 +173,12 @@ def reset_batch(
     """Do as `joint_control.reset` does in every environment, and read back what was set.
 
     Raises:
-        CaseError: the scene does not fit the cases, a case must not be run, or a value reads back
-            differently from the value that was set.
+        CaseError: the scene does not fit the cases, a case must not be run, or a value
+            reads back differently from the value that was set.
 
     Returns:
-        The cases as one: its arrays are (cases, joints), without environments (joints,).
+        The cases as one: its arrays are (cases, joints), without environments
+            (joints,).
     """
     for case in cases:
         joint_control.validate(case, joints)
@@ -185,15 +204,17 @@ def reset_batch(
 
 def set_link_mass(
     robot: Any, link: str, masses: FloatArray, envs: Sequence[int]
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """Give a link another mass in some environments; return all masses as read back (B,) [kg].
 
-    Centre of mass and inertia of the link remain. A reset of the scene keeps the masses. A newer
-    engine computes what follows from a mass again when it is written, also when the mass is the
-    same: forces may then differ in the last bit. So name no environment that keeps its mass.
+    Centre of mass and inertia of the link remain. A reset of the scene keeps the
+    masses. A newer engine computes what follows from a mass again when it is written,
+    also when the mass is the same: forces may then differ in the last bit. So name no
+    environment that keeps its mass.
 
     Args:
-        robot: of a scene with `batch_links_info`, without which there is one mass for all.
+        robot: of a scene with `batch_links_info`, without which there is one mass for
+            all.
         link: its name.
         masses: (k,) [kg], one for each environment of `envs`.
         envs: k environments.

@@ -31,7 +31,9 @@ def runs(
         heights = followed(traces, links.index(replay.follows))
         thing = f"the {replay.thing}"
         moves = {case: f"**{case}**:" for case in traces}
-        return Runs(replay, thing, traces=traces, links=links, channels=heights, moves=moves)
+        return Runs(
+            replay, thing, traces=traces, links=links, channels=heights, moves=moves
+        )
     joint, of_joint = replay.follows, channels(traces, joints, replay.follows)
     reaching = distances(traces, links, replay.goal, replay.hand) if replay.goal else []
     return Runs(
@@ -42,21 +44,27 @@ def runs(
         channels=reaching or of_joint,
         levels=[] if reaching else levels(traces, joints, joint, replay.band),
         moves={
-            case: f"**{case}**: {motion(trace, joints, joint)}" for case, trace in traces.items()
+            case: f"**{case}**: {motion(trace, joints, joint)}"
+            for case, trace in traces.items()
         },
     )
 
 
-def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[Channel]:
+def channels(
+    traces: Mapping[str, Trace], joints: JointMap, joint: str
+) -> list[Channel]:
     """Return position, velocity and control force of one joint.
 
-    The force of the first state is that of the controller after the target has been set and before
-    the first step.
+    The force of the first state is that of the controller after the target has been set
+    and before the first step.
     """
     k = joints.entry(joint)
     unit, effort = joints.position_units[k], joints.effort_units[k]
     q = {case: trace.q[:, k] for case, trace in traces.items()}
-    qd = {case: np.append(trace.start_qd[k], trace.qd[:, k]) for case, trace in traces.items()}
+    qd = {
+        case: np.append(trace.start_qd[k], trace.qd[:, k])
+        for case, trace in traces.items()
+    }
     force = {
         case: np.append(trace.start_control_force[k], trace.control_force[:, k])
         for case, trace in traces.items()
@@ -70,28 +78,38 @@ def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[
 
 def followed(traces: Mapping[str, Trace], link: int) -> list[Channel]:
     """Return the height of the origin of a link of the robot, or of a body beside it."""
-    heights = {case: 1000 * trace.link_pos[:, link, 2] for case, trace in traces.items()}
+    heights = {
+        case: 1000 * trace.link_pos[:, link, 2] for case, trace in traces.items()
+    }
     return [Channel("height", "z", "mm", 1, heights)]
 
 
 def distances(
-    traces: Mapping[str, Trace], links: Sequence[str],
-    goal: Callable[[str, int], FloatArray], hand: str,
-) -> list[Channel]:  # fmt: skip
+    traces: Mapping[str, Trace],
+    links: Sequence[str],
+    goal: Callable[[str, int], FloatArray],
+    hand: str,
+) -> list[Channel]:
     """Return the distance of the hand from its goal, which each state has."""
     if hand not in links:
-        raise ValueError(f"The record has no link {hand!r} as hand. Links: {', '.join(links)}.")
+        raise ValueError(
+            f"The record has no link {hand!r} as hand. Links: {', '.join(links)}."
+        )
     found = {
-        case: 1000 * np.linalg.norm(
-            trace.link_pos[:, links.index(hand)] - [goal(case, k) for k in range(len(trace.t))],
+        case: 1000
+        * np.linalg.norm(
+            trace.link_pos[:, links.index(hand)]
+            - [goal(case, k) for k in range(len(trace.t))],
             axis=1,
         )
         for case, trace in traces.items()
-    }  # fmt: skip
+    }
     return [Channel("distance from the target", "distance", "mm", 1, found)]
 
 
-def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: float) -> list[Level]:
+def levels(
+    traces: Mapping[str, Trace], joints: JointMap, joint: str, band: float
+) -> list[Level]:
     """Return the target with its settling band of half width `band`, and the force limit."""
     k = joints.entry(joint)
     unit, effort = joints.position_units[k], joints.effort_units[k]
@@ -99,10 +117,14 @@ def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: floa
     limit = {case: float(trace.effort_limit[k]) for case, trace in traces.items()}
     texts = {case: one_by_one(found, unit, ",\n") for case, found in values.items()}
     limits = {case: (-value, value) for case, value in limit.items()}
-    limit_texts = {case: f"±{with_unit(value, effort, 0)}" for case, value in limit.items()}
+    limit_texts = {
+        case: f"±{with_unit(value, effort, 0)}" for case, value in limit.items()
+    }
     legend = "Short dashes, at the edges of the control force: its limits."
     return [
-        Level("target", "position", "target", "Dotted: the target.", values, texts, band),
+        Level(
+            "target", "position", "target", "Dotted: the target.", values, texts, band
+        ),
         Level("force limit", "control force", "limit", legend, limits, limit_texts),
     ]
 

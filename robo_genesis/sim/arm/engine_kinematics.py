@@ -27,10 +27,11 @@ class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
 class IkSettings:
     """Settings of the engine's solver. All are given to it, because its defaults may change.
 
-    It stops when both residuals are within `position_tolerance` [m] and `rotation_tolerance` [rad].
-    After `iterations` it draws another start within the joint limits, up to `samples` starts with
-    the given one. With `samples=1` it draws nothing, so equal calls give equal answers. `clearance`
-    is not for the solver: the least height of the fingertips of an accepted command [m].
+    It stops when both residuals are within `position_tolerance` [m] and
+    `rotation_tolerance` [rad]. After `iterations` it draws another start within the
+    joint limits, up to `samples` starts with the given one. With `samples=1` it draws
+    nothing, so equal calls give equal answers. `clearance` is not for the solver: the
+    least height of the fingertips of an accepted command [m].
     """
 
     position_tolerance: float = 5e-4
@@ -51,9 +52,10 @@ class IkSettings:
 class IkAnswer:
     """What the engine's solver returned, accepted or not.
 
-    `q` (…, d) has the order of the joint map. `error` (…, 6) leads from the pose of the answer to
-    the target: a translation [m] and a rotation vector [rad], both in the axes of the world. The
-    leading axis has one row for each environment; without environments there is none.
+    `q` (…, d) has the order of the joint map. `error` (…, 6) leads from the pose of the
+    answer to the target: a translation [m] and a rotation vector [rad], both in the
+    axes of the world. The leading axis has one row for each environment; without
+    environments there is none.
     """
 
     q: FloatArray
@@ -61,13 +63,20 @@ class IkAnswer:
 
 
 def solve_ik(
-    robot: Any, joints: JointMap, position: FloatArray, quat: FloatArray, q_start: FloatArray,
-    settings: IkSettings, envs: Sequence[int] | None = None, of: RobotModel = FRANKA,
-) -> IkAnswer:  # fmt: skip
+    robot: Any,
+    joints: JointMap,
+    position: FloatArray,
+    quat: FloatArray,
+    q_start: FloatArray,
+    settings: IkSettings,
+    envs: Sequence[int] | None = None,
+    of: RobotModel = FRANKA,
+) -> IkAnswer:
     """Ask the engine for joint positions that bring the hand to a pose. Nothing is commanded.
 
-    In a scene with environments all arrays have one row for each asked environment, and so has the
-    answer. The engine would broadcast some other shapes; here they are errors.
+    In a scene with environments all arrays have one row for each asked environment, and
+    so has the answer. The engine would broadcast some other shapes; here they are
+    errors.
 
     Args:
         robot: rigid entity of a built scene.
@@ -137,14 +146,15 @@ def accepted_command(
 
     Args:
         answer: of one question, or with a row for each.
-        settings: of the solver, with the tolerances of both residuals and the least clearance.
+        settings: of the solver, with the tolerances of both residuals and the least
+            clearance.
         q_start: (…, d) joint positions with those of the fingers [rad or m].
         of: the robot.
 
     Raises:
-        NotAccepted: an answer is not finite, a residual is beyond its tolerance, or the fingertips
-            would be too low; the message names the rows, and gives the largest residuals and the
-            lowest height.
+        NotAccepted: an answer is not finite, a residual is beyond its tolerance, or the
+            fingertips would be too low; the message names the rows, and gives the
+            largest residuals and the lowest height.
     """
     height = tip_height(answer.q, of)
     near = accepted(answer.q, answer.error, *settings.tolerances)
@@ -168,7 +178,8 @@ def accepted_command(
 def jacobian(robot: Any, joints: JointMap, link: str = END_EFFECTOR) -> FloatArray:
     """Return the Jacobian (6, d) of the origin of a link, by default the hand, in the state now.
 
-    The first three rows are its velocity, the others its angular velocity, in the world's axes.
+    The first three rows are its velocity, the others its angular velocity, in the
+    world's axes.
     """
     found = to_numpy(robot.get_jacobian(link=robot.get_link(link)))
     return np.asarray(found[:, joints.dofs_idx_local])
@@ -181,4 +192,6 @@ def require_finite(name: str, values: FloatArray, shape: tuple[int, ...]) -> Non
             f"{name} has shape {np.shape(values)}, expected {shape}. Give one value for each entry."
         )
     if not np.isfinite(values).all():
-        raise KinematicsError(f"{name} is {np.asarray(values)}, expected finite numbers.")
+        raise KinematicsError(
+            f"{name} is {np.asarray(values)}, expected finite numbers."
+        )

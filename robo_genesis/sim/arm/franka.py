@@ -7,7 +7,11 @@ from robo_genesis.sim.arm.model import RobotModel
 FRANKA_MJCF = "xml/franka_emika_panda/panda.xml"
 
 # The nine one-DOF joints, in the order of every array of the course.
-JOINT_NAMES = (*(f"joint{number}" for number in range(1, 8)), "finger_joint1", "finger_joint2")
+JOINT_NAMES = (
+    *(f"joint{number}" for number in range(1, 8)),
+    "finger_joint1",
+    "finger_joint2",
+)
 
 FRANKA = RobotModel(FRANKA_MJCF, JOINT_NAMES, hand="hand", fingers=2, tip=0.1123)
 
@@ -20,10 +24,13 @@ CREDIT = (
 # Counts of the robot's model, as the engine reports them.
 MODEL_COUNTS = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
 
-# For each link the index of its parent, -1 for the base; both fingers belong to the hand.
+# For each link the index of its parent, -1 for the base; both fingers belong to the
+# hand.
 LINK_PARENTS = (-1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8)
 
-JOINT_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2  # Type of each joint of `JOINT_NAMES`
+JOINT_TYPES = ("REVOLUTE",) * 7 + (
+    "PRISMATIC",
+) * 2  # Type of each joint of `JOINT_NAMES`
 
 
 def per_joint(*values: float) -> FloatArray:

@@ -20,9 +20,10 @@ from robo_genesis.sim.session import CaseError, require_built
 class Controlled:
     """A robot under position control. A lesson's case adds what it commands.
 
-    Arrays have one entry for each joint, in the order of the map, and are by default those of the
-    Franka, as is the `model`: `q_start` [rad or m]; `kp` [N·m/rad or N/m]; `kv` [N·m·s/rad or
-    N·s/m]; `effort_limit` [N·m or N], symmetric. `dt` [s]; `steps` counts outer steps.
+    Arrays have one entry for each joint, in the order of the map, and are by default
+    those of the Franka, as is the `model`: `q_start` [rad or m]; `kp` [N·m/rad or N/m];
+    `kv` [N·m·s/rad or N·s/m]; `effort_limit` [N·m or N], symmetric. `dt` [s]; `steps`
+    counts outer steps.
     """
 
     model: RobotModel = franka.FRANKA
@@ -59,7 +60,9 @@ def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[
         if np.ndim(a) == 0:
             found += [one_field.name] if a != b else []
         else:
-            found += [f"{one_field.name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)]
+            found += [
+                f"{one_field.name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)
+            ]
     return found
 
 
@@ -80,10 +83,14 @@ def validate(case: ControlCase, joints: JointMap) -> None:
             )
         for row, k in np.argwhere(~np.isfinite(np.atleast_2d(values))):
             value = np.atleast_2d(values)[row, k]
-            raise CaseError(f"{name}[{joints.names[k]}] is {value}, expected a finite number.")
+            raise CaseError(
+                f"{name}[{joints.names[k]}] is {value}, expected a finite number."
+            )
     for name in ("q_start", "q_target"):
         q = np.atleast_2d(getattr(case, name))
-        outside = (q < joints.lower - LIMIT_TOLERANCE) | (q > joints.upper + LIMIT_TOLERANCE)
+        outside = (q < joints.lower - LIMIT_TOLERANCE) | (
+            q > joints.upper + LIMIT_TOLERANCE
+        )
         for row, k in np.argwhere(outside):
             raise CaseError(
                 f"{name}[{joints.names[k]}] is {q[row, k]:g} {joints.position_units[k]}, outside "
@@ -93,7 +100,9 @@ def validate(case: ControlCase, joints: JointMap) -> None:
     for name in ("kp", "kv", "effort_limit"):
         for k in np.flatnonzero(np.asarray(getattr(case, name)) < 0):
             value = getattr(case, name)[k]
-            raise CaseError(f"{name}[{joints.names[k]}] is {value}, expected zero or more.")
+            raise CaseError(
+                f"{name}[{joints.names[k]}] is {value}, expected zero or more."
+            )
     if case.steps < 1 or not case.dt > 0 or case.substeps < 1:
         raise CaseError(
             f"steps={case.steps}, dt={case.dt}, substeps={case.substeps}: all must be positive."
@@ -103,12 +112,13 @@ def validate(case: ControlCase, joints: JointMap) -> None:
 def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
     """Bring scene and controller to the case's start, whatever ran before.
 
-    `scene.reset()` clears state and control mode but keeps gains and effort range, so these are
-    set again and read back; then the start position is assigned with zero velocity.
+    `scene.reset()` clears state and control mode but keeps gains and effort range, so
+    these are set again and read back; then the start position is assigned with zero
+    velocity.
 
     Raises:
-        CaseError: the scene is not built yet or has another time step, or what the engine reads
-            back differs from what was asked for.
+        CaseError: the scene is not built yet or has another time step, or what the
+            engine reads back differs from what was asked for.
     """
     require_built(scene, case)
     validate(case, joints)
@@ -140,16 +150,24 @@ def set_up(robot: Any, dofs: list[int], case: ControlCase) -> None:
     }
     for name, (found, asked) in read_back.items():
         if not np.allclose(to_numpy(found), asked, rtol=1e-6, atol=LIMIT_TOLERANCE):
-            raise CaseError(f"{name} reads back {to_numpy(found)} after reset, asked for {asked}.")
+            raise CaseError(
+                f"{name} reads back {to_numpy(found)} after reset, asked for {asked}."
+            )
 
 
 def run_case(
-    scene: Any, robot: Any, joints: JointMap, case: ControlCase, bodies: Sequence[Any] = (),
-    begin: Callable[[], None] | None = None, after: Callable[[int], None] | None = None,
-) -> Trace:  # fmt: skip
+    scene: Any,
+    robot: Any,
+    joints: JointMap,
+    case: ControlCase,
+    bodies: Sequence[Any] = (),
+    begin: Callable[[], None] | None = None,
+    after: Callable[[int], None] | None = None,
+) -> Trace:
     """Reset, then command the target of each step and step; record every state.
 
-    Position, link poses: before the first step and after each. Velocity and both forces: after
+    Position, link poses: before the first step and after each. Velocity and both
+        forces: after
     each step, with the time at which the step ends. `get_dofs_control_force` computes
     its value from the state at the call, so after a step it belongs to the new state.
 
@@ -197,7 +215,8 @@ def assign_postures(
     """Reset, then assign postures (case.steps, d) [rad or m] one after the other, and read each.
 
     Returns:
-        A trace of the start and the assigned postures. Its time is nominal: none passed.
+        A trace of the start and the assigned postures. Its time is nominal: none
+        passed.
     """
     reset(scene, robot, joints, case)
     dofs = joints.dofs_idx_local.tolist()
@@ -241,16 +260,22 @@ def assemble(
     )
 
 
-def read(robot: Any, dofs: list[int], bodies: Sequence[Any] = ()) -> tuple[FloatArray, ...]:
+def read(
+    robot: Any, dofs: list[int], bodies: Sequence[Any] = ()
+) -> tuple[FloatArray, ...]:
     """Return what the engine has now, in a batch with an axis of environments first.
 
-    Position (d,), link positions (l, 3) [m] and orientations (l, 4), those of `bodies` last;
-    velocity, control force and internal force, each (d,).
+    Position (d,), link positions (l, 3) [m] and orientations (l, 4), those of `bodies`
+    last; velocity, control force and internal force, each (d,).
     """
     return (
         to_numpy(robot.get_dofs_position(dofs)),
-        np.concatenate([to_numpy(of.get_links_pos()) for of in (robot, *bodies)], axis=-2),
-        np.concatenate([to_numpy(of.get_links_quat()) for of in (robot, *bodies)], axis=-2),
+        np.concatenate(
+            [to_numpy(of.get_links_pos()) for of in (robot, *bodies)], axis=-2
+        ),
+        np.concatenate(
+            [to_numpy(of.get_links_quat()) for of in (robot, *bodies)], axis=-2
+        ),
         to_numpy(robot.get_dofs_velocity(dofs)),
         to_numpy(robot.get_dofs_control_force(dofs)),
         to_numpy(robot.get_dofs_force(dofs)),

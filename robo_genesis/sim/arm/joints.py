@@ -85,19 +85,22 @@ def resolve_joints(robot: Any, names: Sequence[str]) -> JointMap:
         The map, in the order of `names`.
 
     Raises:
-        JointError: a name is unknown (the message lists the model's names), or its joint is not
-            one DOF and one qpos (the message gives both counts).
+        JointError: a name is unknown (the message lists the model's names), or its
+            joint is not one DOF and one qpos (the message gives both counts).
     """
     joints = [one_dof_joint(robot, name) for name in names]
     dofs_idx_local = np.array([joint.dofs_idx_local[0] for joint in joints])  # (n,)
     qs_idx_local = np.array([joint.qs_idx_local[0] for joint in joints])  # (n,)
     if len(set(dofs_idx_local.tolist())) != len(names):
-        raise JointError(f"Names {', '.join(names)} share DOFs: {dofs_idx_local.tolist()}.")
+        raise JointError(
+            f"Names {', '.join(names)} share DOFs: {dofs_idx_local.tolist()}."
+        )
     limits = robot.get_dofs_limit(dofs_idx_local.tolist())
-    # With `batch_dofs_info` there is one row for each environment, all equal in a new scene. JSON
-    # keeps float64.
+    # With `batch_dofs_info` there is one row for each environment, all equal in a new
+    # scene. JSON keeps float64.
     lower, upper = (
-        to_numpy(bound).astype(np.float64).reshape(-1, len(names))[0] for bound in limits
+        to_numpy(bound).astype(np.float64).reshape(-1, len(names))[0]
+        for bound in limits
     )
     for array in (dofs_idx_local, qs_idx_local, lower, upper):
         array.setflags(write=False)
@@ -127,8 +130,8 @@ def describe(page: Any, robot: Any, of: RobotModel = FRANKA) -> JointMap:
 
     Raises:
         JointError: a joint is missing, or does not have one DOF.
-        ModelError: the robot has other DOFs than its model, or, with a fixed base, another damping
-            or armature than its file.
+        ModelError: the robot has other DOFs than its model, or, with a fixed base,
+            another damping or armature than its file.
     """
     counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
     page.readings["model"] = dict(zip(MODEL_COUNTS, counted, strict=True))
@@ -140,7 +143,11 @@ def describe(page: Any, robot: Any, of: RobotModel = FRANKA) -> JointMap:
 
 def require_model(robot: Any, joints: JointMap, of: RobotModel) -> None:
     """Raise ModelError unless a robot in the engine is the one of its model."""
-    others = {j.name: j.type.name for j in robot.joints if j.n_dofs and j.name not in of.joints}
+    others = {
+        j.name: j.type.name
+        for j in robot.joints
+        if j.n_dofs and j.name not in of.joints
+    }
     if [*others.values()] != ["FREE"] * of.free_base:
         raise ModelError(
             f"Beside the joints of its RobotModel, {of.file} moves by {others or 'none'}, expected "
@@ -154,7 +161,9 @@ def require_model(robot: Any, joints: JointMap, of: RobotModel) -> None:
 
     (model, _, _, dof_at), dofs = bare_robot(of=of), joints.dofs_idx_local.tolist()
     for name in ("armature", "damping"):
-        found = to_numpy(getattr(robot, f"get_dofs_{name}")(dofs)).reshape(-1, len(dofs))[0]
+        found = to_numpy(getattr(robot, f"get_dofs_{name}")(dofs)).reshape(
+            -1, len(dofs)
+        )[0]
         valid = getattr(model, f"dof_{name}")[dof_at]
         if not np.allclose(found, valid, rtol=1e-5):
             raise ModelError(

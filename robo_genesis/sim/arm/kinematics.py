@@ -1,8 +1,8 @@
 """Kinematics of the Franka's arm in NumPy: rotations, poses, Jacobian and damped least squares.
 
-Quaternions are (w, x, y, z) of unit length. All functions take leading dimensions `…`, so one call
-handles one posture or many. Positions are in metres, angles in radians. The frame is that of the
-world, and the base of the arm is at its origin.
+Quaternions are (w, x, y, z) of unit length. All functions take leading dimensions `…`,
+so one call handles one posture or many. Positions are in metres, angles in radians. The
+frame is that of the world, and the base of the arm is at its origin.
 """
 
 from typing import NamedTuple
@@ -15,10 +15,11 @@ from robo_genesis.sim.arm.franka import FRANKA, LINK_PARENTS
 
 HALF = np.sqrt(0.5)
 
-# Name of each link, its position [m] and orientation in its parent, as in the model file.
+# Name of each link, its position [m] and orientation in its parent, as in the model
+# file.
 #
-# The parent of the first is the base. Then each of the seven arm links turns by its joint's angle
-# about its own z axis. The hand is fixed to the last of them.
+# The parent of the first is the base. Then each of the seven arm links turns by its
+# joint's angle about its own z axis. The hand is fixed to the last of them.
 CHAIN = (
     ("link1", (0.0, 0.0, 0.333), (1.0, 0.0, 0.0, 0.0)),
     ("link2", (0.0, 0.0, 0.0), (HALF, -HALF, 0.0, 0.0)),
@@ -32,7 +33,9 @@ CHAIN = (
 
 ARM = len(CHAIN) - 1  # Number of joints of the arm
 
-TIP = FRANKA.tip  # From the hand's origin to the ends of the fingers, along its z axis [m]
+TIP = (
+    FRANKA.tip
+)  # From the hand's origin to the ends of the fingers, along its z axis [m]
 
 # Index of the hand among the links of the arrays: the parent of both fingers.
 HAND = LINK_PARENTS[-1]
@@ -81,7 +84,9 @@ def rotation_vector(quat: FloatArray) -> FloatArray:
     quat = np.where(quat[..., :1] < 0, -quat, quat)
     length = np.linalg.norm(quat[..., 1:], axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(length, quat[..., :1])
-    factor = np.divide(angle, length, out=np.full_like(length, 2.0), where=length > 1e-12)
+    factor = np.divide(
+        angle, length, out=np.full_like(length, 2.0), where=length > 1e-12
+    )
     return np.asarray(quat[..., 1:] * factor)
 
 
@@ -103,7 +108,10 @@ def link_poses(q: FloatArray) -> Pose:
             f"{q.shape[-1]} joint positions given, expected {ARM} of the Franka or more. For "
             "another arm call sim.mujoco.kinematics.link_poses with its RobotModel."
         )
-    at, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])  # of the link before, first the base
+    at, turn = (
+        np.zeros(3),
+        np.array([1.0, 0.0, 0.0, 0.0]),
+    )  # of the link before, first the base
     positions, quats = [], []
     for k, (_, position, quat) in enumerate(CHAIN):
         at = at + rotate(turn, np.array(position))
@@ -124,8 +132,8 @@ def hand_pose(q: FloatArray) -> Pose:
 def jacobian(q: FloatArray) -> FloatArray:
     """Return the geometric Jacobian (…, 6, 7) of the hand's origin.
 
-    Column k is the hand's velocity [m/s] above its angular velocity [rad/s], both in the axes of
-    the world, while joint k turns with 1 rad/s and the others rest.
+    Column k is the hand's velocity [m/s] above its angular velocity [rad/s], both in
+    the axes of the world, while joint k turns with 1 rad/s and the others rest.
 
     Args:
         q: (…, 7 or more) joint positions; the arm's are the first seven [rad].
@@ -154,12 +162,16 @@ def pose_error(target: Pose, pose: Pose) -> FloatArray:
 
 def distances(error: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the lengths (…) [m] and (…) [rad] of both parts of pose errors (…, 6)."""
-    return np.linalg.norm(error[..., :3], axis=-1), np.linalg.norm(error[..., 3:], axis=-1)
+    return np.linalg.norm(error[..., :3], axis=-1), np.linalg.norm(
+        error[..., 3:], axis=-1
+    )
 
 
 def measured_hand(trace: Trace, state: int | slice) -> Pose:
     """Return the pose of the hand in one state of a run or several, as the engine reported it."""
-    at, quat = (of[state, HAND].astype(np.float64) for of in (trace.link_pos, trace.link_quat))
+    at, quat = (
+        of[state, HAND].astype(np.float64) for of in (trace.link_pos, trace.link_quat)
+    )
     return Pose(at, quat / np.linalg.norm(quat, axis=-1, keepdims=True))
 
 
@@ -170,7 +182,10 @@ def distance_and_angle(target: Pose, pose: Pose) -> tuple[float, float]:
 
 
 def accepted(
-    q: FloatArray, error: FloatArray, position_tolerance: float, rotation_tolerance: float
+    q: FloatArray,
+    error: FloatArray,
+    position_tolerance: float,
+    rotation_tolerance: float,
 ) -> np.ndarray:
     """Return whether (…) answers of a solver may be commanded: finite, residual within tolerance.
 
@@ -182,7 +197,9 @@ def accepted(
     """
     finite = np.isfinite(q).all(axis=-1) & np.isfinite(error).all(axis=-1)
     apart, angle = distances(error)
-    return np.asarray(finite & (apart <= position_tolerance) & (angle <= rotation_tolerance))
+    return np.asarray(
+        finite & (apart <= position_tolerance) & (angle <= rotation_tolerance)
+    )
 
 
 def fingertip(pose: Pose) -> FloatArray:
@@ -221,12 +238,19 @@ def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatAr
 
 
 def solve(
-    target: Pose, q: FloatArray, lower: FloatArray, upper: FloatArray, *,
-    iterations: int, damping: float, largest: float = 0.5,
-) -> FloatArray:  # fmt: skip
+    target: Pose,
+    q: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    *,
+    iterations: int,
+    damping: float,
+    largest: float = 0.5,
+) -> FloatArray:
     """Return the joint positions (…, 7) that damped least squares reaches from starts (…, 7) [rad].
 
-    Each joint moves by `largest` [rad] at most in one iteration and stays within its limits.
+    Each joint moves by `largest` [rad] at most in one iteration and stays within its
+    limits.
 
     Args:
         target: pose of the hand.

@@ -1,9 +1,10 @@
 """What the arrays of a position-controlled robot have in common, by the mechanics of its model.
 
-The poses of the links are a function of the positions, the control force is the control law, and
-the internal force is the net force at the state before the last solver step. MuJoCo computes poses,
-masses and gravity of the same model file in float64. What computes them is imported where it is
-used: a page measures without it. Forces grow with KP, and so do their tolerances from `STIFF` on.
+The poses of the links are a function of the positions, the control force is the control
+law, and the internal force is the net force at the state before the last solver step.
+MuJoCo computes poses, masses and gravity of the same model file in float64. What
+computes them is imported where it is used: a page measures without it. Forces grow with
+KP, and so do their tolerances from `STIFF` on.
 
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
@@ -28,30 +29,43 @@ from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.model import RobotModel
-from robo_genesis.sim.laws import ZERO, apart, broken, mean_speed, times, unit_quaternions
+from robo_genesis.sim.laws import (
+    ZERO,
+    apart,
+    broken,
+    mean_speed,
+    times,
+    unit_quaternions,
+)
 
 MEASURES = False
 
 LAW, POSE, STEPPED, MEAN, NEXT = 4e-3, 2.5e-6, 2e-3, 0.7, (2e-6, 6e-4)
 
-# Tolerance of the internal force of a joint and of a finger [N·m or N]. Fingers also have a force
-# between them, which the rule does not know.
+# Tolerance of the internal force of a joint and of a finger [N·m or N]. Fingers also
+# have a force between them, which the rule does not know.
 NET_FORCE = (1e-2, 6e-2)
 
-STIFF = 1e4  # KP up to which rounding of a position stays within the tolerances [N·m/rad or N/m]
+# KP up to which rounding of a position stays within the tolerances [N·m/rad or N/m]
+STIFF = 1e4
 
 
 def driven_run(
-    trace: Trace, case: ControlCase, links: Sequence[str],
-    net_force: FloatArray | None = None, load: float = 0.0,
-) -> Iterator[Finding]:  # fmt: skip
+    trace: Trace,
+    case: ControlCase,
+    links: Sequence[str],
+    net_force: FloatArray | None = None,
+    load: float = 0.0,
+) -> Iterator[Finding]:
     """Yield what no run of `joint_control.run_case` has.
 
     Args:
         trace: the run.
-        case: its settings; the target is one for all steps, (d,), or one for each, (n, d).
+        case: its settings; the target is one for all steps, (d,), or one for each, (n,
+            d).
         links: names of the links of the trace.
-        net_force: (d,) tolerances of the internal force [N·m or N], `NET_FORCE` by default.
+        net_force: (d,) tolerances of the internal force [N·m or N], `NET_FORCE` by
+            default.
         load: what is added to the mass of the hand [kg].
 
     Raises:
@@ -61,7 +75,9 @@ def driven_run(
     yield from dynamics(trace, case, net_force, load)
 
 
-def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
+def commanded(
+    trace: Trace, case: ControlCase, links: Sequence[str]
+) -> Iterator[Finding]:
     """Yield what no run with a commanded target has, whatever engine steps; arguments as before.
 
     Of a robot whose base moves freely nothing is known about where its links are.
@@ -99,28 +115,40 @@ def assigned_postures(
 ) -> Iterator[Finding]:
     """Yield what no run of `joint_control.assign_postures` has; the arguments are as before.
 
-    Nothing is stepped, so the internal force remains that of the step before: it is the last of one
-    of the page's `runs` whose force changes.
+    Nothing is stepped, so the internal force remains that of the step before: it is the
+    last of one of the page's `runs` whose force changes.
     """
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
-    yield from apart("start", "q [rad or m]", trace.q[1:], trace.target, LIMIT_TOLERANCE)
+    yield from apart(
+        "start", "q [rad or m]", trace.q[1:], trace.target, LIMIT_TOLERANCE
+    )
     yield from apart("motion", "qd [rad/s or m/s]", trace.qd, ZERO, 0.0)
     yield from apart("law", "control_force [N·m or N]", trace.control_force, ZERO, 0.0)
-    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, ZERO, 0.0)
-    ends = [of.internal_force[-1] for of in runs if np.ptp(of.internal_force, axis=0).any()]
+    yield from apart(
+        "law", "start_control_force [N·m or N]", trace.start_control_force, ZERO, 0.0
+    )
+    ends = [
+        of.internal_force[-1] for of in runs if np.ptp(of.internal_force, axis=0).any()
+    ]
     ends = ends or [trace.internal_force[0]]
     force = min(ends, key=lambda end: float(np.abs(trace.internal_force - end).max()))
-    yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, force, 0.0)
+    yield from apart(
+        "motion", "internal_force [N·m or N]", trace.internal_force, force, 0.0
+    )
     yield from poses(trace, links, case.model)
 
 
 def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Finding]:
     """Yield a start that is not the case's, or not at rest, and an effort limit of another case."""
-    yield from apart("start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE)
+    yield from apart(
+        "start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE
+    )
     yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, ZERO, 0.0)
     limit, name = case.effort_limit, "effort_limit [N·m or N]"
-    yield from apart("law", name, trace.effort_limit, limit, LIMIT_TOLERANCE * (1 + limit / 10))
+    yield from apart(
+        "law", name, trace.effort_limit, limit, LIMIT_TOLERANCE * (1 + limit / 10)
+    )
 
 
 def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
@@ -144,7 +172,9 @@ def poses(trace: Trace, links: Sequence[str], of: RobotModel) -> Iterator[Findin
         return
     position, orientation = mujoco_kinematics.link_poses(trace.q, links, of)
     yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
-    same = (orientation * trace.link_quat).sum(-1, keepdims=True) >= 0  # −q is the rotation q
+    same = (orientation * trace.link_quat).sum(
+        -1, keepdims=True
+    ) >= 0  # −q is the rotation q
     expected = np.where(same, orientation, -orientation)
     yield from apart("pose", "link_quat", trace.link_quat, expected, POSE)
 
@@ -157,9 +187,16 @@ def model_joints(joints: JointMap, of: RobotModel = FRANKA) -> Iterator[Finding]
     own = [model.joint(name).id for name in joints.names]
     limited = model.jnt_limited[own][:, None].astype(bool)
     lower, upper = np.where(limited, model.jnt_range[own], (-np.inf, np.inf)).T
-    expected = {"dofs_idx_local": dof_at, "qs_idx_local": q_at, "lower": lower, "upper": upper}
+    expected = {
+        "dofs_idx_local": dof_at,
+        "qs_idx_local": q_at,
+        "lower": lower,
+        "upper": upper,
+    }
     for name, values in expected.items():
-        found, valid = map(np.nan_to_num, (getattr(joints, name), np.array(values)))  # of ±∞
+        found, valid = map(
+            np.nan_to_num, (getattr(joints, name), np.array(values))
+        )  # of ±∞
         yield from apart("labels", name, found, valid, LIMIT_TOLERANCE)
     types = tuple(mujoco_kinematics.TYPES[kind] for kind in model.jnt_type[own])
     if joints.types != types:
@@ -167,23 +204,31 @@ def model_joints(joints: JointMap, of: RobotModel = FRANKA) -> Iterator[Finding]
 
 
 def dynamics(
-    trace: Trace, case: ControlCase, net_force: FloatArray | None = None, load: float = 0.0
+    trace: Trace,
+    case: ControlCase,
+    net_force: FloatArray | None = None,
+    load: float = 0.0,
 ) -> Iterator[Finding]:
     """Yield an internal force that is not the net force, and motion that the samples do not have.
 
     `net_force` and `load` are as of `driven_run`.
 
-    Semi-implicit Euler gives the state before the last solver step from the state after it: the
-    position is q − h q̇, and the velocity is q̇ − h a with (M + h D) a = f, the internal force, where
-    D are passive damping and KV. The net force there is control force − bias − passive damping.
+    Semi-implicit Euler gives the state before the last solver step from the state after
+    it: the position is q − h q̇, and the velocity is q̇ − h a with (M + h D) a = f, the
+    internal force, where D are passive damping and KV. The net force there is control
+    force − bias − passive damping.
     """
     from robo_genesis.sim.mujoco.kinematics import unknown_forces
 
     if others := unknown_forces(case.model):
-        yield broken("motion", f"list of forces of {case.model.file} without a law", others, [])
+        yield broken(
+            "motion", f"list of forces of {case.model.file} without a law", others, []
+        )
         return
     if net_force is None:
-        net_force = np.repeat(NET_FORCE, (case.model.arm, case.model.fingers)) * softer(case)
+        net_force = np.repeat(NET_FORCE, (case.model.arm, case.model.fingers)) * softer(
+            case
+        )
     h, n = case.dt / case.substeps, case.substeps
     speeds = np.vstack([trace.start_qd, trace.qd]).astype(np.float64)
     q = trace.q.astype(np.float64)
@@ -206,7 +251,10 @@ def last_step(
 
     from robo_genesis.sim.mujoco.kinematics import bare_robot
 
-    (model, data, q_at, dof_at), h = bare_robot(load, case.model), case.dt / case.substeps
+    (model, data, q_at, dof_at), h = (
+        bare_robot(load, case.model),
+        case.dt / case.substeps,
+    )
     damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
     states, impulses, speeds, bias = np.zeros((4, len(q_before), model.nv))
     states[:, q_at], speeds[:, dof_at] = q_before, trace.qd
@@ -215,7 +263,9 @@ def last_step(
     change = solved[0]
     implicit = np.zeros(mass.shape)
     implicit[diagonal[dof_at]] = h * (damping + case.kv)
-    for state, impulse, speed, effort in zip(states, impulses[:, None], speeds, bias, strict=True):
+    for state, impulse, speed, effort in zip(
+        states, impulses[:, None], speeds, bias, strict=True
+    ):
         qpos[:] = state
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -233,12 +283,17 @@ def last_step(
 
 
 def driven_in_mujoco(
-    trace: Trace, case: ControlCase, links: Sequence[str], timestep: float, integrator: str
+    trace: Trace,
+    case: ControlCase,
+    links: Sequence[str],
+    timestep: float,
+    integrator: str,
 ) -> Iterator[Finding]:
     """Yield what no run of `mujoco_joints.run_case` has; the arguments are as there.
 
-    Each state follows from the state before it. A whole run is not comparable on another CPU where
-    the integrator is nearly unstable: there the rounding of float64 grows to 0.6 rad/s.
+    Each state follows from the state before it. A whole run is not comparable on
+    another CPU where the integrator is nearly unstable: there the rounding of float64
+    grows to 0.6 rad/s.
     """
     from robo_genesis.sim.mujoco import joints as mujoco_joints
 

@@ -1,6 +1,7 @@
 """Lifting an object from above: waypoints, postures, what they touch, the command, the contacts.
 
-The fingers close along y of the world. A support is at z = 0, the height of the robot's base.
+The fingers close along y of the world. A support is at z = 0, the height of the robot's
+base.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -17,12 +18,20 @@ from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
 
 # Outer steps of the phases of a lift.
-PHASES = {"approach": 100, "descend": 100, "settle": 20, "close": 60, "lift": 100, "hold": 100}
+PHASES = {
+    "approach": 100,
+    "descend": 100,
+    "settle": 20,
+    "close": 60,
+    "lift": 100,
+    "hold": 100,
+}
 
 # The state at the end of each phase.
 ENDS = dict(zip(PHASES, np.cumsum([*PHASES.values()]).tolist(), strict=True))
 
-# Distance of the pads from the object's top, and of the hand's origin from the pads [m].
+# Distance of the pads from the object's top, and of the hand's origin from the pads
+# [m].
 PAD, HAND_TO_PAD = 0.025, 0.1034
 
 # Heights of the pregrasp above the grasp, and of the lift [m].
@@ -42,9 +51,12 @@ def waypoints(place: Sequence[float], height: float) -> list[FloatArray]:
 
 
 def ask(
-    robot: Any, joints: JointMap, q_start: FloatArray, settings: IkSettings,
+    robot: Any,
+    joints: JointMap,
+    q_start: FloatArray,
+    settings: IkSettings,
     points: Iterable[FloatArray],
-) -> list[IkAnswer]:  # fmt: skip
+) -> list[IkAnswer]:
     """Ask for each position of the hand, from the answer before; the fingers stay as at the start.
 
     Arrays have a row for each environment, and no such axis in a scene without.
@@ -60,7 +72,9 @@ def ask(
     down = np.broadcast_to(DOWN, (*q.shape[:-1], 4))
     for position in points:
         found = solve_ik(robot, joints, position, down, q, settings)
-        q = np.concatenate([found.q[..., :ARM].astype(float), q_start[..., ARM:]], axis=-1)
+        q = np.concatenate(
+            [found.q[..., :ARM].astype(float), q_start[..., ARM:]], axis=-1
+        )
         answers.append(IkAnswer(q, found.error))
     return answers
 
@@ -70,7 +84,9 @@ def touches(robot: Any, joints: JointMap, fixed: Iterable[Any], q: FloatArray) -
 
     This assigns the state.
     """
-    robot.set_dofs_position(np.array(q), joints.dofs_idx_local.tolist(), zero_velocity=True)
+    robot.set_dofs_position(
+        np.array(q), joints.dofs_idx_local.tolist(), zero_velocity=True
+    )
     own = {geom.idx for geom in robot.geoms}
     others = {geom.idx for entity in fixed for geom in entity.geoms}
     pairs = np.reshape(robot.detect_collision(), (-1, 2)).tolist()
@@ -79,23 +95,28 @@ def touches(robot: Any, joints: JointMap, fixed: Iterable[Any], q: FloatArray) -
 
 def line(ends: Sequence[FloatArray], points: int = 11) -> list[FloatArray]:
     """Return joint positions on straight lines between ends, both ends of each included."""
-    return [a + u * (b - a) for a, b in pairwise(ends) for u in np.linspace(0, 1, points)]
+    return [
+        a + u * (b - a) for a, b in pairwise(ends) for u in np.linspace(0, 1, points)
+    ]
 
 
 def lift_command(q_start: FloatArray, answers: Sequence[IkAnswer]) -> FloatArray:
     """Return the command (n, d) of a lift: a straight line of joint positions in each phase.
 
-    The fingers are commanded to their closed position at once, and the object stops them.
+    The fingers are commanded to their closed position at once, and the object stops
+    them.
     """
     over, at, up = (answer.q for answer in answers)
     shut, raised = at.copy(), up.copy()
     shut[ARM:] = raised[ARM:] = 0
     ends = [q_start, over, at, at, shut, raised, raised]
     ways = zip(pairwise(ends), PHASES.items(), strict=True)
-    return np.vstack([
-        np.tile(b, (n, 1)) if phase == "close" else np.linspace(a, b, n + 1)[1:]
-        for (a, b), (phase, n) in ways
-    ])  # fmt: skip
+    return np.vstack(
+        [
+            np.tile(b, (n, 1)) if phase == "close" else np.linspace(a, b, n + 1)[1:]
+            for (a, b), (phase, n) in ways
+        ]
+    )
 
 
 def without_bodies(trace: Trace, bodies: int, steps: int | None = None) -> Trace:
@@ -103,16 +124,22 @@ def without_bodies(trace: Trace, bodies: int, steps: int | None = None) -> Trace
     lengths = {"state": (trace.steps if steps is None else steps) + 1}
     lengths["step"] = lengths["state"] - 1
     cut = {
-        name: getattr(trace, name)[: lengths.get(of.dims[0])] for name, of in trace.arrays().items()
+        name: getattr(trace, name)[: lengths.get(of.dims[0])]
+        for name, of in trace.arrays().items()
     }
-    return replace(trace, **cut | {n: cut[n][:, :-bodies] for n in ("link_pos", "link_quat")})
+    return replace(
+        trace, **cut | {n: cut[n][:, :-bodies] for n in ("link_pos", "link_quat")}
+    )
 
 
-def contact_counter(robot: Any, body: Any) -> tuple[dict[str, int], Callable[[int], None]]:
+def contact_counter(
+    robot: Any, body: Any
+) -> tuple[dict[str, int], Callable[[int], None]]:
     """Return counts of contacts of a body with the robot, and what updates them after each step.
 
-    `descending` are the steps with a contact before the fingers close; `closed_left` and so on are
-    the contact points of a finger after closing, `held_left` those at the end.
+    `descending` are the steps with a contact before the fingers close; `closed_left`
+    and so on are the contact points of a finger after closing, `held_left` those at the
+    end.
     """
     counts = {"descending": 0}
     reads = {ENDS["close"] - 1: "closed", ENDS["hold"] - 1: "held"}

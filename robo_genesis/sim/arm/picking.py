@@ -1,6 +1,7 @@
 """A scripted expert that picks an object and places it in a bowl, in all environments of a batch.
 
-The table is at z = 0, the height of the robot's base. The fingers close along y of the world.
+The table is at z = 0, the height of the robot's base. The fingers close along y of the
+world.
 """
 
 from collections.abc import Callable
@@ -23,17 +24,28 @@ from robo_genesis.sim.bodies.table import SceneCase, World
 from robo_genesis.sim.session import CaseError
 
 # The phases of an episode in their order.
-PHASES = ("pregrasp", "descend", "close", "lift", "move", "lower", "open", "retreat", "done")
+PHASES = (
+    "pregrasp",
+    "descend",
+    "close",
+    "lift",
+    "move",
+    "lower",
+    "open",
+    "retreat",
+    "done",
+)
 
 DESCEND, CLOSE, LIFT, MOVE, LOWER, OPEN, DONE = (
-    PHASES.index(name) for name in ("descend", "close", "lift", "move", "lower", "open", "done")
+    PHASES.index(name)
+    for name in ("descend", "close", "lift", "move", "lower", "open", "done")
 )
 
 # By phase, the number of its goal among `waypoints`.
 OF_GOAL = (0, 1, 1, 2, 3, 4, 4, 3, 3)
 
-# A phase of the arm ends when each joint is this near to its goal [rad] and slower than this
-# [rad/s]; one of the fingers when both are slower than this [m/s].
+# A phase of the arm ends when each joint is this near to its goal [rad] and slower than
+# this [rad/s]; one of the fingers when both are slower than this [m/s].
 ARRIVED, SLOW, STILL = 0.015, 0.05, 0.002
 
 # Least outer steps of a phase of the fingers, and most of any phase.
@@ -44,13 +56,14 @@ CLOSING, LIMIT = 5, 120
 class PickCase(SceneCase):
     """Episodes of a scripted expert, one in each environment of a scene.
 
-    `starts` and `beliefs` (e, 2) are where the object begins and where the expert believes it [m].
-    A sample of `dt` has `commands` of the expert. `settings` are those of the solver. The pads
-    grip `pad` below the object's top; `above`, `rise` and `drop` are the heights of the pregrasp
-    and of the lift above the grasp, and of the object's lower face above the table when it is
-    released [m]. Objects are turned by `yaws` (e,) about z, which the expert ignores [rad]. Where
-    `timed` (e,) is above 0, the descent ends after as many outer steps, whatever is measured.
-    `stride` (e,) is the largest change of a joint's command in one outer step [rad].
+    `starts` and `beliefs` (e, 2) are where the object begins and where the expert
+    believes it [m]. A sample of `dt` has `commands` of the expert. `settings` are those
+    of the solver. The pads grip `pad` below the object's top; `above`, `rise` and
+    `drop` are the heights of the pregrasp and of the lift above the grasp, and of the
+    object's lower face above the table when it is released [m]. Objects are turned by
+    `yaws` (e,) about z, which the expert ignores [rad]. Where `timed` (e,) is above 0,
+    the descent ends after as many outer steps, whatever is measured. `stride` (e,) is
+    the largest change of a joint's command in one outer step [rad].
     """
 
     starts: FloatArray
@@ -74,33 +87,48 @@ class PickCase(SceneCase):
     def control(self) -> ControlCase:
         """The settings of the robot in each environment; its steps are those of a command."""
         case, n = self.commanding(self.q_start), self.commands
-        return replace(case, dt=self.dt / n, substeps=self.substeps // n, steps=self.steps * n)
+        return replace(
+            case, dt=self.dt / n, substeps=self.substeps // n, steps=self.steps * n
+        )
 
     @property
     def waypoints(self) -> list[FloatArray]:
         """Positions (e, 3) of the hand [m]: pregrasp, grasp, lifted, above the bowl, at release."""
         grasp = self.size[2] - self.pad + HAND_TO_PAD
         places = self.beliefs, np.broadcast_to(self.bowl_at, np.shape(self.beliefs))
-        heights = [(0, self.above), (0, 0.0), (0, self.rise), (1, self.rise), (1, self.drop)]
+        heights = [
+            (0, self.above),
+            (0, 0.0),
+            (0, self.rise),
+            (1, self.rise),
+            (1, self.drop),
+        ]
         return [
             np.column_stack([places[at], np.full(len(self.beliefs), grasp + more)])
             for at, more in heights
         ]
 
 
-def build(gs: Any, case: PickCase, view: dict[str, Any] | None = None, **options: Any) -> World:
+def build(
+    gs: Any, case: PickCase, view: dict[str, Any] | None = None, **options: Any
+) -> World:
     """Build the scene of episodes, with the outer step of a command; see `table.build`.
 
     Raises:
-        CaseError: an object begins over the bowl, where its episode would be solved already.
+        CaseError: an object begins over the bowl, where its episode would be solved
+            already.
     """
-    solved = np.hypot(*(case.starts - case.bowl_at).T) < bowl.RIM + max(case.size[:2]) / 2
+    solved = (
+        np.hypot(*(case.starts - case.bowl_at).T) < bowl.RIM + max(case.size[:2]) / 2
+    )
     if solved.any():
         raise CaseError(
             f"The object of environment {int(solved.argmax())} begins over the bowl at "
             f"{case.bowl_at}. Choose starts beside it: an episode that begins solved shows nothing."
         )
-    scene = replace(case, dt=case.control.dt, substeps=case.control.substeps, ball_radius=0.0)
+    scene = replace(
+        case, dt=case.control.dt, substeps=case.control.substeps, ball_radius=0.0
+    )
     return table.build(gs, scene, view, n_envs=len(case.starts), **options)
 
 
@@ -110,8 +138,8 @@ def plan(
     """Ask the solver for all waypoints or other `points`, each from the answer before.
 
     Returns:
-        Joint positions (phases, e, 7) at which the phases end [rad], and whether (e,) the solver
-        found all of them.
+        Joint positions (phases, e, 7) at which the phases end [rad], and whether (e,)
+        the solver found all of them.
     """
     q_start, settings = np.tile(case.q_start, (len(case.starts), 1)), case.settings
     answers = ask(robot, joints, q_start, settings, points or case.waypoints)
@@ -154,7 +182,9 @@ class Expert:
 
     def ends(self, q: FloatArray, qd: FloatArray) -> np.ndarray:
         """Return in which environments (e,) the present phase has reached its end."""
-        near = np.abs(q[:, :ARM] - self.goals[self.phase, self.rows]).max(axis=1) < ARRIVED
+        near = (
+            np.abs(q[:, :ARM] - self.goals[self.phase, self.rows]).max(axis=1) < ARRIVED
+        )
         arrived = near & (np.abs(qd[:, :ARM]).max(axis=1) < SLOW)
         by_time = (self.phase == DESCEND) & (self.timed > 0)
         arrived = np.where(by_time, self.since >= self.timed, arrived)
@@ -165,7 +195,8 @@ class Expert:
 def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
     """Return normal forces (e, 2) of both fingers on the object [N], and which are touched.
 
-    The engine pads the contacts of a batch to the longest list; its mask says which are valid.
+    The engine pads the contacts of a batch to the longest list; its mask says which are
+    valid.
     """
     contacts = world.body.get_contacts(with_entity=world.robot)
     a, b, valid, force, normal = (
@@ -193,9 +224,12 @@ def pose(
 
 
 def run(
-    world: World, joints: JointMap, case: PickCase, of: Callable[..., Expert] = Expert,
+    world: World,
+    joints: JointMap,
+    case: PickCase,
+    of: Callable[..., Expert] = Expert,
     points: list[FloatArray] | None = None,
-) -> tuple[Episodes, Batch]:  # fmt: skip
+) -> tuple[Episodes, Batch]:
     """Let the expert work in all environments; return the samples, and the batch of all states.
 
     `of` makes another expert, and `points` are its waypoints.
@@ -206,13 +240,17 @@ def run(
         world.body.set_pos(np.column_stack([case.starts, np.full(n, case.size[2] / 2)]))
         world.body.set_quat(case.turns)
 
-    batch = Batch(world.scene, world.robot, joints, [case.control] * n, (world.body,), place)
+    batch = Batch(
+        world.scene, world.robot, joints, [case.control] * n, (world.body,), place
+    )
     expert = of(case, *plan(world.robot, joints, case, points))
     samples = []
     for k in range(case.steps * case.commands + 1):
         q, pos, quat, qd = batch.readings[-1][:4]
         if k % case.commands == 0:
-            samples.append((expert.phase.copy(), q, pos[:, -1], quat[:, -1], *pressing(world)))
+            samples.append(
+                (expert.phase.copy(), q, pos[:, -1], quat[:, -1], *pressing(world))
+            )
         if k < case.steps * case.commands:
             batch.command(expert.act(q, qd))
             batch.step(1)

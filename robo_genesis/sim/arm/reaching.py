@@ -11,7 +11,8 @@ MEASURES = False
 
 IK = IkSettings()  # Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each
 
-# The same without starts of the engine's choice, so that an answer depends on its start alone.
+# The same without starts of the engine's choice, so that an answer depends on its start
+# alone.
 ONE_START = replace(IK, samples=1, iterations=100)
 
 # Target orientation (w, x, y, z): half a turn about x, so the fingers point down.
@@ -20,7 +21,9 @@ DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 # A target that no posture of the arm comes near to [m].
 BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 
-MARKER_RADIUS = 0.03  # Radius of a sphere that marks a target [m]; nothing collides with it
+MARKER_RADIUS = (
+    0.03  # Radius of a sphere that marks a target [m]; nothing collides with it
+)
 
 # By unit: values that differ by no more than this are called equal, the noise floor.
 RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
@@ -28,13 +31,16 @@ RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
 # The hand counts as arrived within these distances of its target [m] and [rad].
 REACHED = (0.02, 0.05)
 
-# Largest difference of a pose between two computations, one of them in float32 [m, rad].
+# Largest difference of a pose between two computations, one of them in float32 [m,
+# rad].
 SAME_POSE = (5e-6, 5e-6)
 
-# Largest difference of a residual between the engine's solver and our computation [m, rad].
+# Largest difference of a residual between the engine's solver and our computation [m,
+# rad].
 SAME_RESIDUAL = 1e-6
 
-# For exercises: a joint and its position, the residual, and whether `IK` lets it be commanded.
+# For exercises: a joint and its position, the residual, and whether `IK` lets it be
+# commanded.
 ANSWERS: dict[str, tuple[tuple[int, float], tuple[float, ...], bool]] = {
     "exact": ((8, 0.1), (0.0,) * 6, True),
     "within_both": ((8, 0.1), (3e-4, 0, 0, 0, 4e-3, 0), True),

@@ -40,7 +40,9 @@ def mesh() -> Any:
     line = np.vstack([[0, 0], outer, inner[::-1], [0, WALL]])
     bowl = trimesh.creation.revolve(line, sections=SECTIONS)
     bowl.merge_vertices()
-    bowl.apply_transform(trimesh.transformations.rotation_matrix(np.pi / SECTIONS, (0, 0, 1)))
+    bowl.apply_transform(
+        trimesh.transformations.rotation_matrix(np.pi / SECTIONS, (0, 0, 1))
+    )
     return bowl
 
 
@@ -51,7 +53,8 @@ def pieces() -> list[Any]:
     angles = np.pi / SECTIONS * (1 + 2 * np.arange(SECTIONS + 1))
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     rings = [
-        [np.column_stack([r * around, np.full(len(around), z)]) for r, z in of] for of in profiles()
+        [np.column_stack([r * around, np.full(len(around), z)]) for r, z in of]
+        for of in profiles()
     ]
     parts = [[side[0] for side in rings]]
     for j in range(LEVELS - 1):
@@ -61,9 +64,15 @@ def pieces() -> list[Any]:
 
 
 def add(
-    gs: Any, scene: Any, choice: str = "default", pos: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    fixed: bool = True, surface: Any = None, seed: int = 0, **material: float,
-) -> Any:  # fmt: skip
+    gs: Any,
+    scene: Any,
+    choice: str = "default",
+    pos: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    fixed: bool = True,
+    surface: Any = None,
+    seed: int = 0,
+    **material: float,
+) -> Any:
     """Add a bowl to a scene and return its entity.
 
     Args:
@@ -77,7 +86,9 @@ def add(
         material: arguments of `gs.materials.Rigid`; `rho` is by default `DENSITY`.
     """
     files = tuple(pieces() if choice == "pieces" else [mesh()])
-    options: dict[str, Any] = dict.fromkeys(("poss", "eulers"), ((0.0, 0.0, 0.0),) * len(files))
+    options: dict[str, Any] = dict.fromkeys(
+        ("poss", "eulers"), ((0.0, 0.0, 0.0),) * len(files)
+    )
     if choice == "one_hull":
         options["decompose_object_error_threshold"] = np.inf
     options["coacd_options"] = gs.options.CoacdOptions(seed=seed)

@@ -28,9 +28,21 @@ class Axis:
 
 
 AXES = {
-    "x": Axis(0, "x", "velocity along x", ("x", "ẋ"), "x =", "moved on by", "moved back by"),
-    "y": Axis(1, "y", "velocity along y", ("y", "ẏ"), "y =", "moved on by", "moved back by"),
-    "z": Axis(2, "height", "vertical velocity", ("z", "ż"), "a height of", "rose by", "fell by"),
+    "x": Axis(
+        0, "x", "velocity along x", ("x", "ẋ"), "x =", "moved on by", "moved back by"
+    ),
+    "y": Axis(
+        1, "y", "velocity along y", ("y", "ẏ"), "y =", "moved on by", "moved back by"
+    ),
+    "z": Axis(
+        2,
+        "height",
+        "vertical velocity",
+        ("z", "ż"),
+        "a height of",
+        "rose by",
+        "fell by",
+    ),
 }
 
 
@@ -58,7 +70,9 @@ def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], replay: Replay) 
         subject=f"the {thing}",
         traces=traces,
         links=links,
-        channels=[one for axis in followed for one in _channels(traces, k, axis, replay.rest)],
+        channels=[
+            one for axis in followed for one in _channels(traces, k, axis, replay.rest)
+        ],
         moves={
             case: f"**{case}**: the {thing} "
             + "; it ".join(_along(trace, k, axis) for axis in followed)
@@ -73,10 +87,15 @@ def _channels(
 ) -> tuple[Channel, Channel]:
     """Return position and velocity of the origin of link `k` along an axis.
 
-    With the height at `rest` [m], that along z is the clearance, and its curve is close to zero.
+    With the height at `rest` [m], that along z is the clearance, and its curve is close
+    to zero.
     """
-    position = {case: trace.link_pos[:, k, axis.number] for case, trace in traces.items()}
-    velocity = {case: trace.link_vel[:, k, axis.number] for case, trace in traces.items()}
+    position = {
+        case: trace.link_pos[:, k, axis.number] for case, trace in traces.items()
+    }
+    velocity = {
+        case: trace.link_vel[:, k, axis.number] for case, trace in traces.items()
+    }
     where = Channel(axis.position, axis.heads[0], "m", 4, position)
     if rest is not None and axis is AXES["z"]:
         clear = {case: 1000 * (values - rest) for case, values in position.items()}
@@ -86,7 +105,9 @@ def _channels(
 
 def _along(trace: BodyTrace, k: int, axis: Axis) -> str:
     """Describe where the origin of link `k` starts and ends along an axis, and its top speed."""
-    path, velocity = (array[:, k, axis.number] for array in (trace.link_pos, trace.link_vel))
+    path, velocity = (
+        array[:, k, axis.number] for array in (trace.link_pos, trace.link_vel)
+    )
     distance, fastest = float(path[-1] - path[0]), int(np.abs(velocity).argmax())
     start, end = (f"{axis.at} {with_unit(value, 'm')}" for value in path[[0, -1]])
     ends = f"starts at {start} and ends at {end}"

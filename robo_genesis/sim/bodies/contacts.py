@@ -10,7 +10,13 @@ from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
-from robo_genesis.sim.bodies.rigid_bodies import new_scene, read_body, record_states, stacked, times
+from robo_genesis.sim.bodies.rigid_bodies import (
+    new_scene,
+    read_body,
+    record_states,
+    stacked,
+    times,
+)
 from robo_genesis.sim.session import CaseError
 
 # Length, width and thickness of the fixed box under the bodies [m].
@@ -37,12 +43,13 @@ State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatA
 class ContactRun:
     """How long a scene runs, with which steps and which model of its contacts.
 
-    After `settle` seconds, `duration` seconds are recorded. `cone` is the shape of the friction
-    cone, `resolution` the engine's scheme for normal force and friction, `impratio` the ratio of
-    frictional to normal impedance; for None the engine chooses the last two by the cone.
-    `time_constant` is that of all contacts of the scene [s]; the engine uses at least two solver
-    steps. `noslip` is the number of iterations of the post-processing of that name. `gravity` is a
-    magnitude [m/s²]. Cases in one scene have all of this in common, and the settings of `shared`.
+    After `settle` seconds, `duration` seconds are recorded. `cone` is the shape of the
+    friction cone, `resolution` the engine's scheme for normal force and friction,
+    `impratio` the ratio of frictional to normal impedance; for None the engine chooses
+    the last two by the cone. `time_constant` is that of all contacts of the scene [s];
+    the engine uses at least two solver steps. `noslip` is the number of iterations of
+    the post-processing of that name. `gravity` is a magnitude [m/s²]. Cases in one
+    scene have all of this in common, and the settings of `shared`.
     """
 
     shared: ClassVar[tuple[str, ...]] = ()
@@ -72,11 +79,12 @@ class ContactRun:
 class ContactCase(ContactRun):
     """All settings of one run of a body above or on the surface.
 
-    `start` is the position of its centre [m]; `size` the edge of a cube or the diameter of a ball
-    [m]; `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
-    Once settled, it gets `speed` along x [m/s]. `spring` are time constant [s] and damping ratio
-    of the contacts of this body and the surface, None for the engine's defaults. A surface that is
-    tilted by `tilt` [rad] is gravity that leans, towards x turned by `yaw` [rad] about z.
+    `start` is the position of its centre [m]; `size` the edge of a cube or the diameter
+    of a ball [m]; `density` [kg/m³]; `friction` its own coefficient, `surface_friction`
+    that of the surface. Once settled, it gets `speed` along x [m/s]. `spring` are time
+    constant [s] and damping ratio of the contacts of this body and the surface, None
+    for the engine's defaults. A surface that is tilted by `tilt` [rad] is gravity that
+    leans, towards x turned by `yaw` [rad] about z.
     """
 
     shared = ("surface_friction", "tilt", "yaw")
@@ -199,7 +207,8 @@ def rigid_options(gs: Any, case: ContactRun) -> dict[str, Any]:
 def contact_constants(scene: Any, geom: Any) -> FloatArray:
     """Return the seven contact parameters of a geom; the first is the time constant [s].
 
-    Damping ratio and impedance follow. The solver uses at least two solver steps as time constant.
+    Damping ratio and impedance follow. The solver uses at least two solver steps as
+    time constant.
     """
     return to_numpy(scene.rigid_solver.get_sol_params(geoms_idx=[geom.idx]))[0]
 
@@ -211,7 +220,9 @@ def time_constant(world: World) -> float:
 
 def friction(scene: Any, body: Any) -> float:
     """Return the friction coefficient of the first geom of a body."""
-    return float(to_numpy(scene.rigid_solver.get_geoms_friction([body.geoms[0].idx]))[0])
+    return float(
+        to_numpy(scene.rigid_solver.get_geoms_friction([body.geoms[0].idx]))[0]
+    )
 
 
 def record_world(

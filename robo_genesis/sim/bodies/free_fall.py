@@ -1,7 +1,7 @@
 """Free fall from rest: continuous, stepped as a solver does, and as a run has it.
 
-The module does not use an engine. Results are distances fallen [m], so down is positive. A `case`
-has `h`, `substeps` and `gravity`.
+The module does not use an engine. Results are distances fallen [m], so down is
+positive. A `case` has `h`, `substeps` and `gravity`.
 """
 
 from typing import Any
@@ -23,8 +23,8 @@ def continuous_drop(t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
 def summed_drop(h: float, steps: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
     """Return g h² n (n + 1) / 2, the distance fallen after n = `steps` steps [m].
 
-    Semi-implicit Euler changes the velocity first, then the position. The velocity after step k is
-    k g h, so step k moves by k g h²; 1 + 2 + … + n is n (n + 1) / 2.
+    Semi-implicit Euler changes the velocity first, then the position. The velocity
+    after step k is k g h, so step k moves by k g h²; 1 + 2 + … + n is n (n + 1) / 2.
     """
     n = np.asarray(steps, dtype=np.float64)
     return gravity * h**2 * n * (n + 1) / 2
@@ -33,7 +33,8 @@ def summed_drop(h: float, steps: ArrayLike, gravity: float = GRAVITY) -> FloatAr
 def ahead_of_continuous(h: float, t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
     """Return g h t / 2: how much farther the stepped body is than g t² / 2 after times `t` [m].
 
-    With t = n h, g h² n (n + 1) / 2 is g t² / 2 + g h t / 2. The second term goes to zero with h.
+    With t = n h, g h² n (n + 1) / 2 is g t² / 2 + g h t / 2. The second term goes to
+    zero with h.
     """
     return 0.5 * gravity * h * np.asarray(t, dtype=np.float64)
 

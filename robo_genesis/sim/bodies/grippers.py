@@ -12,14 +12,26 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies import contacts
-from robo_genesis.sim.bodies.rigid_bodies import new_scene, read_body, record_states, stacked, times
+from robo_genesis.sim.bodies.rigid_bodies import (
+    new_scene,
+    read_body,
+    record_states,
+    stacked,
+    times,
+)
 
 # The links of a run: the box and both pads.
 LINKS = ("box", "left", "right")
 
-SIZE, PAD = 0.04, (0.005, 0.03, 0.03)  # Edge of the box, and half the edges of a pad [m]
+SIZE, PAD = (
+    0.04,
+    (0.005, 0.03, 0.03),
+)  # Edge of the box, and half the edges of a pad [m]
 
-PAD_MASS, ARMATURE = 1.0, 0.1  # [kg]; Genesis adds this armature to each joint of an MJCF file
+PAD_MASS, ARMATURE = (
+    1.0,
+    0.1,
+)  # [kg]; Genesis adds this armature to each joint of an MJCF file
 
 # Contact points of a box, four at each pad.
 CONTACTS = 8
@@ -29,9 +41,10 @@ CONTACTS = 8
 class HeldCase(contacts.ContactRun):
     """All settings of one run of a box between two pads, which slide along x.
 
-    `place` is the y of the gripper [m]; its height is 0, where float32 resolves a slow motion.
-    `friction` is the coefficient of the box, and the pads have less; `force` presses each pad [N],
-    `mass` is that of the box [kg]. `iterations` are those of the solver, None for its default.
+    `place` is the y of the gripper [m]; its height is 0, where float32 resolves a slow
+    motion. `friction` is the coefficient of the box, and the pads have less; `force`
+    presses each pad [N], `mass` is that of the box [kg]. `iterations` are those of the
+    solver, None for its default.
     """
 
     shared = ("iterations",)
@@ -49,7 +62,8 @@ class HeldCase(contacts.ContactRun):
 def pads(case: HeldCase) -> str:
     """Return the bodies of two pads in the language of MuJoCo; both engines read them.
 
-    Their geoms are turned, because MuJoCo computes softness otherwise for pads along the axes.
+    Their geoms are turned, because MuJoCo computes softness otherwise for pads along
+    the axes.
     """
     x, (thick, wide, high) = SIZE / 2 + PAD[0], PAD
     pad = """<body name="{}" pos="{} 0 0">
@@ -57,7 +71,10 @@ def pads(case: HeldCase) -> str:
     <geom type="box" size="{} {} {}" euler="90 0 0" mass="{}" friction=".05 0 0"
      solref="{} 1"/></body>"""
     same = (ARMATURE, thick, high, wide, PAD_MASS, case.time_constant)
-    left, right = pad.format("left", -x, "l", 1, *same), pad.format("right", x, "r", -1, *same)
+    left, right = (
+        pad.format("left", -x, "l", 1, *same),
+        pad.format("right", x, "r", -1, *same),
+    )
     return f'<body name="frame">{left}{right}</body>'
 
 
@@ -94,7 +111,8 @@ def record_world(
 ) -> None:
     """Reset a world, press, settle and step; add its traces and readings to those of others.
 
-    Readings are the friction of each box, the time constant of its contacts, and their number.
+    Readings are the friction of each box, the time constant of its contacts, and their
+    number.
     """
     common, scene = contacts.shared_case(world.cases), world.scene
     scene.reset()
@@ -103,10 +121,14 @@ def record_world(
     for _ in range(round(common.settle / common.dt)):
         scene.step()
     states = record_states(
-        scene.step, common.steps, lambda: {n: read(*of) for n, of in world.grippers.items()}
+        scene.step,
+        common.steps,
+        lambda: {n: read(*of) for n, of in world.grippers.items()},
     )
     for name, (_, box) in world.grippers.items():
-        traces[name] = BodyTrace(times(common), *stacked([state[name] for state in states]))
+        traces[name] = BodyTrace(
+            times(common), *stacked([state[name] for state in states])
+        )
         found = {
             "friction": contacts.friction(scene, box),
             "time_constant": float(contacts.contact_constants(scene, box.geoms[0])[0]),
@@ -124,6 +146,13 @@ def read(hand: Any, box: Any) -> tuple[FloatArray, ...]:
 
 def step_times(worlds: Mapping[str, World]) -> dict[str, float]:
     """Return times of an outer step of worlds that hold their boxes, as `throughput.in_turn`."""
-    hands = {name: next(iter(world.grippers.values()))[0] for name, world in worlds.items()}
-    timed = {name: throughput.calls_of(worlds[name].scene, hand) for name, hand in hands.items()}
-    return throughput.in_turn(timed, warm_up=5, steps=10, repeats=5, clock=time.perf_counter)
+    hands = {
+        name: next(iter(world.grippers.values()))[0] for name, world in worlds.items()
+    }
+    timed = {
+        name: throughput.calls_of(worlds[name].scene, hand)
+        for name, hand in hands.items()
+    }
+    return throughput.in_turn(
+        timed, warm_up=5, steps=10, repeats=5, clock=time.perf_counter
+    )

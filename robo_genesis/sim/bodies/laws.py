@@ -1,8 +1,8 @@
 """What the arrays of a free body must have in common, by geometry and by the laws of motion.
 
-Contacts are a function of the state before the last solver step, which follows from the state
-after it. Each state follows from the state before it: MuJoCo, which has the same contact model,
-computes it anew from every sample, so that no difference can grow.
+Contacts are a function of the state before the last solver step, which follows from the
+state after it. Each state follows from the state before it: MuJoCo, which has the same
+contact model, computes it anew from every sample, so that no difference can grow.
 
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
@@ -30,12 +30,12 @@ computes it anew from every sample, so that no difference can grow.
 | `UPRIGHT`, its orientation | 3e-4 | 3e-3 |
 | `IMPULSE`, of a cube on an edge, outside the friction cone | 9e-6 m/s | 5e-5 m/s |
 
-The engine's search for a contact ends where it gains less than 1e-5 m, in some versions plus 1e-5
-of a sum of coordinates, which is up to 3 m here; both together are `GRAZE`.
+The engine's search for a contact ends where it gains less than 1e-5 m, in some versions
+plus 1e-5 of a sum of coordinates, which is up to 3 m here; both together are `GRAZE`.
 
-Residuals of `FLIGHT` are the larger ones of two engine versions. `SLIDING` has a factor of 3,
-because the residual is that of the single step in which a cube stops, and a wider one would let a
-sample change by a hundredth of the speed.
+Residuals of `FLIGHT` are the larger ones of two engine versions. `SLIDING` has a factor
+of 3, because the residual is that of the single step in which a cube stops, and a wider
+one would let a sample change by a hundredth of the speed.
 """
 
 from collections.abc import Iterator
@@ -47,15 +47,23 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace
 from robo_genesis.sim.arm.kinematics import quat_multiply
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
-from robo_genesis.sim.laws import UNTURNED, ZERO, apart, broken, mean_speed, times, unit_quaternions
+from robo_genesis.sim.laws import (
+    UNTURNED,
+    ZERO,
+    apart,
+    broken,
+    mean_speed,
+    times,
+    unit_quaternions,
+)
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MEASURES = False
 
 PLACE, SETTLED, DEPTH = 1e-6, 1e-3, 5e-7
 
-# Difference of depth between the lowest corners [m] from which Genesis may report fewer of those
-# that touch.
+# Difference of depth between the lowest corners [m] from which Genesis may report fewer
+# of those that touch.
 TILTED = 1e-4
 
 # Angle by which Genesis turns a body to find further contact points [rad]: twice its
@@ -64,19 +72,21 @@ TWIST = 1e-2
 
 GRAZE, NO_TURN, TURN, RESOLVED = 4e-5, 2.5e-7, 1e-4, 4e-7
 
-# Share of the steps of a run that may end otherwise, because a cube that lands on an edge has
-# other contact points in the two engines. The versions tried have at most 0.15 and 0.39. Of
-# such a step, the impulse is judged.
+# Share of the steps of a run that may end otherwise, because a cube that lands on an
+# edge has other contact points in the two engines. The versions tried have at most 0.15
+# and 0.39. Of such a step, the impulse is judged.
 ON_EDGE = 0.5
 
-# Number of states with contacts in which the rounding of a cube's angular velocity must show.
+# Number of states with contacts in which the rounding of a cube's angular velocity must
+# show.
 TOUCHED = 5
 
 ROLL, FALL, SLIDING, PATH, UPRIGHT, IMPULSE = 5e-4, 8e-4, 1.2e-2, 2e-3, 3e-3, 5e-5
 
 NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
 
-# Tolerances of the state after one outer step, in `UNITS`, and without contacts in MuJoCo.
+# Tolerances of the state after one outer step, in `UNITS`, and without contacts in
+# MuJoCo.
 FLIGHT = {"link_pos": 5e-6, "link_quat": 1e-6, "link_vel": 3e-5, "link_ang": 3e-6}
 
 UNITS = {"link_pos": "m", "link_quat": "1", "link_vel": "m/s", "link_ang": "rad/s"}
@@ -93,7 +103,9 @@ def body_on_surface(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]
     yield from reported_contacts(trace, case)
     yield from never_still(trace, case)
     yield from turned(trace, case)
-    if case.cone == "elliptic" and case.resolution is None:  # MuJoCo does not have this scheme
+    if (
+        case.cone == "elliptic" and case.resolution is None
+    ):  # MuJoCo does not have this scheme
         yield from sliding(trace, case)
     else:
         yield from next_states(trace, case)
@@ -104,7 +116,9 @@ def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     fastest = case.speed + case.gravity * (case.duration + 1)
     about = np.array(case.start)
     yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], ZERO, fastest)
-    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], ZERO, fastest / case.size)
+    yield from apart(
+        "motion", "link_ang [rad/s]", trace.link_ang[:, 0], ZERO, fastest / case.size
+    )
     if not case.settle:
         untouched = np.cumsum(trace.contacts[:, 0:1], axis=0) == 0
         room = np.where(untouched, 0.0, ROLL if case.shape == "ball" else np.inf)
@@ -123,15 +137,23 @@ def sliding(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
 
     On a tilted surface it slides down, or it rests.
     """
-    velocity, position = (a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_pos))
+    velocity, position = (
+        a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_pos)
+    )
     slope, _, normal = case.dt * case.fall
     lost = -max(case.friction, case.surface_friction) * normal - slope
     along = np.maximum(velocity[:-1, 0] - lost, 0)
-    yield from apart("motion", "link_vel along x [m/s]", velocity[1:, 0], along, SLIDING)
+    yield from apart(
+        "motion", "link_vel along x [m/s]", velocity[1:, 0], along, SLIDING
+    )
     across = velocity[:, 1:]
-    yield from apart("motion", "link_vel along y and z [m/s]", across, ZERO, NEXT["link_vel"])
+    yield from apart(
+        "motion", "link_vel along y and z [m/s]", across, ZERO, NEXT["link_vel"]
+    )
     path = case.dt * (velocity[1:] + velocity[:-1]) / 2
-    yield from apart("motion", "path in one step [m]", np.diff(position, axis=0), path, PATH)
+    yield from apart(
+        "motion", "path in one step [m]", np.diff(position, axis=0), path, PATH
+    )
     yield from apart("motion", "link_quat", trace.link_quat[:, 0], UNTURNED, UPRIGHT)
 
 
@@ -139,20 +161,31 @@ def start(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a start that is not the case's."""
     room = SETTLED if case.settle else PLACE
     place, speed = np.array(case.start), np.array([case.speed, 0, 0])
-    yield from apart("start", "start of link_pos [m]", trace.link_pos[0, 0], place, room)
-    yield from apart("start", "start of link_vel [m/s]", trace.link_vel[0, 0], speed, room)
-    yield from apart("start", "start of link_quat", trace.link_quat[0, 0], UNTURNED, room)
-    yield from apart("start", "start of link_ang [rad/s]", trace.link_ang[0, 0], ZERO, room)
+    yield from apart(
+        "start", "start of link_pos [m]", trace.link_pos[0, 0], place, room
+    )
+    yield from apart(
+        "start", "start of link_vel [m/s]", trace.link_vel[0, 0], speed, room
+    )
+    yield from apart(
+        "start", "start of link_quat", trace.link_quat[0, 0], UNTURNED, room
+    )
+    yield from apart(
+        "start", "start of link_ang [rad/s]", trace.link_ang[0, 0], ZERO, room
+    )
 
 
 def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield contacts that are not those of the body's shape before the last solver step.
 
-    A cube on an edge has up to three: one processor reports a third one in 1 of 401 samples of a
+    A cube on an edge has up to three: one processor reports a third one in 1 of 401
+        samples of a
     run in which another processor reports two.
     """
     depths = depths_before_last_step(trace, case)
-    first = 0 if case.settle else 1  # no step was taken before the first sample of the others
+    first = (
+        0 if case.settle else 1
+    )  # no step was taken before the first sample of the others
     expected = np.maximum(depths[:, 0], 0)
     expected[:first] = 0
     reported = trace.penetration[:, 0]
@@ -170,7 +203,9 @@ def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Findin
     count = trace.contacts[:, 0]
     for k in np.flatnonzero((count < fewest) | (count > perhaps))[:1]:
         what = f"number of contacts at index {k}"
-        yield broken("contact", what, int(count[k]), sorted({int(fewest[k]), int(perhaps[k])}))
+        yield broken(
+            "contact", what, int(count[k]), sorted({int(fewest[k]), int(perhaps[k])})
+        )
 
 
 def depths_before_last_step(trace: BodyTrace, case: ContactCase) -> FloatArray:
@@ -201,8 +236,8 @@ def on_edge(depths: FloatArray, size: float) -> np.ndarray:
 def never_still(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a cube whose angular velocity stays zero to the last bit while it touches the surface.
 
-    The forces at its corners cancel only up to rounding. In the runs, no component is zero in any
-    state with contacts.
+    The forces at its corners cancel only up to rounding. In the runs, no component is
+    zero in any state with contacts.
     """
     touched = trace.link_ang[trace.contacts[:, 0] > 0, 0]
     if case.shape == "cube" and len(touched) >= TOUCHED and not touched.any():
@@ -220,7 +255,9 @@ def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Finding]:
     angle = 2 * np.linalg.norm(new - before[1:, 1:], axis=1)
     moved = (new != old).any(axis=1)
     error = 2 * np.linalg.norm(before[1:, 1:] - old, axis=1)
-    room = np.where(moved, TURN * angle + RESOLVED * np.abs(old).max(axis=1) + 1e-12, NO_TURN)
+    room = np.where(
+        moved, TURN * angle + RESOLVED * np.abs(old).max(axis=1) + 1e-12, NO_TURN
+    )
     for k in np.flatnonzero(error > room)[:1]:
         what = f"rotation to index {k + 1} against link_ang [rad]"
         yield broken("motion", what, float(error[k]), f"0 ± {room[k]:g}")
@@ -228,30 +265,43 @@ def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Finding]:
 
 def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a state that does not follow from the state before it."""
-    position, velocity = (a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
+    position, velocity = (
+        a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel)
+    )
     yield from mean_speed(position, velocity, case.dt, 2 * case.gravity * case.dt)
     expected = mujoco_contacts.each_step(trace, case)
     impulse = expected["link_vel"] - velocity[:-1] - case.dt * case.fall
     flight = (np.abs(impulse) < 1e-9).all(axis=1)
-    errors = {name: np.abs(getattr(trace, name)[1:, 0] - of) for name, of in expected.items()}
+    errors = {
+        name: np.abs(getattr(trace, name)[1:, 0] - of) for name, of in expected.items()
+    }
     rooms = {name: np.where(flight, FLIGHT[name], NEXT[name]) for name in errors}
-    beyond = {name: (of > rooms[name][:, None]).any(axis=1) for name, of in errors.items()}
+    beyond = {
+        name: (of > rooms[name][:, None]).any(axis=1) for name, of in errors.items()
+    }
     wrong = np.any(list(beyond.values()), axis=0)
     edge = on_edge(depths_before_last_step(trace, case), case.size)
     excused = wrong & (edge[1:] | edge[:-1])  # of both substeps
     share = float(excused.mean())
     if share > ON_EDGE:
-        yield broken("motion", "share of steps of another motion", share, f"up to {ON_EDGE}")
+        yield broken(
+            "motion", "share of steps of another motion", share, f"up to {ON_EDGE}"
+        )
     yield from impulses(trace, case, excused)
     for k in np.flatnonzero(wrong & ~excused)[:1]:
         name = next(name for name, of in beyond.items() if of[k])
         axis = int(errors[name][k].argmax())
-        found, follows = float(getattr(trace, name)[k + 1, 0, axis]), float(expected[name][k, axis])
+        found, follows = (
+            float(getattr(trace, name)[k + 1, 0, axis]),
+            float(expected[name][k, axis]),
+        )
         what = f"{name} at index {[int(k) + 1, 0, axis]} [{UNITS[name]}]"
         yield broken("motion", what, found, f"{follows!r} ± {rooms[name][k]:g}")
 
 
-def impulses(trace: ContactTrace, case: ContactCase, steps: np.ndarray) -> Iterator[Finding]:
+def impulses(
+    trace: ContactTrace, case: ContactCase, steps: np.ndarray
+) -> Iterator[Finding]:
     """Yield an impulse of some steps that no contacts of the cube with the surface give.
 
     It is upward and in the friction cone, and it acts at points of the cube.
@@ -261,7 +311,9 @@ def impulses(trace: ContactTrace, case: ContactCase, steps: np.ndarray) -> Itera
         case: its settings.
         steps: (n,) which steps are judged.
     """
-    velocity, spin = (a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_ang))
+    velocity, spin = (
+        a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_ang)
+    )
     gained = (np.diff(velocity, axis=0) - case.dt * case.fall)[steps]
     friction = max(case.friction, case.surface_friction)
     across = np.linalg.norm(gained[:, :2], axis=1)
@@ -279,7 +331,9 @@ def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray
 
     Semi-implicit Euler moves a body by the velocities after the step, for `h` seconds.
     """
-    position, velocity = (a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
+    position, velocity = (
+        a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel)
+    )
     quat, turn = trace.link_quat[:, 0].astype(np.float64), -h * trace.link_ang[:, 0]
     half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
     back = np.hstack([np.cos(half), turn / 2 * np.sinc(half / np.pi)])

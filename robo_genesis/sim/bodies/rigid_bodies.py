@@ -20,9 +20,9 @@ Read = TypeVar("Read")
 class Drop:
     """All settings of one drop of a cube from rest.
 
-    `size` is the cube's edge [m], `density` [kg/m³], `height` that of its centre at the start [m],
-    `gravity` the magnitude of the acceleration downwards [m/s²], `dt` the outer step [s], `steps`
-    the number of outer steps.
+    `size` is the cube's edge [m], `density` [kg/m³], `height` that of its centre at the
+    start [m], `gravity` the magnitude of the acceleration downwards [m/s²], `dt` the
+    outer step [s], `steps` the number of outer steps.
     """
 
     size: float
@@ -46,17 +46,21 @@ class Drop:
 
 
 def new_scene(
-    gs: Any, case: Any, rigid: Mapping[str, Any] | None = None, *, first_only: bool = False,
+    gs: Any,
+    case: Any,
+    rigid: Mapping[str, Any] | None = None,
+    *,
+    first_only: bool = False,
     **simulated: Any,
-) -> Any:  # fmt: skip
+) -> Any:
     """Return a scene with the `dt` and `substeps` of a case, without viewer and speed in the log.
 
     Args:
         gs: the engine after `gs.init`.
         case: the settings.
         rigid: arguments of `gs.options.RigidOptions`, None for the defaults.
-        first_only: whether cameras see the first environment alone: a frame of 64 of them, one in
-            the other, takes seconds.
+        first_only: whether cameras see the first environment alone: a frame of 64 of
+            them, one in the other, takes seconds.
         simulated: further arguments of `gs.options.SimOptions`.
     """
     options = gs.options
@@ -73,8 +77,8 @@ def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
     """Reset the scene, step, and record every state.
 
     Raises:
-        CaseError: the scene is not built or has another time step, or the box is not at rest
-            at the height that the case asks for.
+        CaseError: the scene is not built or has another time step, or the box is not at
+            rest at the height that the case asks for.
     """
     require_built(scene, case)
     scene.reset()
@@ -89,7 +93,9 @@ def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
     return BodyTrace(times(case), *stacked(states))
 
 
-def record_states(step: Callable[[], object], steps: int, read: Callable[[], Read]) -> list[Read]:
+def record_states(
+    step: Callable[[], object], steps: int, read: Callable[[], Read]
+) -> list[Read]:
     """Read the state, then step and read again, `steps` times; return the steps + 1 states.
 
     Args:

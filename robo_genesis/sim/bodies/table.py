@@ -39,12 +39,13 @@ def gap(one: Footprint, other: Footprint) -> float:
 class SceneCase(Controlled):
     """A table scene with one object, a bowl and a ball above it; the robot holds its start.
 
-    `shape` is "cylinder" or "box", `size` its length, width and height [m]. `place` is the middle
-    of its lower face on its support, which is a shelf if it is not at z = 0. It starts `gap` [m]
-    above the support; gravity does not act on it if it is `weightless`. `density` [kg/m³];
-    `friction` is that of the object, and with `pads` that of the robot is set as well. `bowl`
-    is a choice of collision geometry, `bowl_at` (x, y) its place; a ball of `ball_radius`
-    [m] falls into it, none if that is 0. `fov` is that of the camera in the world [degree].
+    `shape` is "cylinder" or "box", `size` its length, width and height [m]. `place` is
+    the middle of its lower face on its support, which is a shelf if it is not at z = 0.
+    It starts `gap` [m] above the support; gravity does not act on it if it is
+    `weightless`. `density` [kg/m³]; `friction` is that of the object, and with `pads`
+    that of the robot is set as well. `bowl` is a choice of collision geometry,
+    `bowl_at` (x, y) its place; a ball of `ball_radius` [m] falls into it, none if that
+    is 0. `fov` is that of the camera in the world [degree].
     """
 
     shape: str
@@ -63,7 +64,9 @@ class SceneCase(Controlled):
     @property
     def volume(self) -> float:
         """Volume of the object [m³]."""
-        return float(np.prod(self.size)) * (np.pi / 4 if self.shape == "cylinder" else 1.0)
+        return float(np.prod(self.size)) * (
+            np.pi / 4 if self.shape == "cylinder" else 1.0
+        )
 
     @property
     def centre(self) -> FloatArray:
@@ -98,9 +101,14 @@ class SceneCase(Controlled):
     def corners(self, centre: FloatArray) -> FloatArray:
         """Return corners (n, 3) of the upright object, 64 for each circle of a cylinder [m]."""
         around = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-        square, circle = [(-1, -1), (-1, 1), (1, -1), (1, 1)], [np.cos(around), np.sin(around)]
+        square, circle = (
+            [(-1, -1), (-1, 1), (1, -1), (1, 1)],
+            [np.cos(around), np.sin(around)],
+        )
         plan = np.array(square) if self.shape == "box" else np.stack(circle, axis=1)
-        levels = [np.column_stack([plan, np.full(len(plan), side)]) for side in (-1.0, 1.0)]
+        levels = [
+            np.column_stack([plan, np.full(len(plan), side)]) for side in (-1.0, 1.0)
+        ]
         return np.asarray(centre) + np.vstack(levels) * np.array(self.size) / 2
 
 
@@ -117,9 +125,13 @@ class World:
 
 
 def build(
-    gs: Any, case: SceneCase, view: dict[str, Any] | None = None,
-    wrist: dict[str, Any] | None = None, n_envs: int = 0, **options: Any,
-) -> World:  # fmt: skip
+    gs: Any,
+    case: SceneCase,
+    view: dict[str, Any] | None = None,
+    wrist: dict[str, Any] | None = None,
+    n_envs: int = 0,
+    **options: Any,
+) -> World:
     """Declare a table scene and build it.
 
     Args:
@@ -134,7 +146,9 @@ def build(
         options = {"batch_dofs_info": True} | options
     scene = new_scene(gs, case, options, first_only=n_envs > 0)
 
-    def block(size: Sequence[float], x: float, y: float, top: float, shade: float = 0.6) -> Any:
+    def block(
+        size: Sequence[float], x: float, y: float, top: float, shade: float = 0.6
+    ) -> Any:
         """Add a fixed box by its top."""
         return scene.add_entity(
             gs.morphs.Box(size=tuple(size), pos=(x, y, top - size[2] / 2), fixed=True),
@@ -145,7 +159,9 @@ def build(
     scene.add_entity(gs.morphs.Plane(pos=(0, 0, FLOOR)))
     (length, width, thick), (x, y) = TABLE
     corners = [
-        (x + s * (length / 2 - 0.04), y + t * (width / 2 - 0.04)) for s in (-1, 1) for t in (-1, 1)
+        (x + s * (length / 2 - 0.04), y + t * (width / 2 - 0.04))
+        for s in (-1, 1)
+        for t in (-1, 1)
     ]
     fixed = [block(TABLE[0], x, y, 0.0)]
     fixed += [block((0.05, 0.05, -FLOOR - thick), *at, -thick, 0.5) for at in corners]
@@ -163,12 +179,16 @@ def build(
     body = scene.add_entity(
         morph,
         material=gs.materials.Rigid(
-            rho=case.density, friction=case.friction, gravity_compensation=float(case.weightless)
+            rho=case.density,
+            friction=case.friction,
+            gravity_compensation=float(case.weightless),
         ),
         surface=gs.surfaces.Default(color=(0.10, 0.50, 0.80, 1.0)),
     )
     green = gs.surfaces.Default(color=(0.30, 0.60, 0.30, 1.0))
-    basin = bowl.add(gs, scene, case.bowl, (*case.bowl_at, 0.0), surface=green, friction=0.8)
+    basin = bowl.add(
+        gs, scene, case.bowl, (*case.bowl_at, 0.0), surface=green, friction=0.8
+    )
     ball = None
     if case.ball_radius:
         ball = scene.add_entity(

@@ -1,7 +1,7 @@
 """Named checks of a camera view: camera matrix, pose, projection of a marker, depth of its surface.
 
-Each yields findings about one `View`; the label of a view keeps several apart. A view without
-pictures passes the checks of pictures with the note SKIP.
+Each yields findings about one `View`; the label of a view keeps several apart. A view
+without pictures passes the checks of pictures with the note SKIP.
 """
 
 from collections.abc import Iterator, Mapping
@@ -26,16 +26,18 @@ SAME_POSE = 2e-6
 
 FEWEST_PIXELS = 200  # A surface with fewer pixels is not judged by its picture
 
-# A mask has whole pixels. At random places, the centroid of a disc of 200 pixels is up to 0.14
-# pixels from the centre of the disc.
-# Largest distance of a centroid from the centre of the computed silhouette [pixel].
+# A mask has whole pixels. At random places, the centroid of a disc of 200 pixels is up
+# to 0.14 pixels from the centre of the disc. Largest distance of a centroid from the
+# centre of the computed silhouette [pixel].
 CENTROID = 0.15
 
-# The engine draws a sphere as 1280 triangles, whose centres are 0.45 % nearer to its middle.
-# Largest distance of a point from a sphere's surface, as a share of the radius.
+# The engine draws a sphere as 1280 triangles, whose centres are 0.45 % nearer to its
+# middle. Largest distance of a point from a sphere's surface, as a share of the radius.
 MESH_SHARE = 0.006
 
-PLANE = 1e-4  # Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]
+PLANE = (
+    1e-4  # Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]
+)
 
 PLANE_FAR = 3.0  # Depth up to which the bound of a plane holds [m]
 
@@ -44,7 +46,8 @@ PLANE_FAR = 3.0  # Depth up to which the bound of a plane holds [m]
 class Marker:
     """A sphere in view: number in the segmentation, centre (3,) and radius [m].
 
-    Two markers are equal only if they are the same object, because a centre is an array.
+    Two markers are equal only if they are the same object, because a centre is an
+    array.
     """
 
     number: int
@@ -52,14 +55,16 @@ class Marker:
     radius: float
 
 
-def camera_matrix(label: str, view: View, given: Mapping[str, Any]) -> Iterator[Finding]:
+def camera_matrix(
+    label: str, view: View, given: Mapping[str, Any]
+) -> Iterator[Finding]:
     """Require the camera matrix of the vertical field of view, and the pose and the limits given.
 
     Args:
         label: of the view.
         view: as it was read.
-        given: to `add_camera`: `fov` [degree], `near` and `far` [m], and, of a camera that is not
-            on a link, `pos` and `lookat` [m].
+        given: to `add_camera`: `fov` [degree], `near` and `far` [m], and, of a camera
+            that is not on a link, `pos` and `lookat` [m].
     """
     apart = np.abs(view.intrinsics - cameras.intrinsics(given["fov"], view.size)).max()
     yield at_most(f"{label}.intrinsics_error_px", float(apart), SAME_MATRIX)
@@ -106,10 +111,14 @@ def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
         yield noted(f"{label}.segmentation", SKIP)
         return
     mask = view.segmentation == marker.number
-    yield equal(f"{label}.pixels_at_the_border", int(mask.sum() - mask[1:-1, 1:-1].sum()), 0)
+    yield equal(
+        f"{label}.pixels_at_the_border", int(mask.sum() - mask[1:-1, 1:-1].sum()), 0
+    )
     yield above(f"{label}.pixels", int(mask.sum()), FEWEST_PIXELS)
     found = cameras.centroid(mask)
-    to_centre, to_ellipse = (float(np.linalg.norm(found - of)) for of in computed(view, marker))
+    to_centre, to_ellipse = (
+        float(np.linalg.norm(found - of)) for of in computed(view, marker)
+    )
     yield noted(f"{label}.centroid_to_centre_px", to_centre)
     yield at_most(f"{label}.centroid_to_silhouette_px", to_ellipse, CENTROID)
 
@@ -145,7 +154,9 @@ def sphere_surface(label: str, view: View, marker: Marker) -> Iterator[Finding]:
     return _surface(label, from_sphere(view, marker), MESH_SHARE * marker.radius)
 
 
-def plane_surface(label: str, view: View, number: int, height: float = 0.0) -> Iterator[Finding]:
+def plane_surface(
+    label: str, view: View, number: int, height: float = 0.0
+) -> Iterator[Finding]:
     """Require the back-projected pixels of a horizontal plane to be at its height [m]."""
     return _surface(label, from_plane(view, number, height), PLANE)
 

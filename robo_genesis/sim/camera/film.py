@@ -6,8 +6,8 @@ import numpy as np
 
 from robo_genesis.core.scene import FRAME_SHAPE
 
-# Pixels of the camera, in each direction, that become one, and pictures in a row or column of a
-# sheet.
+# Pixels of the camera, in each direction, that become one, and pictures in a row or
+# column of a sheet.
 SHRINK = 5
 
 # Rows, columns and colours of a picture.
@@ -32,11 +32,15 @@ def sheets(film: str, pictures: np.ndarray) -> dict[str, np.ndarray]:
     places = np.zeros((len(names) * SHRINK**2, *PICTURE), np.uint8)
     places[: len(pictures)] = pictures
     tiles = places.reshape(len(names), SHRINK, SHRINK, *PICTURE)
-    return dict(zip(names, tiles.swapaxes(2, 3).reshape(len(names), *FRAME_SHAPE), strict=True))
+    return dict(
+        zip(names, tiles.swapaxes(2, 3).reshape(len(names), *FRAME_SHAPE), strict=True)
+    )
 
 
 def pictures_of(frames: Mapping[str, np.ndarray], film: str, count: int) -> np.ndarray:
     """Return the pictures (count, *PICTURE) that the frames of a film hold."""
     whole = np.stack([frames[name] for name in sheet_names(film, count)])
-    tiles = whole.reshape(len(whole), SHRINK, PICTURE[0], SHRINK, *PICTURE[1:]).swapaxes(2, 3)
+    tiles = whole.reshape(
+        len(whole), SHRINK, PICTURE[0], SHRINK, *PICTURE[1:]
+    ).swapaxes(2, 3)
     return tiles.reshape(-1, *PICTURE)[:count]

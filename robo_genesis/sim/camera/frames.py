@@ -23,16 +23,22 @@ class Renderer:
     @property
     def software(self) -> bool:
         """Whether it is Mesa's software rasteriser."""
-        return any(word in self.name.lower() for word in ("llvmpipe", "softpipe", "swrast"))
+        return any(
+            word in self.name.lower() for word in ("llvmpipe", "softpipe", "swrast")
+        )
 
 
 def read_renderer(scene: Any) -> Renderer:
     """Read GL_VENDOR and GL_RENDERER from the scene's OpenGL context."""
     gl = importlib.import_module("OpenGL.GL")
-    context = scene.visualizer._rasterizer._renderer  # Genesis has no public access to it
+    context = (
+        scene.visualizer._rasterizer._renderer
+    )  # Genesis has no public access to it
     context.make_current()
     try:
-        vendor, name = (gl.glGetString(item).decode() for item in (gl.GL_VENDOR, gl.GL_RENDERER))
+        vendor, name = (
+            gl.glGetString(item).decode() for item in (gl.GL_VENDOR, gl.GL_RENDERER)
+        )
     finally:
         context.make_uncurrent()
     return Renderer(vendor, name)
@@ -44,7 +50,9 @@ def capture(camera: Any) -> np.ndarray:
     Raises:
         FrameError: the frame is not usable.
     """
-    rgb = camera.render(force_render=True)[0]  # also where no step has changed the scene
+    rgb = camera.render(force_render=True)[
+        0
+    ]  # also where no step has changed the scene
     require_frame(rgb)
     return np.array(rgb)
 

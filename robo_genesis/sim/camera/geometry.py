@@ -1,10 +1,11 @@
 """Camera geometry in NumPy: camera matrix, projection, back-projection, masks.
 
-A pixel has two coordinates, u to the right and v down. The corner of the picture is (0, 0), so the
-centre of column i and row j is (i + ½, j + ½). An array of pixels has shape (H, W): its first index
-is the row. `K` (3, 3) is the camera matrix [pixel]. A `transform` (4, 4) is the pose of a camera in
-the world as the engine reports it: x right, y up, z backwards (OpenGL) [m]. The computation uses
-x right, y down, z forwards (OpenCV). Depth is the distance along the optical axis [m].
+A pixel has two coordinates, u to the right and v down. The corner of the picture is (0,
+0), so the centre of column i and row j is (i + ½, j + ½). An array of pixels has shape
+(H, W): its first index is the row. `K` (3, 3) is the camera matrix [pixel]. A
+`transform` (4, 4) is the pose of a camera in the world as the engine reports it: x
+right, y up, z backwards (OpenGL) [m]. The computation uses x right, y down, z forwards
+(OpenCV). Depth is the distance along the optical axis [m].
 """
 
 from collections.abc import Sequence
@@ -40,7 +41,8 @@ def looking(pos: Sequence[float], at: Sequence[float]) -> FloatArray:
 
     Args:
         pos: (3,) its place [m].
-        at: (3,) the point in the middle of its picture, not straight above or below [m].
+        at: (3,) the point in the middle of its picture, not straight above or below
+            [m].
     """
     z = np.subtract(pos, at) / np.linalg.norm(np.subtract(pos, at))
     x = np.cross((0, 0, 1), z) / np.linalg.norm(np.cross((0, 0, 1), z))
@@ -64,11 +66,11 @@ def project(points: FloatArray, K: FloatArray, transform: FloatArray) -> FloatAr
 
 def silhouette_centre(
     centre: FloatArray, radius: float, K: FloatArray, transform: FloatArray
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """Return the centre (2,) of the ellipse that a sphere covers in a picture [pixel].
 
-    The picture of the centre is nearer to the middle of the picture, by the factor 1 − r²/z². A
-    sphere that the plane z = 0 of the camera touches or cuts gives NaN.
+    The picture of the centre is nearer to the middle of the picture, by the factor 1 −
+    r²/z². A sphere that the plane z = 0 of the camera touches or cuts gives NaN.
     """
     x, y, z = in_camera(centre, transform)
     if z <= radius:
@@ -82,8 +84,8 @@ def rays(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the camera's position (3,) and the direction (H, W, 3) through each pixel [m].
 
-    The component of a direction along the optical axis is 1. So position + depth · direction is the
-    point at that depth.
+    The component of a direction along the optical axis is 1. So position + depth ·
+    direction is the point at that depth.
 
     Args:
         K: camera matrix.
@@ -124,7 +126,8 @@ class Residuals:
 def residuals(apart: FloatArray) -> Residuals:
     """Summarise signed distances (n,) [m]; without any, mean and largest are NaN.
 
-    One distance that is not finite makes both of them not finite, which no check accepts.
+    One distance that is not finite makes both of them not finite, which no check
+    accepts.
     """
     if not apart.size:
         return Residuals(0, np.nan, np.nan)

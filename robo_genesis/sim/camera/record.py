@@ -1,7 +1,8 @@
 """A camera view in a bundle: colours, depth and segmentation as frames, K and pose as readings.
 
-A bundle holds frames of one size, `CAMERA_RES`, with 8 bits for each of three colours. A depth
-takes 24 bits in units of `DEPTH_UNIT`, the highest in red. The number of a segmentation is in red.
+A bundle holds frames of one size, `CAMERA_RES`, with 8 bits for each of three colours.
+A depth takes 24 bits in units of `DEPTH_UNIT`, the highest in red. The number of a
+segmentation is in red.
 """
 
 from collections.abc import Mapping
@@ -15,14 +16,24 @@ from robo_genesis.sim.camera.views import View
 
 DEPTH_UNIT = 1e-5  # Resolution of a recorded depth [m]; 24 bits reach 167 m
 
-SEGMENTS = "segments"  # Group of counts: the numbers of things in the segmentation, by name
+SEGMENTS = (
+    "segments"  # Group of counts: the numbers of things in the segmentation, by name
+)
 
 PICTURES = ("rgb", "depth", "segmentation")
 
 # Units of the readings of one view.
 NUMBERS = {
-    **{f"intrinsics_{i}{j}": "pixel" if i < 2 else "1" for i in range(3) for j in range(3)},
-    **{f"transform_{i}{j}": "m" if i < 3 and j == 3 else "1" for i in range(4) for j in range(4)},
+    **{
+        f"intrinsics_{i}{j}": "pixel" if i < 2 else "1"
+        for i in range(3)
+        for j in range(3)
+    },
+    **{
+        f"transform_{i}{j}": "m" if i < 3 and j == 3 else "1"
+        for i in range(4)
+        for j in range(4)
+    },
     "near": "m",
     "far": "m",
 }
@@ -53,14 +64,20 @@ def frames(name: str, view: View) -> dict[str, np.ndarray]:
     if view.rgb is None or view.depth is None or view.segmentation is None:
         return {}
     units = np.rint(np.asarray(view.depth, dtype=float) / DEPTH_UNIT)
-    if not (units >= 0).all() or not (units < 2**24).all() or view.segmentation.max() > 255:
+    if (
+        not (units >= 0).all()
+        or not (units < 2**24).all()
+        or view.segmentation.max() > 255
+    ):
         raise ValueError(
             f"The view {name} has depths from {view.depth.min()} to {view.depth.max()} m and "
             f"numbers up to {view.segmentation.max()}; a frame holds depths from 0 to "
             f"{DEPTH_UNIT * 2**24:.0f} m and numbers up to 255. Choose a nearer far limit."
         )
     whole = units.astype(np.uint32)
-    depth = np.stack([whole >> 16, whole >> 8 & 255, whole & 255], axis=-1).astype(np.uint8)
+    depth = np.stack([whole >> 16, whole >> 8 & 255, whole & 255], axis=-1).astype(
+        np.uint8
+    )
     segmentation = np.zeros(view.rgb.shape, np.uint8)
     segmentation[..., 0] = view.segmentation
     return dict(zip(frame_names(name), (view.rgb, depth, segmentation), strict=True))
@@ -70,7 +87,11 @@ def view_of(run: Experiment, name: str) -> View:
     """Return a recorded view; without a camera, it has no pictures."""
     found: Mapping[str, float] = run.readings[f"view_{name}"]
     values = np.array([found[number] for number in NUMBERS])
-    K, transform, limits = values[:9].reshape(3, 3), values[9:25].reshape(4, 4), values[25:]
+    K, transform, limits = (
+        values[:9].reshape(3, 3),
+        values[9:25].reshape(4, 4),
+        values[25:],
+    )
     view = View(K, transform, CAMERA_RES, (float(limits[0]), float(limits[1])))
     if not run.rendered:
         return view

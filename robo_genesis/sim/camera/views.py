@@ -67,11 +67,11 @@ class View:
 def look(camera: Any, render: bool = True) -> View:
     """Return what a camera sees in the present state, and its pose at this moment.
 
-    A forced picture moves a camera on a link to the link. Without pictures, move it there first,
-    with `move_to_attach`. Depth is rendered without colours: with them, the engine takes it from
-    one sample of a multisampled picture, which is not at the centre of the pixel. Rendering is
-    forced, because the engine otherwise draws nothing new before the next step, not even after a
-    position was assigned.
+    A forced picture moves a camera on a link to the link. Without pictures, move it
+    there first, with `move_to_attach`. Depth is rendered without colours: with them,
+    the engine takes it from one sample of a multisampled picture, which is not at the
+    centre of the pixel. Rendering is forced, because the engine otherwise draws nothing
+    new before the next step, not even after a position was assigned.
 
     Args:
         camera: of a built scene.
@@ -107,7 +107,8 @@ def read_intrinsics(camera: Any) -> FloatArray:
 def read_transform(camera: Any) -> FloatArray:
     """Return the pose (4, 4) of a camera in the world, with z backwards [m].
 
-    It is computed at each call; Genesis 1.3 keeps the first value of `camera.extrinsics`.
+    It is computed at each call; Genesis 1.3 keeps the first value of
+    `camera.extrinsics`.
     """
     return to_numpy(camera.transform).astype(np.float64)
 
@@ -119,7 +120,9 @@ def segment_number(scene: Any, link: Any) -> int:
         ViewError: no segment is this link's; the message has those that exist.
     """
     segments = scene.segmentation_idx_dict
-    found = [number for number, key in segments.items() if key == (link.entity.idx, link.idx)]
+    found = [
+        number for number, key in segments.items() if key == (link.entity.idx, link.idx)
+    ]
     if len(found) != 1:
         raise ViewError(
             f"No single segment is that of entity {link.entity.idx}, link {link.idx}. The scene "

@@ -40,7 +40,10 @@ def impedance(depth: float) -> float:
     """Return the impedance d of a contact at a depth [m]."""
     least, most, width, middle, power = IMPEDANCE
     x = min(depth / width, 1.0)
-    low, high = x**power / middle ** (power - 1), (1 - x) ** power / (1 - middle) ** (power - 1)
+    low, high = (
+        x**power / middle ** (power - 1),
+        (1 - x) ** power / (1 - middle) ** (power - 1),
+    )
     return float(least + (most - least) * (low if x < middle else 1 - high))
 
 
@@ -49,7 +52,8 @@ def load(case: ContactCase, own_defaults: bool = False) -> Any:
 
     Args:
         case: of a cube or a ball.
-        own_defaults: use the default time constant of MuJoCo instead of that of Genesis.
+        own_defaults: use the default time constant of MuJoCo instead of that of
+            Genesis.
     """
     import mujoco
 
@@ -60,7 +64,9 @@ def load(case: ContactCase, own_defaults: bool = False) -> Any:
     spec.option.impratio = case.impratio or 1.0
     spec.option.noslip_iterations = case.noslip
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h, case.time_constant)
+    seconds = (
+        OWN_TIME_CONSTANT if own_defaults else time_constant(case.h, case.time_constant)
+    )
     contact = {"solref": case.spring or (seconds, 1.0), "solimp": IMPEDANCE}
     box, ball = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_SPHERE
     spec.worldbody.add_geom(
@@ -100,12 +106,16 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
         mujoco.mj_step(model, data, nstep=settle)
     data.qvel[0] += case.speed
     states = record_states(
-        lambda: mujoco.mj_step(model, data, nstep=case.substeps), case.steps, lambda: _state(data)
+        lambda: mujoco.mj_step(model, data, nstep=case.substeps),
+        case.steps,
+        lambda: _state(data),
     )
     return ContactTrace(times(case), *stacked(states))
 
 
-def after_one_step(model: Any, states: Sequence[FloatArray], substeps: int) -> FloatArray:
+def after_one_step(
+    model: Any, states: Sequence[FloatArray], substeps: int
+) -> FloatArray:
     """Return time, positions and velocities (n, 1 + nq + nv) one outer step after states.
 
     Args:
@@ -134,13 +144,17 @@ def each_step(
     begin = (position, quat, velocity, spin)
     ends = after_one_step(load(case, own_defaults), begin, case.substeps)
     _, position, quat, velocity, spin = np.split(ends, (1, 4, 8, 11), axis=1)
-    return dict(zip(MOTION, (position, quat, velocity, rotate(quat, spin)), strict=True))
+    return dict(
+        zip(MOTION, (position, quat, velocity, rotate(quat, spin)), strict=True)
+    )
 
 
 def _state(data: Any) -> tuple[np.ndarray, ...]:
     """Return position, orientation, velocity, angular velocity in the world's axes, contacts."""
     quat = data.qpos[3:7]
-    angular_velocity = rotate(quat, data.qvel[None, 3:6])  # MuJoCo has it in the body's axes
+    angular_velocity = rotate(
+        quat, data.qvel[None, 3:6]
+    )  # MuJoCo has it in the body's axes
     deepest = max((-contact.dist for contact in data.contact), default=0.0)
     state = (data.qpos[None, :3], quat[None], data.qvel[None, :3], angular_velocity)
     return (

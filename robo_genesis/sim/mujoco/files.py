@@ -26,8 +26,12 @@ def note_models(note: Callable[[str], None], text: Path) -> None:
             file = str(text if from_text else model)
             with suppress(mujoco.FatalError):  # which the loader reports
                 paths, top = mujoco.mju_getXMLDependencies(file), dirname(file)
-                # Names in an included file are relative to that file, but listed below the first.
-                for folder in {top, *(dirname(path) for path in paths if path.endswith(".xml"))}:
+                # Names in an included file are relative to that file, but listed below
+                # the first.
+                for folder in {
+                    top,
+                    *(dirname(path) for path in paths if path.endswith(".xml")),
+                }:
                     for path in paths:
                         note(join(folder, relpath(path, top or ".")))
             return load(*given, **named)

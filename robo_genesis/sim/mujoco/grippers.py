@@ -11,7 +11,9 @@ from robo_genesis.sim.bodies.grippers import PAD, SIZE, HeldCase, pads
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
 from robo_genesis.sim.mujoco.contacts import MOTION, after_one_step
 
-AXES = np.array([[1.0, 0, 0], [-1, 0, 0]])  # Directions in which the left and the right pad press
+AXES = np.array(
+    [[1.0, 0, 0], [-1, 0, 0]]
+)  # Directions in which the left and the right pad press
 
 
 def load(case: HeldCase, as_genesis: bool = False) -> Any:
@@ -19,8 +21,8 @@ def load(case: HeldCase, as_genesis: bool = False) -> Any:
 
     Args:
         case: settings of the run.
-        as_genesis: make the edges of a pyramid as soft as Genesis does. With μ² / impratio for
-            each μ² it has 1 + μ² / impratio where MuJoCo has 1 + μ².
+        as_genesis: make the edges of a pyramid as soft as Genesis does. With μ² /
+            impratio for each μ² it has 1 + μ² / impratio where MuJoCo has 1 + μ².
     """
     import mujoco
 
@@ -61,13 +63,16 @@ def run_case(case: HeldCase, as_genesis: bool = False) -> BodyTrace:
         lambda: mujoco.mj_step(model, data, nstep=case.substeps),
         case.steps,
         lambda: tuple(
-            of[0].astype(np.float32) for of in links(case, data.qpos[None], data.qvel[None])
+            of[0].astype(np.float32)
+            for of in links(case, data.qpos[None], data.qvel[None])
         ),
     )
     return BodyTrace(times(case), *stacked(states))
 
 
-def each_step(trace: BodyTrace, case: HeldCase, as_genesis: bool) -> dict[str, FloatArray]:
+def each_step(
+    trace: BodyTrace, case: HeldCase, as_genesis: bool
+) -> dict[str, FloatArray]:
     """Return what follows from each state of a run but the last in one outer step, by array.
 
     The arguments are as of `load`.
@@ -77,7 +82,9 @@ def each_step(trace: BodyTrace, case: HeldCase, as_genesis: bool) -> dict[str, F
     )
     along = np.einsum("nlx,lx->nl", position[:, 1:], AXES) + SIZE / 2 + PAD[0]
     speed = np.einsum("nlx,lx->nl", velocity[:, 1:], AXES)
-    turning = rotate(quat[:, 0] * [1, -1, -1, -1], spin[:, 0])  # MuJoCo has it in the body's axes
+    turning = rotate(
+        quat[:, 0] * [1, -1, -1, -1], spin[:, 0]
+    )  # MuJoCo has it in the body's axes
     parts = (along, position[:, 0], quat[:, 0], speed, velocity[:, 0], turning)
     ends = after_one_step(load(case, as_genesis), parts, case.substeps)
     _, qpos, qvel, _ = np.split(ends, (1, 10, 18), axis=1)

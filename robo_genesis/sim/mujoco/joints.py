@@ -23,28 +23,36 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
 
     Nothing touches anything: no links touch each other in the course's runs.
 
-    An affine actuator's force is gain · ctrl + bias[1] · q + bias[2] · q̇, clipped to its range.
-    With (KP, −KP, −KV) and the target as ctrl, it is the PD law of the course.
+    An affine actuator's force is gain · ctrl + bias[1] · q + bias[2] · q̇, clipped to
+    its range. With (KP, −KP, −KV) and the target as ctrl, it is the PD law of the
+    course.
 
     Raises:
-        CaseError: the integrator is unknown, or the time step does not divide the dt of the case.
+        CaseError: the integrator is unknown, or the time step does not divide the dt of
+            the case.
         ModelError: MuJoCo cannot read the model, or its base moves freely.
     """
     import mujoco
 
     substeps = round(case.dt / timestep)
-    if integrator not in INTEGRATORS or not np.isclose(substeps * timestep, case.dt, rtol=1e-9):
+    if integrator not in INTEGRATORS or not np.isclose(
+        substeps * timestep, case.dt, rtol=1e-9
+    ):
         raise CaseError(
             f"integrator={integrator!r}, timestep={timestep:g} s: expected one of "
             f"{', '.join(INTEGRATORS)}, and a time step that divides dt={case.dt:g} s."
         )
 
     def padded(*values: float) -> FloatArray:  # MuJoCo has ten parameters
-        return np.pad(np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values)))
+        return np.pad(
+            np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values))
+        )
 
     spec = bare_spec(case.model)
     for k, name in enumerate(case.model.joints):
-        motor = bool(case.effort_limit[k] > 0)  # MuJoCo takes no actuator with an empty range
+        motor = bool(
+            case.effort_limit[k] > 0
+        )  # MuJoCo takes no actuator with an empty range
         spec.add_actuator(
             name=name,
             target=name,
@@ -57,18 +65,24 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
             forcerange=[-case.effort_limit[k], case.effort_limit[k]],
         )
     spec.option.timestep = timestep
-    spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
+    spec.option.integrator = getattr(
+        mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"
+    )
     return compiled(spec, case.model)
 
 
 def run_case(
-    case: ControlCase, links: Sequence[str], timestep: float, integrator: str = "implicitfast"
+    case: ControlCase,
+    links: Sequence[str],
+    timestep: float,
+    integrator: str = "implicitfast",
 ) -> Trace:
     """Run a case from rest as `joint_control.run_case` does, in MuJoCo.
 
-    After each outer step the forces are computed again from the new state, so they have the same
-    times as those of Genesis: the clipped control force, and the net force along each DOF. The run
-    is computed in float64 and stored in float32, like every trace of the course.
+    After each outer step the forces are computed again from the new state, so they have
+    the same times as those of Genesis: the clipped control force, and the net force
+    along each DOF. The run is computed in float64 and stored in float32, like every
+    trace of the course.
 
     Args:
         case: its `substeps` is not used; `timestep` replaces it.
@@ -89,7 +103,9 @@ def run_case(
         return tuple(map(_kept, (*state, data.qvel[dof_at], data.actuator_force, net)))
 
     substeps = round(case.dt / timestep)
-    readings = record_states(lambda: mujoco.mj_step(model, data, nstep=substeps), case.steps, read)
+    readings = record_states(
+        lambda: mujoco.mj_step(model, data, nstep=substeps), case.steps, read
+    )
     effort_limit = _kept(model.actuator_forcerange[:, 1])
     return assemble(case, readings, [case.q_target] * case.steps, effort_limit)
 
@@ -100,8 +116,8 @@ def each_step(
     """Return what follows from a run's states, the arguments as of `run_case`.
 
     Returns:
-        Position and velocity after one outer step from each state but the last, and the net force
-        at each state but the first; each (n, d).
+        Position and velocity after one outer step from each state but the last, and the
+        net force at each state but the first; each (n, d).
     """
     import mujoco
 

@@ -1,7 +1,7 @@
 """Link poses, Jacobian and gravity of an arm in MuJoCo, on the model file that Genesis reads.
 
-The model has neither actuators nor shapes, except where a shape decides the inertia of a link. So
-nothing but its frames and masses decides a result.
+The model has neither actuators nor shapes, except where a shape decides the inertia of
+a link. So nothing but its frames and masses decides a result.
 """
 
 from collections.abc import Sequence
@@ -18,16 +18,22 @@ from robo_genesis.sim.arm.model import ModelError, RobotModel, model_file
 # Genesis' names of MuJoCo's types of joints, slide and hinge.
 TYPES = {2: "PRISMATIC", 3: "REVOLUTE"}
 
-GRAVITY = (0.0, 0.0, -9.81)  # That of a scene of Genesis, whatever the model file says [m/s²]
+GRAVITY = (
+    0.0,
+    0.0,
+    -9.81,
+)  # That of a scene of Genesis, whatever the model file says [m/s²]
 
 
 @cache
-def bare_robot(load: float = 0.0, of: RobotModel = FRANKA) -> tuple[Any, Any, list[int], list[int]]:
+def bare_robot(
+    load: float = 0.0, of: RobotModel = FRANKA
+) -> tuple[Any, Any, list[int], list[int]]:
     """Return the model without shapes and actuators, its data, and the joints in qpos and qvel.
 
-    `load` is added to the mass of the hand [kg]; its centre of mass and inertia remain. The data
-    are made once, because that takes as long as a hundred states. Every use sets all of `qpos` and
-    `qvel` that it reads.
+    `load` is added to the mass of the hand [kg]; its centre of mass and inertia remain.
+    The data are made once, because that takes as long as a hundred states. Every use
+    sets all of `qpos` and `qvel` that it reads.
     """
     import mujoco
 
@@ -56,7 +62,10 @@ def bare_spec(of: RobotModel = FRANKA) -> Any:
         spec = mujoco.MjSpec.from_file(model_file(of.file))
     except (ValueError, mujoco.FatalError) as error:
         raise _unreadable(of, error) from error
-    from_shapes = spec.compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+    from_shapes = (
+        spec.compiler.inertiafromgeom
+        == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+    )
     light = [g for g in spec.geoms if g.parent.explicitinertial and not from_shapes]
     kept = {g.meshname for g in spec.geoms if g not in light}
     shapes = [*light, *(mesh for mesh in spec.meshes if mesh.name not in kept)]
@@ -77,30 +86,47 @@ def compiled(spec: Any, of: RobotModel) -> Any:
 
 
 def _unreadable(of: RobotModel, error: Exception) -> ModelError:
-    cure = "Each link that a joint moves needs mass and inertia, in a URDF as <inertial>."
+    cure = (
+        "Each link that a joint moves needs mass and inertia, in a URDF as <inertial>."
+    )
     advice = f" {cure}" if "inertia" in str(error) else ""
     return ModelError(f"MuJoCo cannot read {of.file}: {error}.{advice}")
 
 
-def with_data(model: Any, of: RobotModel = FRANKA) -> tuple[Any, Any, list[int], list[int]]:
+def with_data(
+    model: Any, of: RobotModel = FRANKA
+) -> tuple[Any, Any, list[int], list[int]]:
     """Return a compiled model, its data, and the indices of the robot's joints in qpos and qvel.
 
     Raises:
-        ModelError: the robot's joints are not those of the file, or not all have one DOF.
+        ModelError: the robot's joints are not those of the file, or not all have one
+            DOF.
     """
     import mujoco
 
     names = [model.joint(k).name for k in range(model.njnt)]
-    if sorted(names) != sorted(of.joints) or model.nq != model.njnt or model.nv != model.njnt:
-        kinds = [mujoco.mjtJoint(kind).name[len("mjJNT_") :].lower() for kind in model.jnt_type]
+    if (
+        sorted(names) != sorted(of.joints)
+        or model.nq != model.njnt
+        or model.nv != model.njnt
+    ):
+        kinds = [
+            mujoco.mjtJoint(kind).name[len("mjJNT_") :].lower()
+            for kind in model.jnt_type
+        ]
         named = zip(names, kinds, strict=True)
-        found = ", ".join(f"{name or 'without a name'} ({kind})" for name, kind in named)
+        found = ", ".join(
+            f"{name or 'without a name'} ({kind})" for name, kind in named
+        )
         raise ModelError(
             f"{of.file} has the joints {found}; its RobotModel names {', '.join(of.joints)}. "
             "Name each joint in the file and in `joints`. Valid kinds are hinge and slide."
         )
     joints = [model.joint(name) for name in of.joints]
-    q_at, dof_at = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
+    q_at, dof_at = (
+        [int(j.qposadr[0]) for j in joints],
+        [int(j.dofadr[0]) for j in joints],
+    )
     return model, mujoco.MjData(model), q_at, dof_at
 
 
@@ -128,7 +154,10 @@ def link_poses(q: FloatArray, links: Sequence[str], of: RobotModel = FRANKA) -> 
 
     model, data, q_at, _ = bare_robot(of=of)
     bodies = [model.body(name).id for name in links]
-    position, orientation = np.empty((len(q), model.nbody, 3)), np.empty((len(q), model.nbody, 4))
+    position, orientation = (
+        np.empty((len(q), model.nbody, 3)),
+        np.empty((len(q), model.nbody, 4)),
+    )
     joints = np.empty((len(q), model.nq))
     joints[:, q_at] = q
     qpos, xpos, xquat = data.qpos, data.xpos, data.xquat
@@ -163,8 +192,9 @@ def at_rest(
         of: the robot.
 
     Returns:
-        The diagonal (d,) of the mass matrix [kg·m² or kg], the effort (d,) that holds the posture
-        [N·m or N], and the passive damping (d,) of the model [N·m·s/rad or N·s/m].
+        The diagonal (d,) of the mass matrix [kg·m² or kg], the effort (d,) that holds
+        the posture [N·m or N], and the passive damping (d,) of the model [N·m·s/rad or
+        N·s/m].
     """
     import mujoco
 
@@ -175,6 +205,8 @@ def at_rest(
     return diagonal[dof_at], data.qfrc_bias[dof_at], model.dof_damping[dof_at]
 
 
-def gravity_effort(q: FloatArray, load: float = 0.0, of: RobotModel = FRANKA) -> FloatArray:
+def gravity_effort(
+    q: FloatArray, load: float = 0.0, of: RobotModel = FRANKA
+) -> FloatArray:
     """Return the effort (d,) [N·m or N] of `at_rest`."""
     return at_rest(q, load, of)[1]

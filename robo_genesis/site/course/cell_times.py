@@ -20,7 +20,9 @@ class CellTimes(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the table."""
         pages = find_pages(Path(self.env.srcdir))
-        rows = [row(page.docname, page_record(page.docname).cell_seconds) for page in pages]
+        rows = [
+            row(page.docname, page_record(page.docname).cell_seconds) for page in pages
+        ]
         return self.parse_text_to_nodes(tables.markdown(rows))
 
 
@@ -31,7 +33,9 @@ def row(docname: str, seconds: list[float]) -> dict[str, str | int]:
         LookupError: there is no time.
     """
     if not seconds:
-        raise LookupError(f"{docname} has no cell with code. Write one, or remove its empty cells.")
+        raise LookupError(
+            f"{docname} has no cell with code. Write one, or remove its empty cells."
+        )
     slowest = max(range(len(seconds)), key=seconds.__getitem__)
     return {
         "page": f"[](/{docname}.md)",

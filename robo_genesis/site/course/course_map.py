@@ -37,8 +37,9 @@ LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 class Lesson:
     """One lesson.
 
-    `needs` is None where it is not decided yet. `page` is the lecture, None while the lesson is
-    planned. `outcomes` is what a student can do after a published lesson, with code in backticks.
+    `needs` is None where it is not decided yet. `page` is the lecture, None while the
+    lesson is planned. `outcomes` is what a student can do after a published lesson,
+    with code in backticks.
     """
 
     id: str
@@ -52,8 +53,8 @@ def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        ValueError: the file is not a list of lessons, an id occurs twice, a lesson needs one
-            that does not come before it, or a published one has no outcomes.
+        ValueError: the file is not a list of lessons, an id occurs twice, a lesson
+            needs one that does not come before it, or a published one has no outcomes.
     """
     try:
         rows = yaml.safe_load((book / FILE).read_text("utf8"))
@@ -115,13 +116,17 @@ class LessonLink(PageRole):
         """Return the link or the words."""
         found = LINK.fullmatch(self.text)
         if found is None:
-            raise ValueError(f"{self.text!r} is not a link; write `some words <l04/lecture>`.")
+            raise ValueError(
+                f"{self.text!r} is not a link; write `some words <l04/lecture>`."
+            )
         words, lesson, page = found.groups()
         pages = lesson_pages(self.env.found_docs, lesson)
         if not pages:
             return [nodes.Text(words)]
         if page not in pages:
-            raise LookupError(f"{lesson} has no page {page!r}; choices: {', '.join(pages)}.")
+            raise LookupError(
+                f"{lesson} has no page {page!r}; choices: {', '.join(pages)}."
+            )
         return [page_link(self.env.docname, pages[page], words)]
 
 
@@ -134,9 +139,15 @@ def lesson_pages(docnames: Iterable[str], lesson: str) -> dict[str, str]:
 def page_link(source: str, target: str, words: str) -> nodes.Node:
     """Return a link from one page to another."""
     return addnodes.pending_xref(
-        "", nodes.inline("", words, classes=["std", "std-doc"]), reftype="doc", refdomain="std",
-        refdoc=source, refexplicit=True, reftarget=f"/{target}", refwarn=True,
-    )  # fmt: skip
+        "",
+        nodes.inline("", words, classes=["std", "std-doc"]),
+        reftype="doc",
+        refdomain="std",
+        refdoc=source,
+        refexplicit=True,
+        reftarget=f"/{target}",
+        refwarn=True,
+    )
 
 
 class page_minutes(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
@@ -154,7 +165,9 @@ class CourseMap(MapDirective):
         """Return the cards and the list, without the list where no lesson is planned."""
         lessons = self.lessons()
         cards = [self.card(lesson, lesson.page) for lesson in lessons if lesson.page]
-        shown: list[nodes.Node] = [nodes.bullet_list("", *cards, classes=["course-map"])]
+        shown: list[nodes.Node] = [
+            nodes.bullet_list("", *cards, classes=["course-map"])
+        ]
         planned = [
             nodes.list_item("", named(lesson, lesson.title), ids=[anchor(lesson.id)])
             for lesson in lessons
@@ -181,15 +194,19 @@ class CourseMap(MapDirective):
     def times(self, lesson: Lesson, lecture: str) -> list[nodes.Node]:
         """Return a line for the lecture, for the lab, and for the other pages together."""
         pages = lesson_pages(self.env.found_docs, lesson.id.lower())
-        others = [page for name, page in pages.items() if name != LAB and page != lecture]
+        others = [
+            page for name, page in pages.items() if name != LAB and page != lecture
+        ]
         linked = {"Lecture": lecture} | ({"Lab": pages[LAB]} if LAB in pages else {})
         rows: list[tuple[str | nodes.Node, list[str]]] = [
-            (page_link(self.env.docname, page, word), [page]) for word, page in linked.items()
+            (page_link(self.env.docname, page, word), [page])
+            for word, page in linked.items()
         ]
         if others:
             rows.append((f"{len(others)} more page{'s' * (len(others) > 1)}", others))
         return [
-            paragraph(what, ": ", page_minutes(pages=of), classes=["time"]) for what, of in rows
+            paragraph(what, ": ", page_minutes(pages=of), classes=["time"])
+            for what, of in rows
         ]
 
 
@@ -222,10 +239,16 @@ def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:
     """Write the minutes of the pages, as each page itself shows them, and the pictures of cards."""
     for place in list(document.findall(card_picture)):
         lesson, names = place["lesson"], [name for _, name in app.env.images.values()]
-        up, alt = "../" * docname.count("/"), f"{lesson.upper()}: the start of its replay."
+        up, alt = (
+            "../" * docname.count("/"),
+            f"{lesson.upper()}: the start of its replay.",
+        )
         of_lesson = fnmatch.filter(names, f"replay-{lesson}-lecture-cpu*.webp")
         place.replace_self(
-            [html(f'<img src="{up}_images/{n}" alt="{alt}">') for n in sorted(of_lesson)[:1]]
+            [
+                html(f'<img src="{up}_images/{n}" alt="{alt}">')
+                for n in sorted(of_lesson)[:1]
+            ]
         )
     for place in list(document.findall(page_minutes)):
         place.replace_self(nodes.Text(str(total_minutes(app.env, place["pages"]))))

@@ -13,7 +13,9 @@ from robo_genesis.core.project import engine_pin
 from robo_genesis.site.course.sizes import count_minutes
 from robo_genesis.site.evidence.plain_nodes import html
 
-DESCRIPTION = 200  # Longest description, in characters: search engines show about as many
+DESCRIPTION = (
+    200  # Longest description, in characters: search engines show about as many
+)
 MINUTES = "minutes"  # The name of the time in a page's metadata
 
 
@@ -22,13 +24,18 @@ FORM = "lesson.yml"  # The repository's form for a mistake or a question
 
 def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     """Insert the time below the title, except on the home page, and the link at the end."""
-    section, repository = document.next_node(nodes.section), app.config.course_repository
+    section, repository = (
+        document.next_node(nodes.section),
+        app.config.course_repository,
+    )
     if docname != app.config.root_doc:
         time = f"About {app.env.metadata[docname][MINUTES]}."
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
     if repository.startswith("https://github.com/"):
         place = f"{docname}, Genesis {engine_pin()}"
-        address = f"{repository}/issues/new?{urlencode({'template': FORM, 'page': place})}"
+        address = (
+            f"{repository}/issues/new?{urlencode({'template': FORM, 'page': place})}"
+        )
         link = f'<a href="{escape(address)}">Report a mistake on this page, or ask</a>'
         section += html(f'<p class="report">{link}</p>')
 

@@ -15,28 +15,37 @@ from robo_genesis.pipeline.pages.page_rules import ADMONITIONS, DIRECTIVE, PARSE
 from robo_genesis.site.takeaways.plain_markdown import excerpt
 from robo_genesis.site.text.left_out import without_docstrings
 
-WORDS_A_MINUTE = 150  # A slow pace, for technical prose; code, tables and formulas are not counted
+WORDS_A_MINUTE = (
+    150  # A slow pace, for technical prose; code, tables and formulas are not counted
+)
 LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
 MINUTES_A_QUESTION = 2
 MINUTES_A_CHECKPOINT = 1  # To think of an answer before a fold shows it
-MINUTES_A_FUNCTION = 10  # An estimate of the time to write a function until its test passes
+MINUTES_A_FUNCTION = (
+    10  # An estimate of the time to write a function until its test passes
+)
 
 # An estimate of the time of one run of a lab, in which the engine compiles its kernels.
 MINUTES_A_RUN = 5
 MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
-STUB = "raise NotImplementedError"  # Occurs in a cell with a function that the reader writes
+# Occurs in a cell with a function that the reader writes
+STUB = "raise NotImplementedError"
 
 # Tags of cells whose code is not visible.
 HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
 
-COLUMN = 80  # Most characters in a line of an excerpt that the column shows without scrolling
+# Most characters in a line of an excerpt that the column shows without scrolling
+COLUMN = 80
 
 # What is counted on a page, in words.
 MEASURES = {
-    "words": "words of prose", "cells": "visible code cells",
-    "longest": "lines in its longest visible cell", "plots": "plots",
-    "minutes": "minutes to read and to work", "widest": "characters in its widest line of code",
-}  # fmt: skip
+    "words": "words of prose",
+    "cells": "visible code cells",
+    "longest": "lines in its longest visible cell",
+    "plots": "plots",
+    "minutes": "minutes to read and to work",
+    "widest": "characters in its widest line of code",
+}
 
 # The largest numbers by kind of page: the first word of its name.
 LIMITS = {
@@ -47,12 +56,16 @@ LIMITS = {
 }
 
 SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
-INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
+INCLUDE = re.compile(
+    r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL
+)
 PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
 
 # The beginning of a fold that a reader opens after an own answer.
-THOUGHT = re.compile(r"^ *[`:]{3,}\{dropdown\} *(?:answer|diagnosis)", re.MULTILINE | re.IGNORECASE)
+THOUGHT = re.compile(
+    r"^ *[`:]{3,}\{dropdown\} *(?:answer|diagnosis)", re.MULTILINE | re.IGNORECASE
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +116,9 @@ def _minutes(notebook: NotebookNode, file: Path) -> Minutes:
 def visible_code(notebook: NotebookNode) -> list[str]:
     """Return the code that a page shows without a click."""
     code = (cell for cell in notebook.cells if cell.cell_type == "code")
-    return [c.source for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))]
+    return [
+        c.source for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))
+    ]
 
 
 def _lines(code: str) -> int:
@@ -149,7 +164,10 @@ def count_words(text: str) -> int:
 
 def excerpt_widths(text: str, folder: Path) -> list[int]:
     """Return the widths of all lines of the excerpts of the package, as the page shows them."""
-    shown = (without_docstrings(excerpt(folder, *include)) for include in INCLUDE.findall(text))
+    shown = (
+        without_docstrings(excerpt(folder, *include))
+        for include in INCLUDE.findall(text)
+    )
     return [len(line) for code in shown for line in code.splitlines()]
 
 
@@ -172,7 +190,9 @@ def report(pages: Iterable[Page]) -> tuple[list[str], list[str]]:
     lines, problems = [], []
     for page in pages:
         found = size(page.notebook, page.path)
-        numbers = ", ".join(f"{found[name]:,} {what}" for name, what in MEASURES.items())
+        numbers = ", ".join(
+            f"{found[name]:,} {what}" for name, what in MEASURES.items()
+        )
         lines.append(f"{page.docname}: {numbers}")
         if over := excess(found, page.path.stem.partition("-")[0]):
             problems.append(

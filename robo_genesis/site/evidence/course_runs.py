@@ -18,7 +18,12 @@ from robo_genesis.core.text import listed
 from robo_genesis.pipeline.pages.built import built_pages
 from robo_genesis.site.course.course_map import MapDirective, named, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.measured import BACKEND, READABLE, lesson_statuses, status_list
+from robo_genesis.site.evidence.measured import (
+    BACKEND,
+    READABLE,
+    lesson_statuses,
+    status_list,
+)
 from robo_genesis.site.evidence.plain_nodes import paragraph
 from robo_genesis.site.evidence.provenance import all_runs
 
@@ -52,7 +57,9 @@ def measured_line(runs: Iterable[PageRun]) -> str:
     when = f"on {dates[0]}" if len(dates) == 1 else f"from {dates[0]} to {dates[-1]}"
     line = f"Measured on {READABLE[BACKEND]} with Genesis {listed(engines)} {when}."
     lacking = len(own) - len(accepted)
-    return f"{line} {lacking} of {len(own)} runs were not accepted." if lacking else line
+    return (
+        f"{line} {lacking} of {len(own)} runs were not accepted." if lacking else line
+    )
 
 
 class CourseProcessors(SphinxDirective):
@@ -67,8 +74,14 @@ class CourseProcessors(SphinxDirective):
 
 def executed_once(runs: Iterable[PageRun]) -> str:
     """Return the processors of this build's runs; recorded runs are left out."""
-    found = {run.predicate.host.cpu for run in runs if run.predicate and not run.recorded}
-    return f"Each page was executed once, on {listed(sorted(found))}." if found else NONE_ACCEPTED
+    found = {
+        run.predicate.host.cpu for run in runs if run.predicate and not run.recorded
+    }
+    return (
+        f"Each page was executed once, on {listed(sorted(found))}."
+        if found
+        else NONE_ACCEPTED
+    )
 
 
 class CourseStatus(MapDirective):

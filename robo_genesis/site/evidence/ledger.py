@@ -1,7 +1,7 @@
 """The ledger: every run, figure, measured table and printed text, with digests and downloads.
 
-A page writes ```` ```{ledger} runs ```` and ```` ```{ledger} items ````. Both are filled in after
-all pages are read.
+A page writes ```` ```{ledger} runs ```` and ```` ```{ledger} items ````. Both are
+filled in after all pages are read.
 """
 
 from collections.abc import Sequence
@@ -24,9 +24,17 @@ from robo_genesis.site.pages import PageDirective
 
 DOWNLOADS = "_downloads/evidence"
 COLUMNS = (
-    "what", "kind", "page", "run", "backend", "Genesis", "measured (UTC)", "checks", "sha256",
+    "what",
+    "kind",
+    "page",
+    "run",
+    "backend",
+    "Genesis",
+    "measured (UTC)",
+    "checks",
+    "sha256",
     "file",
-)  # fmt: skip
+)
 
 
 class ledger_part(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes so
@@ -68,9 +76,13 @@ def run_block(docname: str, run: PageRun) -> nodes.Node:
     facts: dict[str, Cell] = {**ledger_data.facts(run.status.backend, run.predicate)}
     facts["evidence key"] = _digest(run.predicate.evidence_key)
     name = ledger_data.archive_name(run)
-    facts["bundle"] = _link(name, relative_uri(f"{docname}.html", f"{DOWNLOADS}/{name}"))
+    facts["bundle"] = _link(
+        name, relative_uri(f"{docname}.html", f"{DOWNLOADS}/{name}")
+    )
     facts["its sha256"] = _digest(ledger_data.sha256(ledger_data.archive(run.folder)))
-    block += scroll_box(f"Run {run.page} on {run.status.backend}", table((), list(facts.items())))
+    block += scroll_box(
+        f"Run {run.page} on {run.status.backend}", table((), list(facts.items()))
+    )
     return block
 
 
@@ -86,7 +98,10 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
             word, file = "picture", f"_images/{env.images[item.file][1]}"
         page = measured_pages(Path(app.srcdir)).get(item.docname, item.docname)
         what = [_link(item.title, f"{place}#{item.anchor}"), item.kind, page]
-        last = [_digest(item.sha256), _link(word, relative_uri(f"{docname}.html", file))]
+        last = [
+            _digest(item.sha256),
+            _link(word, relative_uri(f"{docname}.html", file)),
+        ]
         rows.append([*what, *_of_runs([runs[key] for key in item.runs]), *last])
         anchors.append(item.row)
     return scroll_box("Figures and tables", table(COLUMNS, rows, anchors))
@@ -123,7 +138,9 @@ def _link(text: str, address: str) -> nodes.Node:
 
 def scroll_box(label: str, *inside: nodes.Node) -> between:
     """Return a box that scrolls a wide table and accepts the keyboard's focus."""
-    named = f'aria-label="{escape(label)}" class="scroll-box" role="region" tabindex="0"'
+    named = (
+        f'aria-label="{escape(label)}" class="scroll-box" role="region" tabindex="0"'
+    )
     return between("", *inside, opening=f"<div {named}>\n", closing="</div>\n")
 
 
@@ -132,12 +149,16 @@ def write_downloads(app: Sphinx, exception: Exception | None) -> None:
     if exception is not None or ledger_data.LEDGER not in app.env.found_docs:
         return
     folder = Path(app.outdir) / DOWNLOADS
-    for item in chain.from_iterable(page.get(ITEMS, ()) for page in app.env.metadata.values()):
+    for item in chain.from_iterable(
+        page.get(ITEMS, ()) for page in app.env.metadata.values()
+    ):
         if item.data is not None:
             write_whole(folder / item.file, item.data)
     for run in all_runs(Path(app.srcdir)).values():
         if run.predicate is not None:
-            write_whole(folder / ledger_data.archive_name(run), ledger_data.archive(run.folder))
+            write_whole(
+                folder / ledger_data.archive_name(run), ledger_data.archive(run.folder)
+            )
 
 
 def setup(app: Sphinx) -> None:

@@ -38,7 +38,9 @@ class PageRun:
     @property
     def key(self) -> str:
         """Page and backend, as items name their run."""
-        return f"{self.page}/{self.status.backend}{'/recorded' if self.recorded else ''}"
+        return (
+            f"{self.page}/{self.status.backend}{'/recorded' if self.recorded else ''}"
+        )
 
     @property
     def lesson(self) -> str:
@@ -62,9 +64,9 @@ class PageRun:
 class Item:
     """One figure, table or camera frame, printed output, illustration, or table of settings.
 
-    `runs` are the keys of the runs that made it, none for the last two kinds. `file` is the
-    picture's path below the book, or of a table or text the name of its file; `data` is the content
-    of that file, None for a picture.
+    `runs` are the keys of the runs that made it, none for the last two kinds. `file` is
+    the picture's path below the book, or of a table or text the name of its file;
+    `data` is the content of that file, None for a picture.
     """
 
     kind: str
@@ -154,5 +156,9 @@ def archive(folder: Path) -> bytes:
         write_zip(stream, files.items())
         return stream.getvalue()
 
-    decide = [json.dumps([*files]).encode(), *files.values(), Path(__file__).read_bytes()]
+    decide = [
+        json.dumps([*files]).encode(),
+        *files.values(),
+        Path(__file__).read_bytes(),
+    ]
     return derived("bundle", decide, pack)

@@ -62,17 +62,20 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
 
     Args:
         lesson_page: `l04/lab`.
-        name: `group.metric` of its metrics.json, `check:label` of what a check found, or `engine`.
-            After a space it may have a unit such as mm or %; then the value has three digits.
+        name: `group.metric` of its metrics.json, `check:label` of what a check found,
+            or `engine`. After a space it may have a unit such as mm or %; then the
+            value has three digits.
 
     Raises:
-        LookupError: the page has no metric of this name, and the message lists its metrics; or the
-            metric has no value in this unit.
+        LookupError: the page has no metric of this name, and the message lists its
+            metrics; or the metric has no value in this unit.
         BundleRefused: the bundle cannot be read.
     """
     folder = page_outputs(lesson_page) / BACKEND
     predicate = bundle.read_manifest(folder).predicate
-    origin = f"Measured by {lesson_page} on {BACKEND}, Genesis {predicate.engine.version}, "
+    origin = (
+        f"Measured by {lesson_page} on {BACKEND}, Genesis {predicate.engine.version}, "
+    )
     origin += f"run {predicate.run_id[:8]}, {predicate.started[:10]}"
     if name == "engine":
         return predicate.engine.version, origin
@@ -83,7 +86,9 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     value, given, source = value_of(folder, name, "" if unit in COUNTED else unit)
     if unit in COUNTED:
         if given != "1":
-            raise LookupError(f"{name} is in {given}, so it does not count {unit}. Valid: {given}.")
+            raise LookupError(
+                f"{name} is in {given}, so it does not count {unit}. Valid: {given}."
+            )
         text = f"{value:.0f} {unit}"
     elif unit:
         text = format_value(value, unit) if unit == given else scaled_value(value, unit)
@@ -155,12 +160,16 @@ def recorded_runs(book: Path, lesson: str) -> tuple[PageRun, ...]:
         return PageRun(name, folder / backend, status, recorded=True)
 
     backends = dict.fromkeys((REFERENCE, *recorded))
-    return stored(f"{lesson}, recorded", lambda: tuple(run(backend) for backend in backends))
+    return stored(
+        f"{lesson}, recorded", lambda: tuple(run(backend) for backend in backends)
+    )
 
 
 def lesson_statuses(book: Path, lesson: str) -> list[Status]:
     """Return the states of a lesson's lab: of this build on CPU, then of the recorded runs."""
-    return [run.status for run in (page_run(book, lesson), *recorded_runs(book, lesson))]
+    return [
+        run.status for run in (page_run(book, lesson), *recorded_runs(book, lesson))
+    ]
 
 
 class evidence_badge(nodes.inline):  # noqa: N801
@@ -169,7 +178,9 @@ class evidence_badge(nodes.inline):  # noqa: N801
 
 def badge_node(status: Status) -> nodes.Node:
     """Return a state as the site shows it everywhere: one word and its colour."""
-    return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
+    return evidence_badge(
+        "", status.badge, classes=["evidence-badge", f"state-{status.state}"]
+    )
 
 
 def state_words(status: Status) -> str:
@@ -192,8 +203,12 @@ class LessonStatus(SphinxDirective):
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
         known = [status for status in statuses if status.state != "missing"] or statuses
-        opening = f'<details class="status-line"><summary>{status_line(known)}</summary>'
-        return [between("", status_list(statuses), opening=opening, closing="</details>")]
+        opening = (
+            f'<details class="status-line"><summary>{status_line(known)}</summary>'
+        )
+        return [
+            between("", status_list(statuses), opening=opening, closing="</details>")
+        ]
 
 
 def status_line(statuses: Iterable[Status]) -> str:
@@ -230,9 +245,13 @@ def require_passed(lesson_page: str, check: str) -> None:
     folder = page_outputs(lesson_page) / BACKEND
     found = {c.name: c for c in bundle.read_manifest(folder).predicate.checks}
     if check not in found:
-        raise LookupError(f"{lesson_page} has no check {check!r}. Choices: {', '.join(found)}.")
+        raise LookupError(
+            f"{lesson_page} has no check {check!r}. Choices: {', '.join(found)}."
+        )
     if not found[check].passed:
-        raise ValueError(f"the check {check} of {lesson_page} found {found[check].found}.")
+        raise ValueError(
+            f"the check {check} of {lesson_page} found {found[check].found}."
+        )
 
 
 class EngineLink(PageRole):
@@ -241,20 +260,32 @@ class EngineLink(PageRole):
     def shown(self) -> list[nodes.Node]:
         """Return the link; its text is as given."""
         if self.name == "engine-release":
-            target, text = f"releases/tag/v{project.engine_pin()}", nodes.Text(self.text)
+            target, text = (
+                f"releases/tag/v{project.engine_pin()}",
+                nodes.Text(self.text),
+            )
         else:
             installed = importlib.metadata.distribution("genesis-world")
             if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():
-                raise LookupError(f"Genesis {installed.version} has no file genesis/{self.text}")
+                raise LookupError(
+                    f"Genesis {installed.version} has no file genesis/{self.text}"
+                )
             target = f"blob/v{project.engine_pin()}/genesis/{self.text}"
             text = nodes.literal(self.text, self.text)
-        return [nodes.reference(self.rawtext, "", text, refuri=f"{REPOSITORY}/{target}")]
+        return [
+            nodes.reference(self.rawtext, "", text, refuri=f"{REPOSITORY}/{target}")
+        ]
 
 
 def visit_measured(self: Any, node: measured_value) -> None:
     """Write a value that shows its provenance on hover, focus or touch."""
-    provenance = {"data-provenance": node["provenance"], "aria-description": node["provenance"]}
-    self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
+    provenance = {
+        "data-provenance": node["provenance"],
+        "aria-description": node["provenance"],
+    }
+    self.body.append(
+        self.starttag(node, "span", "", tabindex="0", role="note", **provenance)
+    )
 
 
 def setup(app: Sphinx) -> None:
@@ -265,4 +296,7 @@ def setup(app: Sphinx) -> None:
         app.add_role(name, EngineLink())
     app.add_directive("lesson-status", LessonStatus)
     app.add_node(between, html=WRITERS)
-    app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))
+    app.add_node(
+        measured_value,
+        html=(visit_measured, lambda self, _: self.body.append("</span>")),
+    )

@@ -7,7 +7,8 @@ from docutils import nodes
 
 from robo_genesis.site.evidence.measured import BACKEND
 
-INPUTS = "inputs"  # The tag of a cell whose tables contain only chosen values, no measured ones
+# The tag of a cell whose tables contain only chosen values, no measured ones
+INPUTS = "inputs"
 
 
 NO_BUNDLE = ("",)
@@ -16,7 +17,9 @@ NO_BUNDLE = ("",)
 MADE_BY_CELL = {"cell_code", "mime_bundle"}
 
 
-def above(node: nodes.Node, kind: type | tuple[type, ...] = nodes.Element) -> Iterator[Any]:
+def above(
+    node: nodes.Node, kind: type | tuple[type, ...] = nodes.Element
+) -> Iterator[Any]:
     """Yield the ancestors of a node that have some type, the nearest first."""
     while node.parent is not None:
         node = node.parent
@@ -27,16 +30,16 @@ def above(node: nodes.Node, kind: type | tuple[type, ...] = nodes.Element) -> It
 def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
     """Return the keys of the runs that made a node.
 
-    The nodes of a cell's output are recognized by attributes that MyST-NB sets, never by a class,
-    which a page could set.
+    The nodes of a cell's output are recognized by attributes that MyST-NB sets, never
+    by a class, which a page could set.
 
     Args:
         node: a part of a page.
         page: `lesson/page` of that page, None where it declares no bundle.
 
     Returns:
-        () where a cell shows chosen values, None where neither a cell nor a bundle made the node,
-        `NO_BUNDLE` where a cell made it and the page declares no bundle.
+        () where a cell shows chosen values, None where neither a cell nor a bundle made
+        the node, `NO_BUNDLE` where a cell made it and the page declares no bundle.
     """
     for element in above(node):
         if "evidence_runs" in element:

@@ -1,8 +1,9 @@
 """The reference run in a lab: its figures, frames, metrics and backend.
 
 A lab writes ```` ```{evidence} l04 ````. The panel shows only a verified bundle of
-`book/evidence/<lesson>/<backend>/`. Otherwise it gives the state, the reason and the command that
-records a new one. A run that was never recorded has no panel; the pages on evidence list it.
+`book/evidence/<lesson>/<backend>/`. Otherwise it gives the state, the reason and the
+command that records a new one. A run that was never recorded has no panel; the pages on
+evidence list it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,12 +24,20 @@ from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import course_marks, find_replay
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, page_run, recorded_runs
-from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, table
+from robo_genesis.site.evidence.plain_nodes import (
+    bullets,
+    image,
+    marked,
+    paragraph,
+    table,
+)
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
 
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
-AS_NEEDED = ["colwidths-auto"]  # The class of a table whose columns are as wide as needed
+AS_NEEDED = [
+    "colwidths-auto"
+]  # The class of a table whose columns are as wide as needed
 RECORDING = "{doc}`/evidence/recording` says what that machine needs."
 
 
@@ -53,7 +62,12 @@ class Evidence(PageDirective):
         panel["evidence_runs"] = (run.key,)
         panel += paragraph(nodes.strong("", "Reference run."), f" {status.sentence}")
         panel += backend_facts(run.predicate)
-        run_shown = f"{lesson}-{status.backend}", folder, find_replay(lesson), status.backend
+        run_shown = (
+            f"{lesson}-{status.backend}",
+            folder,
+            find_replay(lesson),
+            status.backend,
+        )
         panel += response(self.env, *run_shown)
         panel += frames(self.env, *run_shown)
         panel += replay_block(self, run.key, folder)
@@ -65,7 +79,12 @@ class Evidence(PageDirective):
 
 
 def figure(
-    env: BuildEnvironment, anchor: str, suffix: str, content: bytes, alt: str, caption: str
+    env: BuildEnvironment,
+    anchor: str,
+    suffix: str,
+    content: bytes,
+    alt: str,
+    caption: str,
 ) -> nodes.figure:
     """Return a figure; its picture is in a file that is named after its anchor."""
     picture = image(env, f"{anchor}{suffix}", content, alt)
@@ -136,7 +155,9 @@ def frames(
             subject = replay.filmed or f"the {replay.thing}"
             alt = f"Camera frame of {subject}, {name} state on {backend}."
             caption = f"Camera frame on {backend}, {name} state."
-            yield figure(env, f"{prefix}-{name}", ".png", path.read_bytes(), alt, caption)
+            yield figure(
+                env, f"{prefix}-{name}", ".png", path.read_bytes(), alt, caption
+            )
 
 
 def comparison(here: Path, folder: Path) -> list[nodes.Node]:
@@ -156,7 +177,10 @@ def comparison(here: Path, folder: Path) -> list[nodes.Node]:
         for section in found.sections
         if section.title not in (*VALUES, RELATIONS) and section.state == DIFFERS
     ]
-    more = f" They also differ in {' and '.join(elsewhere)}: see `make compare`." * bool(elsewhere)
+    more = (
+        f" They also differ in {' and '.join(elsewhere)}: see `make compare`."
+        * bool(elsewhere)
+    )
     intro = (
         f"**Compared with this build's run on {BACKEND}: {found.state}.**{more} The lesson's "
         "specification declares tolerances and orderings; counts must be equal."
@@ -183,8 +207,15 @@ def compared_table(
         both: the names of the runs.
     """
     head = (what, *both, "difference", "allowed", "verdict")
-    shown = (row for section in found.sections if section.title in titles for row in section.rows)
-    rows = [(r.what, r.old, r.new, r.delta or "–", r.allowed or "–", r.state) for r in shown]
+    shown = (
+        row
+        for section in found.sections
+        if section.title in titles
+        for row in section.rows
+    )
+    rows = [
+        (r.what, r.old, r.new, r.delta or "–", r.allowed or "–", r.state) for r in shown
+    ]
     return [table(head, rows, classes=AS_NEEDED)] if rows else []
 
 

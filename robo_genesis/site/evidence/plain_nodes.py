@@ -67,14 +67,19 @@ def bullets(*items: Iterable[str | nodes.Node], **attributes: Any) -> nodes.bull
 
 
 def table(
-    head: Sequence[str], rows: Sequence[Sequence[Cell]], ids: Sequence[str] = (), **attributes: Any
+    head: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    ids: Sequence[str] = (),
+    **attributes: Any,
 ) -> nodes.table:
     """Return a table; `head` may be empty, `ids` are those of the rows.
 
     A cell is one node or text, or several that become paragraphs.
     """
     width = len(rows[0])
-    group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in range(width)), cols=width)
+    group = nodes.tgroup(
+        "", *(nodes.colspec(colwidth=1) for _ in range(width)), cols=width
+    )
     if head:
         group += nodes.thead("", _row(head))
     body = nodes.tbody("", *map(_row, rows))

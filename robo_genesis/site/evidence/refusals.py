@@ -11,13 +11,17 @@ from sphinx.util import logging
 from robo_genesis.site.evidence.measured import evidence_badge, measured_value
 from robo_genesis.site.evidence.origin import above, cell_of
 
-# Class → the nodes that may have it while a page is read, and the alternative for a page.
+# Class → the nodes that may have it while a page is read, and the alternative for a
+# page.
 OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "evidence-badge": (evidence_badge, "Use {lesson-status}."),
     "status-line": ((), "Use {lesson-status}."),
     "status-word": ((), "Use {lesson-status}."),
     "measured": (measured_value, "Use {measured}."),
-    "provenance": ((), "The build writes that line below each figure and measured table."),
+    "provenance": (
+        (),
+        "The build writes that line below each figure and measured table.",
+    ),
 }
 
 # Elements that, as raw HTML, would have no line of provenance and no row in the ledger.
@@ -34,7 +38,9 @@ def refuse(app: Sphinx, doctree: nodes.document) -> None:
         logger.warning(problem, location=place)
 
 
-def problems(doctree: nodes.document, book: Path) -> Iterator[tuple[nodes.Element, str]]:
+def problems(
+    doctree: nodes.document, book: Path
+) -> Iterator[tuple[nodes.Element, str]]:
     """Yield each node that imitates a result of a run or avoids its check, with the reason.
 
     Args:
@@ -42,10 +48,15 @@ def problems(doctree: nodes.document, book: Path) -> Iterator[tuple[nodes.Elemen
         book: the folder of the pages.
     """
     for node in doctree.findall(nodes.Element):
-        found = [*_imitated(node, set(node.get("classes", ()))), *_past_its_check(node, book)]
+        found = [
+            *_imitated(node, set(node.get("classes", ()))),
+            *_past_its_check(node, book),
+        ]
         if isinstance(node, nodes.raw):
             html = BeautifulSoup(node.astext(), "html.parser")
-            written = {name for tag in html.find_all(class_=True) for name in tag["class"]}
+            written = {
+                name for tag in html.find_all(class_=True) for name in tag["class"]
+            }
             found += [*_imitated(None, written), *_raw(node, html)]
         for problem in dict.fromkeys(found):
             yield node, problem
@@ -60,7 +71,9 @@ def _imitated(node: nodes.Element | None, written: Set[str]) -> Iterator[str]:
 
 def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
     recorded = (book / "evidence").resolve()  # links are followed
-    if isinstance(node, nodes.image) and (book / node["uri"]).resolve().is_relative_to(recorded):
+    if isinstance(node, nodes.image) and (book / node["uri"]).resolve().is_relative_to(
+        recorded
+    ):
         yield (
             f"the picture {node['uri']} lies below evidence/, where it may be stale. "
             "Use the {evidence} directive: it shows only accepted bundles."

@@ -1,8 +1,9 @@
 """Puts drawings into their pages as elements, with the palette of the reader's theme.
 
-Figures of cells and illustrations are SVG files in the colours of the light theme. In a page, each
-colour becomes a variable of `palette.css`, with the colour itself as its fallback. The file stays
-in the site as the run produced it, and the ledger has its digest.
+Figures of cells and illustrations are SVG files in the colours of the light theme. In a
+page, each colour becomes a variable of `palette.css`, with the colour itself as its
+fallback. The file stays in the site as the run produced it, and the ledger has its
+digest.
 """
 
 import re
@@ -19,11 +20,18 @@ from robo_genesis.core.palette import COLOUR, MARKS, PARTS, css_name
 
 # What takes the place of each colour.
 VARIABLES = {
-    **{mark.light: f"var(--{css_name(name)}, {mark.light})" for name, mark in MARKS.items()},
-    **{part.light: f"var(--figure-{name}, {part.light})" for name, part in PARTS.items()},
+    **{
+        mark.light: f"var(--{css_name(name)}, {mark.light})"
+        for name, mark in MARKS.items()
+    },
+    **{
+        part.light: f"var(--figure-{name}, {part.light})"
+        for name, part in PARTS.items()
+    },
 }
 
-# Width above which a drawing is not made for a phone: it scrolls sideways there [CSS px].
+# Width above which a drawing is not made for a phone: it scrolls sideways there [CSS
+# px].
 WIDE = 480
 
 DRAWING = re.compile(r"\.svg$")
@@ -51,7 +59,8 @@ LENGTH = re.compile(rf"([\d.]+)({'|'.join(PIXELS)})")
 def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
     """Replace the drawings of an article by elements, in place.
 
-    Drawings that contain a picture of a camera stay files: they are large, and have no colours of
+    Drawings that contain a picture of a camera stay files: they are large, and have no
+        colours of
     the palette. A link around a drawing to its own file is removed.
 
     Args:
@@ -94,9 +103,13 @@ def image_size(file: Path) -> tuple[int, int]:
     _, root = next(ElementTree.iterparse(file, events=["start"]))
     stated = [root.get("width", ""), root.get("height", "")]
     for lengths in (stated, root.get("viewBox", "").split()[2:]):
-        sizes = [match.groups() for length in lengths if (match := LENGTH.fullmatch(length))]
+        sizes = [
+            match.groups() for length in lengths if (match := LENGTH.fullmatch(length))
+        ]
         if len(sizes) == 2:
-            width, height = (round(float(number) * PIXELS[unit]) for number, unit in sizes)
+            width, height = (
+                round(float(number) * PIXELS[unit]) for number, unit in sizes
+            )
             return width, height
     raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
 
@@ -109,7 +122,9 @@ def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
         prefix: of its identifiers, which are unique on the page.
         attributes: of the element.
     """
-    drawing = DROPPED.sub("", drawing[drawing.index("<svg") :]).replace("xlink:href", "href")
+    drawing = DROPPED.sub("", drawing[drawing.index("<svg") :]).replace(
+        "xlink:href", "href"
+    )
     used = {*REFERENCE.findall(drawing)}
     drawing = IDENTIFIER.sub(
         lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", drawing

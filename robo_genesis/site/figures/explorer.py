@@ -1,8 +1,9 @@
 """Recorded results to choose from: ```` ```{explorer} l05/cameras world ````.
 
-A reader chooses a cell of a map or a pixel of a picture, and reads what was recorded there. A map
-can have curves of the chosen run, or the chosen posture in 3D. The data come from the lesson's
-`explorer.explored`, which gets the experiment of the page's bundle and the directive's second word:
+A reader chooses a cell of a map or a pixel of a picture, and reads what was recorded
+there. A map can have curves of the chosen run, or the chosen posture in 3D. The data
+come from the lesson's `explorer.explored`, which gets the experiment of the page's
+bundle and the directive's second word:
 
 | key | content |
 |---|---|
@@ -20,8 +21,8 @@ can have curves of the chosen run, or the chosen posture in 3D. The data come fr
 | `picture` | `name`, `alt` and `caption` of a recorded view; see `l05.explorer.picture` |
 | `without_script` | the sentence for a browser without scripts |
 
-A cell has `name`, `sentence`, `values` of the columns, `numbers` and `texts` of the measures. It
-may have a `tag` and a `state`, and one cell `opens`.
+A cell has `name`, `sentence`, `values` of the columns, `numbers` and `texts` of the
+measures. It may have a `tag` and a `state`, and one cell `opens`.
 """
 
 import base64
@@ -62,8 +63,8 @@ from robo_genesis.site.replay import directive as replays
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
 
-# Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
-# are longer than the hand, which hides the target when it is there.
+# Name of the cross at the target, which moves like a link, length and radius of its
+# rods [m]. They are longer than the hand, which hides the target when it is there.
 CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
 
 
@@ -80,7 +81,9 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        recorded = Recorded(lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND)
+        recorded = Recorded(
+            lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND
+        )
         return [explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)]
 
 
@@ -102,8 +105,13 @@ class Recorded:
             ShownError: the lesson has no explorer.
         """
         found = find(f"robo_genesis.lessons.{self.lesson}.explorer.explored")
-        inputs = [repr((self.lesson, name)).encode(), *replays.bundle_inputs(self.folder)]
-        made = derived("explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name)))
+        inputs = [
+            repr((self.lesson, name)).encode(),
+            *replays.bundle_inputs(self.folder),
+        ]
+        made = derived(
+            "explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name))
+        )
         return pickle.loads(made)
 
 
@@ -123,7 +131,9 @@ def explorer_block(
     parts = {part: data.pop(part, None) for part in kept}
     block = nodes.container(classes=["explorer-block"], evidence_runs=(key,))
     if parts["picture"] is not None:
-        if not (recorded.folder / "frames" / f"{parts['picture']['name']}_rgb.png").is_file():
+        if not (
+            recorded.folder / "frames" / f"{parts['picture']['name']}_rgb.png"
+        ).is_file():
             return nodes.paragraph("", "SKIP: this run has no camera.")
         data["frames"] = frames(recorded.folder / "frames", parts["picture"]["name"])
         figure = picture(directive, key, recorded.folder / "frames", **parts["picture"])
@@ -143,21 +153,28 @@ def opening(kind: str, data: Data, **words: str) -> nodes.Node:
         f"explorer {kind}".strip(), {"explorer": controls.as_json(data)} | words
     )
     sentence = data.get("without_script")
-    return html(start + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else ""))
+    return html(
+        start
+        + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else "")
+    )
 
 
 def panel(data: Data, loads: str = "") -> nodes.Node:
     """Return the controls and the end of an explorer; the script fills and shows them.
 
-    A map has the choices of it, places for its cells, a question and a sentence; a picture has a
-    slider each for column and row. `loads` says what a button loads.
+    A map has the choices of it, places for its cells, a question and a sentence; a
+    picture has a slider each for column and row. `loads` says what a button loads.
     """
     return html(filled(Path(__file__).with_suffix(".html"), **data, loads=loads))
 
 
-def fold(directive: SphinxDirective, found: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[Any]:
+def fold(
+    directive: SphinxDirective, found: Mapping[str, Sequence[Mapping[str, Any]]]
+) -> list[Any]:
     """Return tables with their captions below a fold."""
-    shown: list[nodes.Node] = [html("<details><summary>All answers as tables</summary>")]
+    shown: list[nodes.Node] = [
+        html("<details><summary>All answers as tables</summary>")
+    ]
     for caption, rows in found.items():
         table = directive.parse_text_to_nodes(tables.markdown(rows))
         shown += [nodes.paragraph("", caption), scroll_box(caption, *table)]
@@ -173,12 +190,19 @@ def frames(folder: Path, name: str) -> dict[str, str]:
 
 
 def picture(
-    directive: SphinxDirective, key: str, folder: Path, name: str, alt: str, caption: str
+    directive: SphinxDirective,
+    key: str,
+    folder: Path,
+    name: str,
+    alt: str,
+    caption: str,
 ) -> nodes.Node:
     """Return a recorded view with the cross that marks a pixel."""
     file = "-".join(("picture", *key.split("/"), name))
     content = BytesIO()
-    with Image.open(folder / f"{name}_rgb.png") as frame:  # to look at: other frames have numbers
+    with Image.open(
+        folder / f"{name}_rgb.png"
+    ) as frame:  # to look at: other frames have numbers
         frame.convert("RGB").save(content, "JPEG", quality=85, optimize=True)
     shown = image(directive.env, f"{file}.jpg", content.getvalue(), alt)
     return replays.stage(shown, '<span class="cross" hidden></span>', caption, file)
@@ -201,11 +225,19 @@ def postures(
 
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
     runs = {**run.traces, **(parts["traces"] or {})}
-    traces = {name: with_target(runs[name], of) for name, of in parts["postures"].items()}
+    traces = {
+        name: with_target(runs[name], of) for name, of in parts["postures"].items()
+    }
     shape = replays.shape_file(recorded.lesson, replay.thing)
     thing = data.get("thing", replay.thing)
-    camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
-    inputs = [name.encode(), shape.read_bytes(), *replays.bundle_inputs(recorded.folder)]
+    camera = fitted(
+        np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()])
+    )
+    inputs = [
+        name.encode(),
+        shape.read_bytes(),
+        *replays.bundle_inputs(recorded.folder),
+    ]
     alt = f"The {thing} at the start, drawn from the recorded poses."
     drawn = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
     what = with_cross(drawn, camera), [*run.links, CROSS], traces, replay.credit
@@ -247,7 +279,9 @@ def with_cross(parts: Sequence[Part], camera: "Camera") -> "Scenery":
     from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
 
     half = CROSS_LENGTH / 2 * np.eye(3)
-    rods = [trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half]
+    rods = [
+        trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half
+    ]
     cross = [Part(CROSS, AXIS_RGB, rod.vertices, rod.faces) for rod in rods]
     return Scenery([*parts, *cross, *floor_of(parts)], camera)
 

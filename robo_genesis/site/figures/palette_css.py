@@ -1,7 +1,8 @@
 """The palette in style sheets, and a mark of its line beside a case's name in a table.
 
-`_static/palette.css` is written by each build. It declares, for both themes, each mark's colour
-(`--case-g1`, `--target`) and the colours of a figure's other parts (`--figure-text`).
+`_static/palette.css` is written by each build. It declares, for both themes, each
+mark's colour (`--case-g1`, `--target`) and the colours of a figure's other parts
+(`--figure-text`).
 """
 
 import re
@@ -19,12 +20,20 @@ from robo_genesis.lessons import course_marks
 from robo_genesis.site.evidence.origin import above
 from robo_genesis.site.figures import case_labels
 
-SHEET = Path(__file__).with_name("palette.css")  # Its template. Paper has the light theme
+SHEET = Path(__file__).with_name(
+    "palette.css"
+)  # Its template. Paper has the light theme
 NAMES = sorted({*course_marks()} - {"baseline"})
 
 # A case's name in prose; without named cases it matches nothing.
 NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES)) or '(?!)'})\b")
-OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
+OTHER_TEXT = (
+    nodes.literal,
+    nodes.literal_block,
+    nodes.math,
+    nodes.raw,
+    nodes.reference,
+)
 
 
 def css() -> str:
@@ -37,8 +46,9 @@ def css() -> str:
 class MarkCases(SphinxPostTransform):
     """Mark each case that is named.
 
-    A cell of a table that holds a case's name or its words, and nothing else, gets the line of the
-    plots beside it; in running text the name has the case's colour, "baseline" excepted.
+    A cell of a table that holds a case's name or its words, and nothing else, gets the
+    line of the plots beside it; in running text the name has the case's colour,
+    "baseline" excepted.
     """
 
     default_priority = 400  # outputs of cells have been chosen by then

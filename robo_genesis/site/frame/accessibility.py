@@ -1,9 +1,9 @@
 """Corrects markup for a keyboard, a screen reader, speech input and a narrow screen.
 
 `tests/site/sweep.py` checks the result with axe-core. In a table that is wider than a
-phone, each row becomes a block of named values there: the style sheet stacks its cells and shows
-each column's head beside its value. A table that fits, or that has too many rows to be read as
-blocks, stays a table.
+phone, each row becomes a block of named values there: the style sheet stacks its cells
+and shows each column's head beside its value. A table that fits, or that has too many
+rows to be read as blocks, stays a table.
 """
 
 import re
@@ -13,17 +13,29 @@ from bs4 import BeautifulSoup, Tag
 ICON = re.compile("^fa-")  # How the classes of an icon's element begin
 
 PHONE = 358  # Width of a page's column on a phone that is 390 pixels wide [CSS px]
-LETTER, PADDING = 9, 22.4  # Width of a wide letter, and of a cell's padding on both sides [CSS px]
+LETTER, PADDING = (
+    9,
+    22.4,
+)  # Width of a wide letter, and of a cell's padding on both sides [CSS px]
 MOST_ROWS = 40  # Longer tables are lists of samples, and scroll
 
 # What the parts of a table are to a screen reader, however a style sheet shows them.
-ROLES = {"thead": "rowgroup", "tbody": "rowgroup", "tr": "row", "th": "columnheader", "td": "cell"}
+ROLES = {
+    "thead": "rowgroup",
+    "tbody": "rowgroup",
+    "tr": "row",
+    "th": "columnheader",
+    "td": "cell",
+}
 
 
 def make_accessible(page: BeautifulSoup) -> None:
     """Correct the attributes of a complete page, in place."""
     # The control around an icon has its name as text or label.
-    for icon in [*page.find_all("i", class_=ICON), *page.find_all("span", class_="fa-solid")]:
+    for icon in [
+        *page.find_all("i", class_=ICON),
+        *page.find_all("span", class_="fa-solid"),
+    ]:
         icon["aria-hidden"] = "true"
     for summary in page.find_all("summary"):
         fold = summary.find_parent("details")
@@ -31,22 +43,27 @@ def make_accessible(page: BeautifulSoup) -> None:
         # A label would replace the visible text, by which speech input finds a control.
         if "hide" in kinds:
             del summary["aria-label"]
-        # A fold of code shows an icon; its text is for screen readers and, as a title, the mouse.
+        # A fold of code shows an icon; its text is for screen readers and, as a title,
+        # the mouse.
         if "above-input" in kinds:
             summary["title"] = "Show or hide source"
-        # HTML allows no paragraph in a summary. A style sheet has other rules for spans there.
+        # HTML allows no paragraph in a summary. A style sheet has other rules for spans
+        # there.
         for text in summary.find_all("p", recursive=False):
             text.name = "b"
-        # A fold of the course menu shows only an arrow; the name of its page comes before it.
+        # A fold of the course menu shows only an arrow; the name of its page comes
+        # before it.
         link = fold.find_previous_sibling("a") if fold else None
         if isinstance(link, Tag) and summary.find_parent("nav", class_="bd-docs-nav"):
             summary["aria-label"] = f"Pages below {link.get_text(' ', strip=True)}"
     for button in page.find_all("button", class_="search-button-field"):
         del button["aria-label"]  # it shows its name
-    # The link beside a heading or caption is for the mouse: it repeats the contents list.
+    # The link beside a heading or caption is for the mouse: it repeats the contents
+    # list.
     for anchor in page.find_all("a", class_="headerlink"):
         anchor["tabindex"] = "-1"
-    # The course's name and the search are outside the menu, so the whole sidebar is a landmark.
+    # The course's name and the search are outside the menu, so the whole sidebar is a
+    # landmark.
     for sidebar in page.find_all(id="pst-primary-sidebar"):
         sidebar["role"], sidebar["aria-label"] = "complementary", "Course"
 
@@ -58,10 +75,16 @@ def stack_tables(page: BeautifulSoup) -> None:
             continue
         columns = table.thead.find_all("th")
         heads = [head.get_text(" ", strip=True) for head in columns]
-        lines = (line for body in table.find_all("tbody") for line in body.find_all("tr"))
+        lines = (
+            line for body in table.find_all("tbody") for line in body.find_all("tr")
+        )
         rows = [line.find_all(["td", "th"]) for line in lines]
         even = all(len(row) == len(heads) for row in rows)
-        if table.find_parent(class_="scroll-box") or not even or not 0 < len(rows) <= MOST_ROWS:
+        if (
+            table.find_parent(class_="scroll-box")
+            or not even
+            or not 0 < len(rows) <= MOST_ROWS
+        ):
             continue
         whole = table.thead.find(class_="case-mark") is not None
         widths = (

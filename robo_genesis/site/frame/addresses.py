@@ -1,7 +1,7 @@
 """Parts that depend on the site's address: canonical links, sitemap, social cards, the 404 page.
 
-A site without an address has no canonical link, no sitemap and no card. The 404 page is always
-written; a server shows it at any depth, so its links begin at the site's root.
+A site without an address has no canonical link, no sitemap and no card. The 404 page is
+always written; a server shows it at any depth, so its links begin at the site's root.
 """
 
 from pathlib import Path
@@ -33,7 +33,11 @@ def configure(app: Sphinx, config: Config) -> None:
 def write_not_found(app: Sphinx) -> list[Any]:
     """Write the text of the 404 page when the pages of the book are known."""
     root, titles = site_root(), app.env.titles
-    ways = [(page, titles[page].astext(), what) for page, what in WAYS_ON.items() if page in titles]
+    ways = [
+        (page, titles[page].astext(), what)
+        for page, what in WAYS_ON.items()
+        if page in titles
+    ]
     body = filled(Path(__file__).with_name("not_found.html"), root=root, ways=ways)
     app.config.notfound_context = {"title": "Page not found", "body": body}
     return []
@@ -49,5 +53,9 @@ def setup(app: Sphinx) -> None:
     if site_address():
         app.setup_extension("sphinx_sitemap")
         app.setup_extension("sphinxext.opengraph")
-    app.connect("config-inited", configure, priority=400)  # notfound checks the prefix at 500
-    app.connect("html-collect-pages", write_not_found, priority=400)  # and collects its page at 500
+    app.connect(
+        "config-inited", configure, priority=400
+    )  # notfound checks the prefix at 500
+    app.connect(
+        "html-collect-pages", write_not_found, priority=400
+    )  # and collects its page at 500

@@ -21,8 +21,8 @@ RECOMPUTED: dict[str, set[int]] = {}
 class ExecutedPage(NotebookClientBase):
     """Takes a page's outputs from the execution stage; replaces every client of myst-nb.
 
-    The cells keep their metadata (tags, captions, alt texts), which the page states today.
-    `sources` is the folder of the pages.
+    The cells keep their metadata (tags, captions, alt texts), which the page states
+    today. `sources` is the folder of the pages.
     """
 
     sources: Path
@@ -31,14 +31,17 @@ class ExecutedPage(NotebookClientBase):
         """Copy the stored outputs and execution counts into the notebook.
 
         Raises:
-            ExtensionError: the execution stage has no outputs for the page's code cells.
+            ExtensionError: the execution stage has no outputs for the page's code
+                cells.
         """
         try:
             page = Path(self.path).relative_to(self.sources).with_suffix("")
             executed = executed_notebook(page.as_posix(), self.notebook)
         except KeyError:
             executed = None
-        if executed is None or code_and_kernel(executed) != code_and_kernel(self.notebook):
+        if executed is None or code_and_kernel(executed) != code_and_kernel(
+            self.notebook
+        ):
             raise ExtensionError(
                 f"{self.path} is not executed, and Sphinx executes nothing. Build with `make book`."
             )
@@ -60,7 +63,11 @@ class ExecutedPage(NotebookClientBase):
 def without_stack(output: NotebookNode) -> NotebookNode:
     """Return an output; of an expected error only the last line, as its stack has private paths."""
     is_error = output.output_type == "error"
-    return NotebookNode(output | {"traceback": output.traceback[-1:]}) if is_error else output
+    return (
+        NotebookNode(output | {"traceback": output.traceback[-1:]})
+        if is_error
+        else output
+    )
 
 
 def setup(app: Sphinx) -> None:
@@ -70,8 +77,11 @@ def setup(app: Sphinx) -> None:
         ExtensionError: the environment does not name the executed pages.
     """
     if EXECUTED_PAGES not in os.environ:
-        raise ExtensionError(f"{EXECUTED_PAGES} is not set. Build the site with `make book`.")
+        raise ExtensionError(
+            f"{EXECUTED_PAGES} is not set. Build the site with `make book`."
+        )
     ExecutedPage.sources = Path(app.srcdir)
     myst_nb.sphinx_.create_client = lambda *arguments: ExecutedPage(*arguments[:4])
-    # Jupyter Book always sets this value, also where sphinx_comments is not an extension.
+    # Jupyter Book always sets this value, also where sphinx_comments is not an
+    # extension.
     app.add_config_value("comments_config", None, "html")

@@ -10,8 +10,9 @@ A page depends on its own source, on what is the same for all pages, and on this
 |---|---|
 | titles, contents, targets, equations, terms, ledger items of any page | all are written again |
 
-A page does not depend on the pictures that Sphinx itself writes while it reads: they follow from
-runs, whose change empties the folder. Reading another page may write an equal picture again.
+A page does not depend on the pictures that Sphinx itself writes while it reads: they
+follow from runs, whose change empties the folder. Reading another page may write an
+equal picture again.
 
 Files that pages leave beside the HTML are removed with the last page that left them.
 """
@@ -39,17 +40,25 @@ NUMBERS, FILES = "robo_genesis_numbers", "robo_genesis_files"
 # Metadata of a page that no other page shows.
 OWN = {"og:description", "source_map", "wordcount", NUMBERS, FILES}
 
-# Attributes of the environment that pages show of one another, beside metadata and terms.
+# Attributes of the environment that pages show of one another, beside metadata and
+# terms.
 SHOWN = (
-    "titles", "longtitles", "tocs", "toc_secnumbers", "toc_fignumbers", "toctree_includes",
+    "titles",
+    "longtitles",
+    "tocs",
+    "toc_secnumbers",
+    "toc_fignumbers",
+    "toctree_includes",
     "domaindata",
-)  # fmt: skip
+)
 
 
 def keep_numbers(app: Sphinx, doctree: nodes.document) -> None:
     """Keep the numbers of a page's figures, tables, code and equations, which begin at one."""
     kinds: dict[str, dict[str, tuple[int, ...]]] = {}
-    for node in doctree.findall(lambda n: isinstance(n, nodes.Element) and bool(n["ids"])):
+    for node in doctree.findall(
+        lambda n: isinstance(n, nodes.Element) and bool(n["ids"])
+    ):
         if kind := numbered_kind(app.env, node):
             numbers = kinds.setdefault(kind, {})
             numbers[node["ids"][0]] = (len(numbers) + 1,)
@@ -66,12 +75,18 @@ def numbered_kind(env: BuildEnvironment, node: nodes.Node) -> str | None:
 def number_by_page(collector: TocTreeCollector, env: BuildEnvironment) -> list[str]:
     """Number each page by itself; Sphinx counts through a book, and loads all doctrees for it."""
     pages = env.metadata.items()
-    env.toc_fignumbers = {name: page[NUMBERS] for name, page in pages if NUMBERS in page}
+    env.toc_fignumbers = {
+        name: page[NUMBERS] for name, page in pages if NUMBERS in page
+    }
     return []  # `outdated_pages` finds the pages that show other numbers
 
 
 def including_pages(
-    app: Sphinx, env: BuildEnvironment, added: Set[str], changed: Set[str], removed: Set[str]
+    app: Sphinx,
+    env: BuildEnvironment,
+    added: Set[str],
+    changed: Set[str],
+    removed: Set[str],
 ) -> list[str]:
     """Return the pages that read the source of a changed page."""
     sources = {str(env.doc2path(name, base=False)) for name in (*added, *changed)}
@@ -108,7 +123,10 @@ def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
     for name in SHOWN:
         yield name, plain(vars(env).get(name))
     for page, metadata in env.metadata.items():
-        yield f"metadata {page}", plain({k: v for k, v in metadata.items() if k not in OWN})
+        yield (
+            f"metadata {page}",
+            plain({k: v for k, v in metadata.items() if k not in OWN}),
+        )
     yield "terms", plain(glossary_terms(env))
 
 
@@ -128,8 +146,9 @@ def plain(value: Any) -> Any:
 def drop_static_files(app: Sphinx) -> None:
     """Remove the style sheets and scripts before any is written: pages contain their digests.
 
-    An extension may write a sheet after the pages that name it, so a page that is written again
-    would find the digest of a sheet that a page from nothing does not find.
+    An extension may write a sheet after the pages that name it, so a page that is
+    written again would find the digest of a sheet that a page from nothing does not
+    find.
     """
     shutil.rmtree(Path(app.outdir) / "_static", ignore_errors=True)
 
@@ -152,7 +171,8 @@ def write_chosen(app: Sphinx, builder: Any) -> None:
 def finish(app: Sphinx, error: Exception | None) -> None:
     """Remove the pictures that no page shows any more, and report what cannot be kept.
 
-    The names of pictures with equal file names depend on the order in which they were read.
+    The names of pictures with equal file names depend on the order in which they were
+    read.
     """
     if error is not None:
         return
@@ -173,7 +193,9 @@ def remove_others(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Remove the files that no page writes any more, and folders that become empty."""
     noted = set().union(*(page.get(FILES, ()) for page in env.metadata.values()))
     for folder in (Path(app.outdir) / REPLAYS, Path(app.outdir) / TAKEAWAYS):
-        for path in sorted([*folder.rglob("*"), folder], reverse=True):  # a folder comes last
+        for path in sorted(
+            [*folder.rglob("*"), folder], reverse=True
+        ):  # a folder comes last
             if path.is_file() and str(path) not in noted:
                 path.unlink()
             elif path.is_dir() and not any(path.iterdir()):
@@ -187,10 +209,16 @@ def setup(app: Sphinx) -> None:
     app.connect("builder-inited", drop_static_files, priority=0)
     app.connect("env-get-outdated", including_pages)
     app.connect("env-before-read-docs", note_reading)
-    app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
-    app.connect("doctree-read", keep_numbers, priority=950)  # after the others, which may add ids
+    app.connect(
+        "doctree-read", forget_own_pictures, priority=900
+    )  # after they are collected
+    app.connect(
+        "doctree-read", keep_numbers, priority=950
+    )  # after the others, which may add ids
     TocTreeCollector.assign_figure_numbers = number_by_page  # type: ignore[assignment,method-assign]
-    app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
+    app.connect(
+        "env-get-updated", outdated_pages, priority=900
+    )  # after figures have numbers
     app.connect("write-started", drop_downloads)
     app.connect("write-started", write_chosen)
     app.connect("build-finished", finish)

@@ -1,6 +1,7 @@
 """Changes each written page last: it becomes accessible and light.
 
-No script blocks a page, it loads only the files that it needs, and nothing moves or flashes.
+No script blocks a page, it loads only the files that it needs, and nothing moves or
+flashes.
 """
 
 import re
@@ -20,8 +21,8 @@ from robo_genesis.site.frame import accessibility, style_sheets
 
 # The modules that change a page, and the colours that they use.
 CHANGES = (accessibility, drawings, style_sheets, palette)
-# Jupyter Book and the theme load every script on all pages; these are needed only where a selector
-# matches. No page needs `fontawesome.js`: the icons come from a font.
+# Jupyter Book and the theme load every script on all pages; these are needed only where
+# a selector matches. No page needs `fontawesome.js`: the icons come from a font.
 NEEDED_BY = {
     "div.highlight": {"clipboard.min.js", "copybutton.js"},
     ".sd-tab-set": {"design-tabs.js"},
@@ -32,10 +33,13 @@ NEEDED_BY = {
     ".memory, article": {"memory.js"},
     ".explorer .play, .replay": {"stage.js"},
     "#search-results": {
-        "language_data.js", "search-from-disk.js", "searchindex.js", "searchtools.js",
+        "language_data.js",
+        "search-from-disk.js",
+        "searchindex.js",
+        "searchtools.js",
     },
     ".toggle, .admonition.dropdown": {"togglebutton.js"},
-}  # fmt: skip
+}
 NEEDED_NOWHERE = {"fontawesome.js"}
 
 # Classes and identifiers in a selector.
@@ -60,7 +64,9 @@ TITLE = "page-title"  # The anchor of a title that has no other
 IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
 
 
-def note_page(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+def note_page(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
+) -> None:
     """Note that a page is written in this build; the pages of earlier builds are finished."""
     written(app).add(page)
 
@@ -77,7 +83,9 @@ def finish_site(app: Sphinx, error: Exception | None) -> None:
         for page in sorted(written(app)):
             path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
             path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
-        style_sheets.join_sheets(Path(app.outdir))  # it looks for the names in all finished pages
+        style_sheets.join_sheets(
+            Path(app.outdir)
+        )  # it looks for the names in all finished pages
     written(app).clear()
 
 
@@ -102,7 +110,9 @@ def finish_page(html: str, folder: Path) -> str:
         style_sheets.link_joined(page)
         return str(page).encode()
 
-    images = [folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)]
+    images = [
+        folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)
+    ]
     sources = (Path(module.__file__ or "") for module in CHANGES)
     files = [path for path in (*images, *sources, Path(__file__)) if path.is_file()]
     return derived(
@@ -118,7 +128,9 @@ def drop_idle_scripts(page: BeautifulSoup) -> None:
     def matches(selector: str) -> bool:
         """Search only if the page has all names of a selector: a search without result is slow."""
         named = (NAMED.findall(part) for part in selector.split(","))
-        return any(written.issuperset(names) for names in named) and bool(page.select_one(selector))
+        return any(written.issuperset(names) for names in named) and bool(
+            page.select_one(selector)
+        )
 
     idle = NEEDED_NOWHERE.union(*(NEEDED_BY[s] for s in NEEDED_BY if not matches(s)))
     for script in page.find_all("script", src=True):
@@ -129,9 +141,9 @@ def drop_idle_scripts(page: BeautifulSoup) -> None:
 def defer_scripts(page: BeautifulSoup) -> None:
     """Defer every script file until the page is parsed; the files then run in their order.
 
-    An inline script can be deferred only as a module. A script that sets options which a file
-    before it defines becomes one. The others need no file, like the theme's first script, which
-    chooses light or dark before the page shows.
+    An inline script can be deferred only as a module. A script that sets options which
+    a file before it defines becomes one. The others need no file, like the theme's
+    first script, which chooses light or dark before the page shows.
     """
     for script in page.find_all("script", type=None, attrs={"async": None}):
         if script.has_attr("src"):
@@ -143,9 +155,9 @@ def defer_scripts(page: BeautifulSoup) -> None:
 def choose_theme(page: BeautifulSoup) -> None:
     """Choose light or dark before the page shows.
 
-    The theme starts with neither, and its style sheets have no colours or borders for that state:
-    the page would change its colours and move when the deferred scripts run. Without scripts the
-    page is light.
+    The theme starts with neither, and its style sheets have no colours or borders for
+    that state: the page would change its colours and move when the deferred scripts
+    run. Without scripts the page is light.
     """
     for script in page.head.find_all("script", src=False) if page.head else ():
         if "dataset.theme" in script.get_text():
@@ -156,8 +168,8 @@ def choose_theme(page: BeautifulSoup) -> None:
 def wait_for_the_title(page: BeautifulSoup) -> None:
     """Make a browser that supports `rel="expect"` wait for the page's title before it renders.
 
-    The buttons of the bar above the title are aligned at its end: the first ones would move when
-    the others appear.
+    The buttons of the bar above the title are aligned at its end: the first ones would
+    move when the others appear.
     """
     title = page.select_one("article h1")
     if page.head and title:
@@ -171,7 +183,11 @@ def place_images(page: BeautifulSoup, folder: Path) -> None:
 
     The first picture of a replay, the largest of the first screen, loads at once.
     """
-    images = [image for image in page.find_all("img", src=True) if image.find_parent("article")]
+    images = [
+        image
+        for image in page.find_all("img", src=True)
+        if image.find_parent("article")
+    ]
     for image in images:
         file = folder / unquote(urlsplit(str(image["src"])).path)
         if not image.has_attr("width") and file.is_file():

@@ -1,7 +1,7 @@
 """Search also finds a long name by its end: `control_force` finds `get_dofs_control_force`.
 
-Sphinx's index contains whole words. Its script searches for parts of words only where no page has
-the whole word.
+Sphinx's index contains whole words. Its script searches for parts of words only where
+no page has the whole word.
 
 The index of an incremental build is made equal to that of a build from nothing.
 """
@@ -32,8 +32,8 @@ def ends(word: str) -> list[str]:
 def complete_index(app: Sphinx) -> list[Any]:
     """Correct the index of a build that writes only some pages.
 
-    Sphinx then keeps words that no page has any more, and loses the entries of the general index
-    that are on the other pages.
+    Sphinx then keeps words that no page has any more, and loses the entries of the
+    general index that are on the other pages.
     """
     indexer: Any = vars(app.builder)["indexer"]
     for words in (indexer._mapping, indexer._title_mapping):
@@ -41,11 +41,15 @@ def complete_index(app: Sphinx) -> list[Any]:
             del words[word]
     general = app.env.domaindata["index"]["entries"]
     indexer._index_entries.clear()
-    indexer._index_entries.update({page: found_entries(general[page]) for page in sorted(general)})
+    indexer._index_entries.update(
+        {page: found_entries(general[page]) for page in sorted(general)}
+    )
     return []
 
 
-def found_entries(entries: Iterable[tuple[str, str, str, str, str | None]]) -> list[Any]:
+def found_entries(
+    entries: Iterable[tuple[str, str, str, str, str | None]],
+) -> list[Any]:
     """Return a page's entries of the general index as the index of the search has them."""
     found = {
         (text, target or "", main)

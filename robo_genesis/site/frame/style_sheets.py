@@ -21,8 +21,8 @@ OWN = ("print", "calm", "course", "explorer", "replay", "look", "plot", "home", 
 THEME = ("basic", "styles/pydata-sphinx-theme", "pygments", "styles/sphinx-book-theme")
 EXTENSIONS = ("palette", "togglebutton", "copybutton", "mystnb.*", "sphinx-design.min")
 
-# The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only
-# pages with formulas load it.
+# The sheets of all pages in their order, relative to the site. `math.css` contains a
+# font, so only pages with formulas load it.
 SHEETS = tuple(f"_static/{name}.css" for name in (*THEME, *EXTENSIONS, *OWN))
 # A sheet of the theme that imports the first one and has no rule.
 IMPORTING = "_static/styles/theme.css"
@@ -34,7 +34,8 @@ JOINED = "_static/styles/site.css"
 NAMES = re.compile(r' (?:class|id)="([^"]*)"')
 WORD = re.compile(r"[\w-]+", re.ASCII)
 
-# A word of a sheet that is neither a class nor an identifier: elements, attributes, states.
+# A word of a sheet that is neither a class nor an identifier: elements, attributes,
+# states.
 OTHER_WORD = re.compile(r"(?<![.#\w-])[\w-]+", re.ASCII)
 # The beginning of an address that is relative to its sheet.
 ADDRESS = re.compile(r"url\(\s*([\"']?)(?![\"']?(?:data:|https?:|[/#]))")
@@ -44,11 +45,14 @@ PURGE = "purgecss/bin/purgecss.js"
 def link_joined(page: BeautifulSoup) -> None:
     """Replace the links of a page to the single sheets by one link, in place.
 
-    All pages have the same link, so a browser fetches the sheet once. It has no query: its content
-    depends on the names in all pages, and a browser asks the server whether it changed.
+    All pages have the same link, so a browser fetches the sheet once. It has no query:
+    its content depends on the names in all pages, and a browser asks the server whether
+    it changed.
     """
     links = [
-        link for link in page.find_all("link", rel="stylesheet") if _is_joined(str(link["href"]))
+        link
+        for link in page.find_all("link", rel="stylesheet")
+        if _is_joined(str(link["href"]))
     ]
     if links:
         start = str(links[0]["href"]).partition("_static/")[0]
@@ -66,9 +70,9 @@ def _is_joined(address: str) -> bool:
 def join_sheets(html: Path) -> None:
     """Write the joined sheet of a site.
 
-    The theme's rules with classes or identifiers that the site does not have are left out. A name
-    counts as present if a tag of any page has it or if it is a word of any script, which may add it
-    later. Rules that name elements and attributes alone stay.
+    The theme's rules with classes or identifiers that the site does not have are left
+    out. A name counts as present if a tag of any page has it or if it is a word of any
+    script, which may add it later. Rules that name elements and attributes alone stay.
 
     Args:
         html: folder of the site.
@@ -77,16 +81,24 @@ def join_sheets(html: Path) -> None:
         ProjectError: PurgeCSS failed; the message holds its output.
     """
     sheets = [path for pattern in SHEETS for path in sorted(html.glob(pattern))]
-    trimmed = {p.name: p.read_text("utf8") for pattern in TRIMMED for p in html.glob(pattern)}
+    trimmed = {
+        p.name: p.read_text("utf8") for pattern in TRIMMED for p in html.glob(pattern)
+    }
     present = used_names(html) | words(trimmed.values(), OTHER_WORD)
     names = "\n".join(sorted(present & words(trimmed.values(), WORD)))
-    lock = (ROOT / "package-lock.json").read_text("utf8")  # names the version of PurgeCSS
-    found = derived_value("sheets", [names, trimmed, lock], lambda: _purged(trimmed, names))
+    lock = (ROOT / "package-lock.json").read_text(
+        "utf8"
+    )  # names the version of PurgeCSS
+    found = derived_value(
+        "sheets", [names, trimmed, lock], lambda: _purged(trimmed, names)
+    )
     joined = html / JOINED
     texts = []
     for path in sheets:
         text = found.get(path.name, path.read_text("utf8"))
-        texts.append(text if path.parent == joined.parent else ADDRESS.sub(r"url(\1../", text))
+        texts.append(
+            text if path.parent == joined.parent else ADDRESS.sub(r"url(\1../", text)
+        )
     write_whole(joined, "\n".join(texts).encode())
 
 
@@ -94,7 +106,9 @@ def used_names(html: Path) -> set[str]:
     """Return the classes and identifiers of all pages, and all words of their common scripts."""
     attributes = words((path.read_text("utf8") for path in html.rglob("*.html")), NAMES)
     names = {name for value in attributes for name in value.split()}
-    return names | words((path.read_text("utf8") for path in html.glob("_static/**/*.js")), WORD)
+    return names | words(
+        (path.read_text("utf8") for path in html.glob("_static/**/*.js")), WORD
+    )
 
 
 def words(texts: Iterable[str], pattern: re.Pattern[str]) -> set[str]:

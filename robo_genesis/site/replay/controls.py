@@ -20,8 +20,8 @@ PANEL = Path(__file__).with_name("panel.html")  # The template of the controls
 
 SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
 
-# The initial speed: most of the motion happens in a small part of the window. The other is for runs
-# of more than `LONG` seconds.
+# The initial speed: most of the motion happens in a small part of the window. The other
+# is for runs of more than `LONG` seconds.
 SLOW, SLOW_FOR_LONG = "0.1", "0.25"
 
 LONG = 3.0
@@ -50,10 +50,12 @@ def opening(kind: str, words: Mapping[str, str]) -> str:
 def over_the_picture(button: str, veiled: bool = False) -> str:
     """Return what is on top of the still picture: the state that it shows, and a button.
 
-    A veiled replay shows nothing else until its question has an answer; without the script, the
-    veil is hidden.
+    A veiled replay shows nothing else until its question has an answer; without the
+    script, the veil is hidden.
     """
-    return filled(PANEL.with_name("over_the_picture.html"), button=button, veiled=veiled)
+    return filled(
+        PANEL.with_name("over_the_picture.html"), button=button, veiled=veiled
+    )
 
 
 def alt(runs: Runs) -> str:
@@ -68,7 +70,9 @@ def caption(runs: Runs, around: "Scenery") -> str:
     if around.axis:
         parts.append(f"Yellow rod: the axis of {runs.subject}.")
     if around.target:
-        parts.append(f"Blue and translucent: {runs.subject} at its target, other joints at rest.")
+        parts.append(
+            f"Blue and translucent: {runs.subject} at its target, other joints at rest."
+        )
     if around.followed is not None:
         parts.append(f"The view follows the {runs.replay.thing} horizontally.")
     return " ".join(parts)
@@ -94,7 +98,11 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         speeds=SPEEDS,
         speed=SLOW_FOR_LONG if end > LONG else SLOW,
         rest=round(until / runs.first.dt) if until < end else None,
-        terms=["time", *(c.name for c in runs.channels), *(level.name for level in runs.levels)],
+        terms=[
+            "time",
+            *(c.name for c in runs.channels),
+            *(level.name for level in runs.levels),
+        ],
         legend=_legend(runs),
     )
 
@@ -102,13 +110,16 @@ def panel(name: str, runs: Runs, weight: int) -> str:
 def data(runs: Runs, camera: "Camera") -> dict[str, str]:
     """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
     names = ("name", "unit", "digits", "top")
-    channels = [{name: getattr(channel, name) for name in names} for channel in runs.channels]
+    channels = [
+        {name: getattr(channel, name) for name in names} for channel in runs.channels
+    ]
     return {
         "subject": runs.subject,
         "channels": as_json(channels),
         "time-digits": str(time_digits(runs.first.dt)),
         "thing": runs.replay.thing,
-        "alt": runs.replay.view or f"The {runs.replay.thing} in 3D at the sample that is shown.",
+        "alt": runs.replay.view
+        or f"The {runs.replay.thing} in 3D at the sample that is shown.",
         "orbit": camera.orbit,
         "target": camera.target,
     }
@@ -129,12 +140,18 @@ def _levels(runs: Runs, case: str) -> list[dict[str, Any]]:
 
 def as_json(content: Any) -> str:
     """Return content as JSON without spaces."""
-    return json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return json.dumps(
+        content, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+    )
 
 
 def _legend(runs: Runs) -> str:
     """Return the meaning of the lines of the plots."""
     bold = "Bold: the chosen run; each curve has the colour of the line beside its run."
     levels = (level.legend for level in runs.levels)
-    parts = (bold * (len(runs.traces) > 1), *levels, "Drag in a plot to move through time.")
+    parts = (
+        bold * (len(runs.traces) > 1),
+        *levels,
+        "Drag in a plot to move through time.",
+    )
     return " ".join(filter(None, parts))

@@ -1,11 +1,12 @@
 """A recorded run that plays in the page, and the files that load only on a reader's request.
 
-A page writes ```` ```{replay} l04/lecture ```` for the first replay that its lesson declares, for
-another one its name as well: ```` ```{replay} l03/lecture slides ````. The option `:brief:` leaves
-out all channels but the first, and the sentences on each case. With `:blind:` the curves appear
-with the time that is played, and nothing shows before the question above has an answer. The panel
-of a recorded run also has a replay. Poses and curves come from the record; the shape comes from the
-model, which the lecture writes to a file.
+A page writes ```` ```{replay} l04/lecture ```` for the first replay that its lesson
+declares, for another one its name as well: ```` ```{replay} l03/lecture slides ````.
+The option `:brief:` leaves out all channels but the first, and the sentences on each
+case. With `:blind:` the curves appear with the time that is played, and nothing shows
+before the question above has an answer. The panel of a recorded run also has a replay.
+Poses and curves come from the record; the shape comes from the model, which the lecture
+writes to a file.
 """
 
 import base64
@@ -58,17 +59,28 @@ class ReplayDirective(PageDirective):
         lesson_page, *chosen = self.arguments
         first_page = self.env.docname == self.env.config.root_doc
         above = self.state.document.findall(nodes.Element)
-        stops = [n for n in above if isinstance(n, question) or "replay-block" in n["classes"]]
+        stops = [
+            n
+            for n in above
+            if isinstance(n, question) or "replay-block" in n["classes"]
+        ]
         if blind and not first_page and not (stops and isinstance(stops[-1], question)):
-            raise LookupError("`:blind:` needs a question above it, as `{choice}` or `{number}`.")
+            raise LookupError(
+                "`:blind:` needs a question above it, as `{choice}` or `{number}`."
+            )
         key, folder = f"{lesson_page}/{BACKEND}", page_outputs(lesson_page) / BACKEND
         return [replay_block(self, key, folder, *chosen, brief=brief, blind=blind)]
 
 
 def replay_block(
-    directive: SphinxDirective, key: str, folder: Path, chosen: str = "", *,
-    brief: bool = False, blind: bool = False,
-) -> nodes.Node:  # fmt: skip
+    directive: SphinxDirective,
+    key: str,
+    folder: Path,
+    chosen: str = "",
+    *,
+    brief: bool = False,
+    blind: bool = False,
+) -> nodes.Node:
     """Return the replay of an accepted bundle, with all its information as text and as a table.
 
     Args:
@@ -81,8 +93,8 @@ def replay_block(
 
     Raises:
         LookupError: the lesson has no such replay.
-        ValueError: its runs cannot be played together, or no page of this build wrote the shape of
-            these links.
+        ValueError: its runs cannot be played together, or no page of this build wrote
+            the shape of these links.
     """
     from robo_genesis.site.replay import model as replay_model  # these load slowly
     from robo_genesis.site.replay.scenery import scenery, side_by_side
@@ -100,7 +112,12 @@ def replay_block(
     inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
     what = around, runs.links, runs.traces, replay.credit
     files, weight, still = leave_model(
-        env, name, inputs, lambda: replay_model.glb(*what), around.camera, controls.alt(runs)
+        env,
+        name,
+        inputs,
+        lambda: replay_model.glb(*what),
+        around.camera,
+        controls.alt(runs),
     )
     shown, (first, *_) = runs, runs.channels
     if brief:  # the model is the same
@@ -109,7 +126,10 @@ def replay_block(
     samples = f"samples of {', '.join(runs.traces)} as a table"
     summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
-    veiled = ["growing", *(["veiled"] if env.docname != env.config.root_doc else [])] * blind
+    veiled = [
+        "growing",
+        *(["veiled"] if env.docname != env.config.root_doc else []),
+    ] * blind
     block = nodes.container(classes=["replay-block", *veiled], evidence_runs=(key,))
     block += html(opening)
     over = controls.over_the_picture("Play", blind)
@@ -118,7 +138,9 @@ def replay_block(
     block += html(controls.panel(name, shown, weight) + fold)
     if shown.moves:
         block += bullets(*map(marked, shown.moves.values()))
-    block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
+    block += scroll_box(
+        summary, *directive.parse_text_to_nodes(controls.samples(shown))
+    )
     block += html(f"</details>{origin_html(name, folder, env, replay.credit)}")
     return block
 
@@ -129,9 +151,13 @@ def replay_folder(env: BuildEnvironment) -> str:
 
 
 def leave_model(
-    env: BuildEnvironment, name: str, inputs: Sequence[bytes], make: Callable[[], bytes],
-    camera: "Camera", alt: str,
-) -> tuple[dict[str, str], int, nodes.image]:  # fmt: skip
+    env: BuildEnvironment,
+    name: str,
+    inputs: Sequence[bytes],
+    make: Callable[[], bytes],
+    camera: "Camera",
+    alt: str,
+) -> tuple[dict[str, str], int, nodes.image]:
     """Write a model for the page that is read, as GLB and as a classic script.
 
     A page that was opened from disk cannot fetch files, but it can add a script.
@@ -145,8 +171,8 @@ def leave_model(
         alt: text of the picture that it replaces.
 
     Returns:
-        Name and addresses of what loads on a reader's request, its compressed size [kB], and the
-        still picture.
+        Name and addresses of what loads on a reader's request, its compressed size
+        [kB], and the still picture.
     """
     from robo_genesis.site.replay.poster import picture  # it loads slowly
 
@@ -158,10 +184,16 @@ def leave_model(
     for file, content in ((f"{name}.glb", model), (f"{name}.js", script)):
         write_whole(folder / file, content)
         note_files(env, folder / file)
-    weight = round(sum(len(gzip.compress(of)) for of in (script, viewer.viewer())) / 1000)
+    weight = round(
+        sum(len(gzip.compress(of)) for of in (script, viewer.viewer())) / 1000
+    )
     shown = image(env, f"{name}.webp", still, alt)
     shown["kind"], shown["classes"] = "model", ["still"]
-    return {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"}, weight, shown
+    return (
+        {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"},
+        weight,
+        shown,
+    )
 
 
 def stage(picture: nodes.image, over: str, caption: str, anchor: str) -> nodes.figure:
@@ -193,7 +225,9 @@ def bundle_inputs(folder: Path) -> Iterator[bytes]:
         yield path.read_bytes()
 
 
-def origin_html(name: str, folder: Path, env: BuildEnvironment, credit: str | None) -> str:
+def origin_html(
+    name: str, folder: Path, env: BuildEnvironment, credit: str | None
+) -> str:
     """Return the line that names the run and the origin of the shape.
 
     Args:
@@ -204,7 +238,9 @@ def origin_html(name: str, folder: Path, env: BuildEnvironment, credit: str | No
     """
     run, up = bundle.read_manifest(folder).predicate, replay_folder(env)
     files = {"name": name, "notice": NOTICE, "licence": VIEWER_LICENCE}
-    return filled(Path(__file__).with_name("origin.html"), run=run, up=up, credit=credit, **files)
+    return filled(
+        Path(__file__).with_name("origin.html"), run=run, up=up, credit=credit, **files
+    )
 
 
 def setup(app: Sphinx) -> None:

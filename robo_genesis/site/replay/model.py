@@ -1,10 +1,11 @@
 """Recorded runs as a GLB: the shape of the links, moved by the recorded link poses.
 
-Each link is a node, placed in the world and moved by one animation per case, whose keys are the
-samples of the record. One more node holds the parts that do not move, another one translucent
-copies of links at their target. A third one holds the shadows: copies of the links that move as
-these do, pressed onto the ground as by light from straight above. If the view follows a link, the
-world moves against it. Nothing is compressed: the page would have to load a decoder.
+Each link is a node, placed in the world and moved by one animation per case, whose keys
+are the samples of the record. One more node holds the parts that do not move, another
+one translucent copies of links at their target. A third one holds the shadows: copies
+of the links that move as these do, pressed onto the ground as by light from straight
+above. If the view follows a link, the world moves against it. Nothing is compressed:
+the page would have to load a decoder.
 """
 
 import json
@@ -20,27 +21,32 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part
 from robo_genesis.site.replay.scenery import Scenery
 
-# Share of the triangles of a large part that is kept: with the small parts, about 12,000 of the
-# Franka's 135,000 triangles.
+# Share of the triangles of a large part that is kept: with the small parts, about
+# 12,000 of the Franka's 135,000 triangles.
 KEPT = 0.05
 
-# Number of triangles up to which a part stays unchanged, such as the engine's sphere, and the
-# fewest of another part: rings would break and lamps vanish.
+# Number of triangles up to which a part stays unchanged, such as the engine's sphere,
+# and the fewest of another part: rings would break and lamps vanish.
 UNCHANGED, FEWEST = 1280, 400
 
-CREASE = np.radians(40)  # Angle between triangles above which an edge is drawn sharp [rad]
+CREASE = np.radians(
+    40
+)  # Angle between triangles above which an edge is drawn sharp [rad]
 
-# The nodes of the parts that belong to no link, of the copies at the target, and of shadows.
+# The nodes of the parts that belong to no link, of the copies at the target, and of
+# shadows.
 STILL, TARGET, SHADOWS = "still", "target", "shadows"
 
-# Colour of the copies: red, green, blue 0 to 255, and opacity. The script fades them near the
-# target, where surfaces in one place would flicker.
+# Colour of the copies: red, green, blue 0 to 255, and opacity. The script fades them
+# near the target, where surfaces in one place would flicker.
 GHOST = (60, 110, 220, 0.4)
 
-# Colour of shadows, their height by that of their links, and the gap to the ground below [m].
+# Colour of shadows, their height by that of their links, and the gap to the ground
+# below [m].
 SHADOW, FLAT, ABOVE = (105, 105, 105), 1e-4, 1e-3
 
-# Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it.
+# Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are
+# below it.
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 
 
@@ -48,27 +54,41 @@ Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 Simple: TypeAlias = Sequence[tuple[Part, trimesh.Trimesh]]
 
 COMPONENTS = {
-    "float32": gltf.FLOAT, "uint16": gltf.UNSIGNED_SHORT, "uint32": gltf.UNSIGNED_INT,
-}  # fmt: skip
+    "float32": gltf.FLOAT,
+    "uint16": gltf.UNSIGNED_SHORT,
+    "uint32": gltf.UNSIGNED_INT,
+}
 
 
 class Binary:
     """The binary chunk of a GLB and its accessors; equal arrays are stored once."""
 
     def __init__(self, model: gltf.GLTF2) -> None:
-        self.model, self.data, self.known = model, bytearray(), dict[tuple[str, bytes], int]()
+        self.model, self.data, self.known = (
+            model,
+            bytearray(),
+            dict[tuple[str, bytes], int](),
+        )
 
     def add(
-        self, array: np.ndarray, kind: str, target: int | None = None, bounds: bool = False
+        self,
+        array: np.ndarray,
+        kind: str,
+        target: int | None = None,
+        bounds: bool = False,
     ) -> int:
         """Store an array (n,) or (n, k) and return its accessor; float32 or uint16 or uint32.
 
-        glTF demands `bounds`, the smallest and largest values, of positions and of key times.
+        glTF demands `bounds`, the smallest and largest values, of positions and of key
+        times.
         """
         packed = array.tobytes()
         if (kind, packed) not in self.known:
             view = gltf.BufferView(
-                buffer=0, byteOffset=len(self.data), byteLength=len(packed), target=target
+                buffer=0,
+                byteOffset=len(self.data),
+                byteLength=len(packed),
+                target=target,
             )
             accessor = gltf.Accessor(
                 bufferView=len(self.model.bufferViews),
@@ -86,7 +106,10 @@ class Binary:
 
 
 def glb(
-    scenery: Scenery, links: Sequence[str], traces: Mapping[str, Run], credit: str | None = None
+    scenery: Scenery,
+    links: Sequence[str],
+    traces: Mapping[str, Run],
+    credit: str | None = None,
 ) -> bytes:
     """Return the model with one animation a case.
 
@@ -96,7 +119,9 @@ def glb(
         traces: the record by case.
         credit: copyright of the shape, None where it needs no notice.
     """
-    model = gltf.GLTF2(asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=credit))
+    model = gltf.GLTF2(
+        asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=credit)
+    )
     binary = Binary(model)
     model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP)]
 
@@ -127,7 +152,9 @@ def glb(
     followed = scenery.followed
     if followed is not None:
         model.nodes[0].translation = opposite(first, followed)[0].astype(float).tolist()
-    model.animations = [_animation(binary, *run, followed, shadows + 1) for run in traces.items()]
+    model.animations = [
+        _animation(binary, *run, followed, shadows + 1) for run in traces.items()
+    ]
     model.scene, model.scenes = 0, [gltf.Scene(nodes=[0])]
     model.buffers = [gltf.Buffer(byteLength=len(binary.data))]
     model.set_binary_blob(bytes(binary.data))
@@ -144,7 +171,9 @@ def _mesh(
     model, primitives = binary.model, []
     for part, mesh in (pair for pair in shape if pair[0].link == link):
         attributes = gltf.Attributes(
-            POSITION=binary.add(_float32(mesh.vertices), "VEC3", gltf.ARRAY_BUFFER, bounds=True),
+            POSITION=binary.add(
+                _float32(mesh.vertices), "VEC3", gltf.ARRAY_BUFFER, bounds=True
+            ),
             NORMAL=binary.add(_float32(mesh.vertex_normals), "VEC3", gltf.ARRAY_BUFFER),
         )
         faces = np.asarray(mesh.faces).ravel()
@@ -208,10 +237,14 @@ def _animation(
     for moved, path, values, kind in tracks:
         for node in moved:
             target = gltf.AnimationChannelTarget(node=node, path=path)
-            channel = gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
+            channel = gltf.AnimationChannel(
+                sampler=len(animation.samplers), target=target
+            )
             animation.channels.append(channel)
         output = binary.add(values, kind)
-        sampler = gltf.AnimationSampler(input=times, output=output, interpolation="LINEAR")
+        sampler = gltf.AnimationSampler(
+            input=times, output=output, interpolation="LINEAR"
+        )
         animation.samplers.append(sampler)
     return animation
 
@@ -225,10 +258,12 @@ def opposite(trace: Run, link: int) -> FloatArray:
 def rotations(wxyz: FloatArray) -> FloatArray:
     """Return unit quaternions (n, 4) as (x, y, z, w), float32, without sign flips between samples.
 
-    q and −q are one orientation. Between two samples of opposite sign, a viewer would interpolate a
-    turn in the wrong direction.
+    q and −q are one orientation. Between two samples of opposite sign, a viewer would
+    interpolate a turn in the wrong direction.
     """
-    unit = wxyz.astype(float) / np.linalg.norm(wxyz.astype(float), axis=1, keepdims=True)
+    unit = wxyz.astype(float) / np.linalg.norm(
+        wxyz.astype(float), axis=1, keepdims=True
+    )
     flips = np.where((unit[1:] * unit[:-1]).sum(axis=1) < 0, -1.0, 1.0)
     signs = np.cumprod([1.0, *flips])
     return _float32((unit * signs[:, None])[:, [1, 2, 3, 0]])

@@ -1,6 +1,7 @@
 """The still picture that a reader sees before a replay starts: its model, drawn without a browser.
 
-The picture has the camera and the first poses of the replay, so the model takes its place.
+The picture has the camera and the first poses of the replay, so the model takes its
+place.
 """
 
 from io import BytesIO
@@ -16,11 +17,14 @@ from robo_genesis.site.replay.scenery import ASPECT, FIELD, Camera
 WIDTH, HEIGHT = 960, round(960 / ASPECT)
 FINER = 2  # Pixels drawn for one of the picture, along each side
 
-LIGHT = np.array([0.35, 0.8, 0.5])  # Direction to the light, in the frame of the viewer, y up
+LIGHT = np.array(
+    [0.35, 0.8, 0.5]
+)  # Direction to the light, in the frame of the viewer, y up
 
 NEAREST = 0.05  # Distance to the camera from which on parts are drawn [m]
 
-# Share of a surface's colour that is seen where it faces away from the light, and towards it.
+# Share of a surface's colour that is seen where it faces away from the light, and
+# towards it.
 DARKEST, BRIGHTEST = 0.35, 1.0
 
 
@@ -35,12 +39,18 @@ def picture(model: bytes, camera: Camera) -> bytes:
         mesh = scene.geometry[name]
         rgba = mesh.visual.material.baseColorFactor / 255
         places = trimesh.transform_points(mesh.vertices, matrix)
-        normals = mesh.vertex_normals @ np.linalg.inv(matrix[:3, :3])  # a shadow's parts are flat
+        normals = mesh.vertex_normals @ np.linalg.inv(
+            matrix[:3, :3]
+        )  # a shadow's parts are flat
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
         facing = normals @ (LIGHT / np.linalg.norm(LIGHT))
         lit = DARKEST + (BRIGHTEST - DARKEST) * (1 + facing) / 2
-        both = np.column_stack([lit, lit])  # as the function interpolates texture coordinates
-        places, faces, both = slice_faces_plane(places, mesh.faces, -back, edge, uv=both)
+        both = np.column_stack(
+            [lit, lit]
+        )  # as the function interpolates texture coordinates
+        places, faces, both = slice_faces_plane(
+            places, mesh.faces, -back, edge, uv=both
+        )
         shades = np.column_stack([both[:, :1] * rgba[:3], np.full(len(both), rgba[3])])
         triangles.append(seen(places, camera)[faces])
         colours.append(shades[faces])
@@ -70,7 +80,8 @@ def drawn(corners: FloatArray, colours: FloatArray) -> tuple[FloatArray, FloatAr
         colours: of the corners, with opacity, (n, 3, 4).
 
     Returns:
-        Inverse distance (h, w) and colour (h, w, 4) of the nearest triangle, 0 where there is none.
+        Inverse distance (h, w) and colour (h, w, 4) of the nearest triangle, 0 where
+        there is none.
     """
     size = FINER * HEIGHT, FINER * WIDTH
     near, image = np.zeros(size), np.zeros((*size, 4))
@@ -78,15 +89,25 @@ def drawn(corners: FloatArray, colours: FloatArray) -> tuple[FloatArray, FloatAr
     (right, down), (across, below) = (b - a).T, (c - a).T
     faces_camera = right * below - down * across < -1e-6  # y points down
     edges = np.concatenate([corners[..., :2], np.ones((*corners.shape[:2], 1))], axis=2)
-    visible = corners[faces_camera], colours[faces_camera], np.linalg.inv(edges[faces_camera])
+    visible = (
+        corners[faces_camera],
+        colours[faces_camera],
+        np.linalg.inv(edges[faces_camera]),
+    )
     for corner, colour, edge in zip(*visible, strict=True):
         low = np.maximum(np.floor(corner[:, :2].min(axis=0)).astype(int), 0)
-        high = np.minimum(np.ceil(corner[:, :2].max(axis=0)).astype(int), near.shape[::-1])
+        high = np.minimum(
+            np.ceil(corner[:, :2].max(axis=0)).astype(int), near.shape[::-1]
+        )
         if (low >= high).any():
             continue
         x, y = (np.arange(*ends) + 0.5 for ends in zip(low, high, strict=True))
-        weights = [x * by_x + y[:, None] * by_y + offset for by_x, by_y, offset in edge.T]
-        distance = sum(w * value for w, value in zip(weights, corner[:, 2], strict=True))
+        weights = [
+            x * by_x + y[:, None] * by_y + offset for by_x, by_y, offset in edge.T
+        ]
+        distance = sum(
+            w * value for w, value in zip(weights, corner[:, 2], strict=True)
+        )
         part = np.s_[low[1] : high[1], low[0] : high[0]]
         shown = (np.minimum.reduce(weights) >= 0) & (distance > near[part])
         near[part][shown] = distance[shown]
@@ -99,8 +120,12 @@ def packed(image: FloatArray) -> bytes:
     blocks = image.reshape(HEIGHT, FINER, WIDTH, FINER, 4).mean(axis=(1, 3))
     opacity = blocks[..., 3:]
     linear = blocks[..., :3] / np.maximum(opacity, 1e-9)
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    srgb = np.where(
+        linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055
+    )
     pixels = 255 * np.clip(np.concatenate([srgb, opacity], axis=2), 0, 1)
     content = BytesIO()
-    Image.fromarray(np.round(pixels).astype(np.uint8)).save(content, "WEBP", quality=70, method=6)
+    Image.fromarray(np.round(pixels).astype(np.uint8)).save(
+        content, "WEBP", quality=70, method=6
+    )
     return content.getvalue()

@@ -1,6 +1,7 @@
 """What a replay shows around the recorded links: a floor, the axis, the target, and its camera.
 
-Several runs can be in one view: the links of each at a place of its own, and all move at once.
+Several runs can be in one view: the links of each at a place of its own, and all move
+    at once.
 
 All of it follows from the record and the shape; nothing here needs the engine.
 """
@@ -20,7 +21,8 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part, check_links, floor
 from robo_genesis.site.figures.case_labels import MARKS
 
-TILE = 0.1  # Width of the tiles of the floor [m]; they show its distance and the motion above it
+# Width of the tiles of the floor [m]; they show its distance and the motion above it
+TILE = 0.1
 
 TILE_RGB = (190, 190, 190)
 RAISED = 5e-4  # Height of the tiles above the floor that they are drawn on [m]
@@ -28,7 +30,8 @@ RAISED = 5e-4  # Height of the tiles above the floor that they are drawn on [m]
 # Colour, radius and length of the rod along a joint's axis [m].
 AXIS_RGB, AXIS_RADIUS, AXIS_LENGTH = (240, 190, 0), 0.006, 0.4
 
-# Tolerance of the angle between two links against the recorded position of their joint [rad].
+# Tolerance of the angle between two links against the recorded position of their joint
+# [rad].
 SAME_ANGLE = 1e-3
 
 # Direction from the view's centre to the camera: about the vertical and from it [rad].
@@ -85,9 +88,9 @@ class Hinge:
 class Scenery:
     """The parts to draw with the camera; `axis` says whether one of them is the axis of a joint.
 
-    `target` is by link its pose (4, 4) where the joint is at its target and the others at their
-    start. The view follows the link number `followed` horizontally; None if it does not move.
-    `ground` is the height on which shadows fall [m].
+    `target` is by link its pose (4, 4) where the joint is at its target and the others
+    at their start. The view follows the link number `followed` horizontally; None if it
+    does not move. `ground` is the height on which shadows fall [m].
     """
 
     parts: Sequence[Part]
@@ -102,41 +105,64 @@ def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
     """Return what the replay of some runs shows; several robots in one view have no axis.
 
     Raises:
-        ValueError: a part belongs to a link that is not in the record, or two links have one name.
+        ValueError: a part belongs to a link that is not in the record, or two links
+            have one name.
     """
     check_links(shape, runs.links)
-    hinge, followed = None if runs.replay.places else find_hinge(runs), find_followed(runs)
+    hinge, followed = (
+        None if runs.replay.places else find_hinge(runs),
+        find_followed(runs),
+    )
     *_, tiles = floors = floor_of(shape)
     parts, ground = [*shape, *floors], float(tiles.vertices[:, 2].max())
     seen = swept(shape, runs, followed)
-    camera = fitted(np.concatenate([seen, seen * [1, 1, 0] + [0, 0, ground]]))  # with the shadows
+    camera = fitted(
+        np.concatenate([seen, seen * [1, 1, 0] + [0, 0, ground]])
+    )  # with the shadows
     if hinge is None:
         return Scenery(parts, camera, followed=followed, ground=ground)
     parts.append(rod(runs.links[hinge.parent], hinge))
-    return Scenery(parts, camera, axis=True, target=target_poses(runs, hinge), ground=ground)
+    return Scenery(
+        parts, camera, axis=True, target=target_poses(runs, hinge), ground=ground
+    )
 
 
 def find_followed(runs: Runs) -> int | None:
     """Return the number of the only link if it leaves its tile of the floor, else None."""
-    places = np.concatenate([trace.link_pos[:, 0, :2] for trace in runs.traces.values()])
+    places = np.concatenate(
+        [trace.link_pos[:, 0, :2] for trace in runs.traces.values()]
+    )
     return 0 if len(runs.links) == 1 and np.ptp(places, axis=0).max() > TILE else None
 
 
 def find_hinge(runs: Runs) -> Hinge | None:
     """Return the joint of the first channel, None if no link turns about an axis by its angle.
 
-    The links are in the order of their chain. The turn of the first link that moves against the
-    one before it, in the frame of that one, contains no motion of other joints.
+    The links are in the order of their chain. The turn of the first link that moves
+    against the one before it, in the frame of that one, contains no motion of other
+    joints.
     """
     angle = next(iter(runs.channels[0].values.values())).astype(float)
     trace, last = runs.first, int(np.abs(angle - angle[0]).argmax())
     turned = angle[last] - angle[0]
     links = [poses(trace, k)[[0, last]] for k in range(len(runs.links))]
-    moved = [k for k, (start, end) in enumerate(links) if turn(start, end)[0] > abs(turned) / 2]
-    if runs.channels[0].unit != "rad" or abs(turned) < SAME_ANGLE or not moved or moved[0] == 0:
+    moved = [
+        k
+        for k, (start, end) in enumerate(links)
+        if turn(start, end)[0] > abs(turned) / 2
+    ]
+    if (
+        runs.channels[0].unit != "rad"
+        or abs(turned) < SAME_ANGLE
+        or not moved
+        or moved[0] == 0
+    ):
         return None
     parent, first = links[moved[0] - 1], links[moved[0]]
-    start, end = (np.linalg.solve(above, below) for above, below in zip(parent, first, strict=True))
+    start, end = (
+        np.linalg.solve(above, below)
+        for above, below in zip(parent, first, strict=True)
+    )
     size, axis = turn(start, end)
     if abs(size - abs(turned)) > SAME_ANGLE:
         return None
@@ -150,7 +176,8 @@ def find_hinge(runs: Runs) -> Hinge | None:
 def target_poses(runs: Runs, hinge: Hinge) -> dict[str, FloatArray]:
     """Return the poses of the moved links at the target, empty if the runs have several targets.
 
-    A rigid link below the joint turns about the axis, so its pose at the start decides the result.
+    A rigid link below the joint turns about the axis, so its pose at the start decides
+    the result.
     """
     position = runs.channels[0]
     targets = {v for level in runs.levels_of(position) for v in level.values.values()}
@@ -181,10 +208,14 @@ def floor_of(shape: Sequence[Part]) -> list[Part]:
     """
     sizes = [np.ptp(part.vertices[:, :2], axis=0) for part in shape]
     pairs = zip(shape, sizes, strict=True)
-    wide = [(size.prod(), p) for p, size in pairs if p.link == WORLD and size.min() > TILE]
+    wide = [
+        (size.prod(), p) for p, size in pairs if p.link == WORLD and size.min() > TILE
+    ]
     added = [] if wide else [floor(2.0)]
     widest = max((area for area, _ in wide), default=0.0)
-    alike = [part for area, part in wide if area > 0.99 * widest]  # the same table at each place
+    alike = [
+        part for area, part in wide if area > 0.99 * widest
+    ]  # the same table at each place
     return [*added, *map(tiles_on, alike or added)]
 
 
@@ -193,7 +224,9 @@ def tiles_on(still: Part) -> Part:
     low, high = still.vertices.min(axis=0), still.vertices.max(axis=0)
     columns, rows = (np.arange(low[k], high[k] - TILE / 2, TILE) for k in (0, 1))
     dark = [
-        (x, y) for (i, x), (j, y) in product(enumerate(columns), enumerate(rows)) if (i + j) % 2
+        (x, y)
+        for (i, x), (j, y) in product(enumerate(columns), enumerate(rows))
+        if (i + j) % 2
     ]
     square = np.array([[0, 0], [TILE, 0], [TILE, TILE], [0, TILE]])
     corners = (np.array(dark)[:, None] + square).reshape(-1, 2)
@@ -241,7 +274,9 @@ def poses(trace: Run, link: int) -> FloatArray:
 def turn(start: FloatArray, end: FloatArray) -> tuple[float, FloatArray]:
     """Return angle [rad] and axis (3,) of the rotation between two poses (4, 4)."""
     rotation = end[:3, :3] @ start[:3, :3].T
-    twice = np.array([rotation[k - 1, k - 2] - rotation[k - 2, k - 1] for k in range(3)])
+    twice = np.array(
+        [rotation[k - 1, k - 2] - rotation[k - 2, k - 1] for k in range(3)]
+    )
     sine = float(np.linalg.norm(twice)) / 2
     angle = float(np.arctan2(sine, (np.trace(rotation) - 1) / 2))
     return angle, twice / (2 * sine) if sine else np.array([0.0, 0.0, 1.0])
@@ -253,9 +288,10 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
     A case then decides which curves are drawn bold, and not what moves.
 
     Args:
-        runs: the runs, each with the links of one robot; their replay has a place for each.
-        shape: of the robot; parts of the world remain where they are, unless the replay repeats
-            them.
+        runs: the runs, each with the links of one robot; their replay has a place for
+            each.
+        shape: of the robot; parts of the world remain where they are, unless the replay
+            repeats them.
 
     Raises:
         ValueError: there is not one place for each run.
@@ -282,7 +318,12 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
         rgb = (red, green, blue) if part.link == runs.replay.follows else part.rgb
         return replace(part, link=f"{case}: {part.link}", rgb=rgb)
 
-    parts = [of_case(part, case) for case, _ in traces for part in shape if part.link != WORLD]
+    parts = [
+        of_case(part, case)
+        for case, _ in traces
+        for part in shape
+        if part.link != WORLD
+    ]
     still = [part for part in shape if part.link == WORLD]
     if runs.replay.repeats:
         still = [

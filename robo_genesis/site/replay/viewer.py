@@ -18,17 +18,22 @@ FOLDER = REPLAYS
 VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
 NOTICE = "NOTICE.txt"
 
-# Addresses in the viewer: of decoders for compressed models, which the site does not have, and of
-# the viewer's own source.
+# Addresses in the viewer: of decoders for compressed models, which the site does not
+# have, and of the viewer's own source.
 ELSEWHERE = re.compile(
     rb"https://(?:www\.gstatic\.com|cdn\.jsdelivr\.net)/[^\"'`\s]*|//# sourceMappingURL=.*"
 )
 
 # The packages in the viewer's single file, each in the lock.
 PARTS = (
-    "@google/model-viewer", "three", "lit", "lit-html", "lit-element", "@lit/reactive-element",
+    "@google/model-viewer",
+    "three",
+    "lit",
+    "lit-html",
+    "lit-element",
+    "@lit/reactive-element",
     "@monogrid/gainmap-js",
-)  # fmt: skip
+)
 
 CREDITS = f"""\
 The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0. Changed here: the addresses
@@ -51,7 +56,9 @@ def write_viewer(app: Sphinx, exception: Exception | None) -> None:
     folder = Path(app.outdir) / FOLDER
     if exception is None and folder.is_dir():
         (folder / VIEWER).write_bytes(viewer())
-        lines = CREDITS + "".join(copy_licences(folder)) + "".join(model_credits(folder))
+        lines = (
+            CREDITS + "".join(copy_licences(folder)) + "".join(model_credits(folder))
+        )
         (folder / NOTICE).write_text(lines, "utf8")
 
 
@@ -59,7 +66,9 @@ def model_credits(folder: Path) -> Iterator[str]:
     """Yield a line of the notice for each model that names a copyright."""
     for file in sorted(folder.glob("*.glb")):
         content = file.read_bytes()
-        length = int.from_bytes(content[12:16], "little")  # of the first chunk, which is JSON
+        length = int.from_bytes(
+            content[12:16], "little"
+        )  # of the first chunk, which is JSON
         if credit := json.loads(content[20 : 20 + length])["asset"].get("copyright"):
             yield f"The model {file.name}, and the same in {file.stem}.js: {credit}.\n"
 

@@ -1,7 +1,8 @@
 """Files to download from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
 
-```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` the first.
-The files are written into the site while the page is read, so that the page can show their sizes.
+```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` the
+first. The files are written into the site while the page is read, so that the page can
+show their sizes.
 """
 
 import re
@@ -20,7 +21,12 @@ from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.site.evidence.plain_nodes import bullets
 from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, write_takeaways
+from robo_genesis.site.takeaways.files import (
+    Takeaways,
+    run_commands,
+    system,
+    write_takeaways,
+)
 
 ADDRESS = re.compile(r"https://(?P<host>[\w.-]+)/(?P<name>[\w.-]+/[\w.-]+)")
 
@@ -35,11 +41,18 @@ class TakeawaysBox(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the box and the list."""
-        page, files = self.page(self.arguments[0]), Path(self.env.app.outdir) / TAKEAWAYS
+        page, files = (
+            self.page(self.arguments[0]),
+            Path(self.env.app.outdir) / TAKEAWAYS,
+        )
         self.env.note_dependency(self.env.doc2path(page.docname, base=False))
         found = write_takeaways(page, files, self.config)
-        note_files(self.env, found.wheel, found.constraints, *found.student.parent.iterdir())
-        links = partial(link, relative_uri(f"{self.env.docname}.html", TAKEAWAYS), files)
+        note_files(
+            self.env, found.wheel, found.constraints, *found.student.parent.iterdir()
+        )
+        links = partial(
+            link, relative_uri(f"{self.env.docname}.html", TAKEAWAYS), files
+        )
         return [self.box(found, links), *self.downloads(found, links)]
 
     def page(self, name: str) -> Page:
@@ -53,12 +66,22 @@ class TakeawaysBox(PageDirective):
     def box(self, found: Takeaways, links: Link) -> nodes.Node:
         """Return what to download and the commands that run the lab."""
         commands = "\n".join(found.commands)
-        box = nodes.admonition("", nodes.title("", "Run it yourself"), classes=["run-it-yourself"])
-        box += self.parse_text_to_nodes(f"On {system()}: save these three files in one folder.")
+        box = nodes.admonition(
+            "", nodes.title("", "Run it yourself"), classes=["run-it-yourself"]
+        )
+        box += self.parse_text_to_nodes(
+            f"On {system()}: save these three files in one folder."
+        )
         box += bullets(
             (*links(found.student), ", the lab without outputs or solutions"),
-            (*links(found.wheel), ", the course's package, which brings the pinned engine"),
-            (*links(found.constraints), ", the versions with which the course was built"),
+            (
+                *links(found.wheel),
+                ", the course's package, which brings the pinned engine",
+            ),
+            (
+                *links(found.constraints),
+                ", the versions with which the course was built",
+            ),
         )
         box += self.parse_text_to_nodes("In that folder:")
         box += nodes.literal_block(commands, commands, language="bash")
@@ -73,18 +96,30 @@ class TakeawaysBox(PageDirective):
 
     def downloads(self, found: Takeaways, links: Link) -> Iterable[nodes.Node]:
         """Return the list of the files of this run."""
-        yield from self.parse_text_to_nodes("Results of the run on this page, for your own tools:")
+        yield from self.parse_text_to_nodes(
+            "Results of the run on this page, for your own tools:"
+        )
         tables: list[str | nodes.Node] = []
         for case, table, archive in found.arrays:
-            tables += [f"{case} ", *links(table, "CSV"), " and ", *links(archive, "npz"), "; "]
+            tables += [
+                f"{case} ",
+                *links(table, "CSV"),
+                " and ",
+                *links(archive, "npz"),
+                "; ",
+            ]
         figures = [part for path in found.figures for part in (*links(path), ", ")]
         left_out = "" if solutions_shown() else ", without the solutions"
         yield bullets(
             (*links(found.executed), ", the notebook as it ran" + left_out),
-            ("arrays of each case: ", *tables, "their units are in the CSV's head and in ",
-             *links(found.units)),
+            (
+                "arrays of each case: ",
+                *tables,
+                "their units are in the CSV's head and in ",
+                *links(found.units),
+            ),
             ("figures: ", *figures[:-1]),
-        )  # fmt: skip
+        )
 
 
 class RunCommands(PageDirective):

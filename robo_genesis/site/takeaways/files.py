@@ -34,18 +34,30 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.evidence.measured import BACKEND, measured
-from robo_genesis.site.takeaways.notebooks import CHECK, executed_notebook, student_notebook
+from robo_genesis.site.takeaways.notebooks import (
+    CHECK,
+    executed_notebook,
+    student_notebook,
+)
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
 # Replaces in the student notebook a value that the site measured.
 NOT_SHOWN = "*(your run measures it)*"
 
-AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z"), "finger": ("left", "right")}
+AXES = {
+    "axis": ("x", "y", "z"),
+    "wxyz": ("w", "x", "y", "z"),
+    "finger": ("left", "right"),
+}
 
 # The field that holds the value before the first step, where it was read.
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
 
-DEBIAN = ("python3-venv", "libegl1", "libgl1")  # Packages of Debian that a fresh system lacks
+DEBIAN = (
+    "python3-venv",
+    "libegl1",
+    "libgl1",
+)  # Packages of Debian that a fresh system lacks
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 EPOCH = "315532800"  # 1980-01-01, the oldest time that a zip can hold
@@ -82,12 +94,17 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
     wheel = build_wheel(folder, repository=config.course_repository)
-    constraints = Path(shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS))
+    constraints = Path(
+        shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS)
+    )
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(config.torch_index, student.name)
     predicate = bundle.read_manifest(run).predicate
     origin = partial(origin_of, page, predicate, commands, config)
-    needed = {project.ENGINE: project.engine_pin(), project.COURSE: package_facts()["version"]}
+    needed = {
+        project.ENGINE: project.engine_pin(),
+        project.COURSE: package_facts()["version"],
+    }
     check = CHECK.format(needed=needed, wheel=wheel.name)
     address = f"{site_address()}{page.docname}.html" if site_address() else ""
     writer = Writer(page.path.parent, lambda _: NOT_SHOWN, address)
@@ -117,7 +134,9 @@ def run_commands(torch_index: str, notebook: str = "") -> tuple[str, ...]:
 def system() -> str:
     """Return the system that the commands need."""
     python = package_facts()["requires-python"].replace(",", ", ")
-    return f"Linux with Python {python} (Debian: `apt install {' '.join(DEBIAN)}` first)"
+    return (
+        f"Linux with Python {python} (Debian: `apt install {' '.join(DEBIAN)}` first)"
+    )
 
 
 def wheel_name() -> str:
@@ -131,7 +150,11 @@ def package_facts() -> dict[str, str]:
 
 
 def origin_of(
-    page: Page, ran: bundle.Predicate, commands: Iterable[str], config: Config, kind: str
+    page: Page,
+    ran: bundle.Predicate,
+    commands: Iterable[str],
+    config: Config,
+    kind: str,
 ) -> str:
     """Return Markdown on the origin of a notebook of a lab, and how to run it."""
     lines = (line for cell in page.notebook.cells for line in cell.source.splitlines())
@@ -160,46 +183,68 @@ def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
         shutil.copy(run / arrays.file, archive)
 
         def make(case: str = case) -> bytes:
-            return csv_text(read_any_trace(run, described, case), described, case).encode()
+            return csv_text(
+                read_any_trace(run, described, case), described, case
+            ).encode()
 
-        table.write_bytes(derived("table", [case.encode(), archive.read_bytes(), *decide], make))
+        table.write_bytes(
+            derived("table", [case.encode(), archive.read_bytes(), *decide], make)
+        )
         yield case, table, archive
 
 
 def csv_text(trace: TimeSeries, described: bundle.Arrays, case: str) -> str:
     """Return a run as a table: one row per state, one column per number, units in the head.
 
-    The first row is the state before any step. A quantity that is read only after a step is empty
-    there. A quantity of the whole run is repeated in each row. Each number is the shortest text
-    that reproduces the recorded value.
+    The first row is the state before any step. A quantity that is read only after a
+    step is empty there. A quantity of the whole run is repeated in each row. Each
+    number is the shortest text that reproduces the recorded value.
     """
     columns: dict[str, list[str]] = {}
     for field, (name, dims, *_) in trace.arrays().items():
         if field not in AT_REST.values():
             labels = _labels(field, described.cases[case].variables[name], described)
-            for label, column in zip(labels, _by_state(trace, field, dims), strict=True):
-                columns[label] = ["" if value is None else str(value) for value in column]
+            for label, column in zip(
+                labels, _by_state(trace, field, dims), strict=True
+            ):
+                columns[label] = [
+                    "" if value is None else str(value) for value in column
+                ]
     return csv_bytes([list(columns), *zip(*columns.values(), strict=True)]).decode()
 
 
-def _by_state(trace: TimeSeries, field: str, dims: Sequence[str]) -> list[tuple[np.generic, ...]]:
+def _by_state(
+    trace: TimeSeries, field: str, dims: Sequence[str]
+) -> list[tuple[np.generic, ...]]:
     """Return the columns of a field, each with one entry per state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
-    rows = list(values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None])
+    rows = list(
+        values.reshape(len(values), -1)
+        if dims[0] in ("state", "step")
+        else values[None]
+    )
     if dims[0] == "step":
-        first = getattr(trace, AT_REST[field]) if field in AT_REST else [None] * len(rows[0])
+        first = (
+            getattr(trace, AT_REST[field])
+            if field in AT_REST
+            else [None] * len(rows[0])
+        )
         rows = [first, *rows]
     elif dims[0] != "state":
         rows *= len(trace.t)
     return list(zip(*rows, strict=True))
 
 
-def _labels(field: str, variable: bundle.Variable, described: bundle.Arrays) -> list[str]:
+def _labels(
+    field: str, variable: bundle.Variable, described: bundle.Arrays
+) -> list[str]:
     """Return the head of each column: field, environment, joint or link, axis and unit."""
     names = [field]
     for dim, size in zip(variable.dims, variable.shape, strict=True):
         if dim not in ("state", "step"):
-            parts = described.coords.get(dim, AXES.get(dim)) or [f"{dim} {k}" for k in range(size)]
+            parts = described.coords.get(dim, AXES.get(dim)) or [
+                f"{dim} {k}" for k in range(size)
+            ]
             names = [f"{name} {part}" for name in names for part in parts]
     units = variable.unit if isinstance(variable.unit, list) else [variable.unit]
     return [f"{name} [{unit}]" for name, unit in zip(names, cycle(units), strict=False)]
@@ -234,7 +279,11 @@ def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -
         *(root / source for source in SOURCES),
         *sorted(files_below(root / PACKAGE, left_out=NO_SOURCE)),
     ]
-    inputs = [part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes())]
+    inputs = [
+        part
+        for p in files
+        for part in (os.fsencode(p.relative_to(root)), p.read_bytes())
+    ]
     inputs.append(repository.encode())
     wheel = folder / wheel_name()
     write_whole(wheel, derived("wheel", inputs, lambda: built_wheel(root, repository)))
@@ -249,11 +298,18 @@ def built_wheel(root: Path, repository: str = "") -> bytes:
             shutil.copy(root / source, copy)
         if repository:
             with (copy / SOURCES[0]).open("a", encoding="utf8") as facts:
-                facts.write(f"\n[project.urls]\nRepository = {json.dumps(repository)}\n")
-        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(*NO_SOURCE))
+                facts.write(
+                    f"\n[project.urls]\nRepository = {json.dumps(repository)}\n"
+                )
+        shutil.copytree(
+            root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(*NO_SOURCE)
+        )
         for path in copy.rglob("*"):
             path.chmod(0o755 if path.is_dir() else 0o644)  # whatever the user's umask
         settings = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}
-        command, refusal = [sys.executable, "-c", BUILD, "."], "The package's wheel cannot be built"
+        command, refusal = (
+            [sys.executable, "-c", BUILD, "."],
+            "The package's wheel cannot be built",
+        )
         name = output_of(command, refusal, cwd=copy, env=settings).splitlines()[-1]
         return (copy / name).read_bytes()

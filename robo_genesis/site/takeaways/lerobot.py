@@ -1,7 +1,8 @@
 """Episodes as a dataset in the layout of LeRobot 3.0: ```` ```{dataset} l08/lab ````.
 
-The page with the directive is the datasheet, and becomes the archive's README. The data come from
-the lesson's `dataset.recorded`, which gets the experiment of the page's bundle:
+The page with the directive is the datasheet, and becomes the archive's README. The data
+come from the lesson's `dataset.recorded`, which gets the experiment of the page's
+bundle:
 
 | key | content |
 |---|---|
@@ -14,10 +15,11 @@ the lesson's `dataset.recorded`, which gets the experiment of the page's bundle:
 | `parameters` | every configured input, JSON values |
 | `credit` | authors of the shape that the pictures show |
 
-In this layout either all episodes have pictures or none has. So the archive holds two datasets:
-`state` with all episodes and columns, and `camera` with the episodes that have pictures, without
-the privileged columns. Layout and names are those of
-`lerobot/datasets/utils.py` in https://github.com/huggingface/lerobot, which a slow test reads with.
+In this layout either all episodes have pictures or none has. So the archive holds two
+datasets: `state` with all episodes and columns, and `camera` with the episodes that
+have pictures, without the privileged columns. Layout and names are those of
+`lerobot/datasets/utils.py` in https://github.com/huggingface/lerobot, which a slow test
+reads with.
 """
 
 import hashlib
@@ -68,34 +70,54 @@ class DatasetDownload(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the link to the archive, its size and its digest."""
-        lesson_page, source = self.arguments[0], Path(self.env.doc2path(self.env.docname))
+        lesson_page, source = (
+            self.arguments[0],
+            Path(self.env.doc2path(self.env.docname)),
+        )
         lesson = lesson_page.split("/")[0]
         run = Recorded(lesson, page_outputs(lesson_page) / BACKEND).experiment
         address = f"{site_address()}{self.env.docname}.html" if site_address() else ""
-        writer = Writer(source.parent, lambda value: measured(*value.split(" ", 1))[0], address)
-        title = f"> {self.config.html_title}. © {self.config.author}. {address}".rstrip()
+        writer = Writer(
+            source.parent, lambda value: measured(*value.split(" ", 1))[0], address
+        )
+        title = (
+            f"> {self.config.html_title}. © {self.config.author}. {address}".rstrip()
+        )
         text = f"{title}\n\n{plain(source.read_text('utf8'), writer)}"
-        made = archive(find(f"robo_genesis.lessons.{lesson}.dataset.recorded")(run), text)
+        made = archive(
+            find(f"robo_genesis.lessons.{lesson}.dataset.recorded")(run), text
+        )
         files = Path(self.env.app.outdir) / TAKEAWAYS
-        file = files / f"{lesson}-dataset" / f"{lesson_page.replace('/', '-')}-lerobot.zip"
+        file = (
+            files / f"{lesson}-dataset" / f"{lesson_page.replace('/', '-')}-lerobot.zip"
+        )
         write_whole(file, made)
         note_files(self.env, file)
         base = relative_uri(f"{self.env.docname}.html", TAKEAWAYS)
         digest = hashlib.sha256(made).hexdigest()
-        return [bullets((*link(base, files, file), ", SHA-256 ", nodes.literal("", digest)))]
+        return [
+            bullets((*link(base, files, file), ", SHA-256 ", nodes.literal("", digest)))
+        ]
 
 
 def archive(data: Mapping[str, Any], readme: str) -> bytes:
     """Return the zip with both datasets, the datasheet, settings, licence, and all digests."""
     found = {f"state/{path}": content for path, content in files(data).items()}
     if data["pictures"] is not None:
-        seen = {n: of for n, of in data["columns"].items() if n not in data["privileged"]}
+        seen = {
+            n: of for n, of in data["columns"].items() if n not in data["privileged"]
+        }
         few = files({**data, "columns": seen}, data["pictures"])
         found |= {f"camera/{path}": content for path, content in few.items()}
     found["parameters.json"] = json.dumps(data["parameters"], indent=1).encode()
-    found["LICENSE"] = (ROOT / "LICENSE").read_bytes() + f"\n{data['credit']}\n".encode()
+    found["LICENSE"] = (
+        ROOT / "LICENSE"
+    ).read_bytes() + f"\n{data['credit']}\n".encode()
     found["README.md"] = f"{readme}\n".encode()
-    sums = (f"{hashlib.sha256(content).hexdigest()}  {path}\n" for path, content in found.items())
+    sums = (
+        f"{hashlib.sha256(content).hexdigest()}  {path}\n"
+        for path, content in found.items()
+    )
     found["SHA256SUMS"] = "".join(sums).encode()
     target = BytesIO()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as whole:
@@ -104,7 +126,9 @@ def archive(data: Mapping[str, Any], readme: str) -> bytes:
     return target.getvalue()
 
 
-def files(data: Mapping[str, Any], pictures: np.ndarray | None = None) -> dict[str, bytes]:
+def files(
+    data: Mapping[str, Any], pictures: np.ndarray | None = None
+) -> dict[str, bytes]:
     """Return the files of one dataset by path: all episodes, or the first ones with pictures."""
     episodes, rows = next(iter(data["columns"].values()))[0].shape[:2]
     if pictures is not None:
@@ -123,7 +147,11 @@ def files(data: Mapping[str, Any], pictures: np.ndarray | None = None) -> dict[s
     }
     labels = {name: names for name, (_, names) in data["columns"].items()}
     features = {
-        name: {"dtype": str(v.dtype), "shape": v.shape[1:] or (1,), "names": labels.get(name)}
+        name: {
+            "dtype": str(v.dtype),
+            "shape": v.shape[1:] or (1,),
+            "names": labels.get(name),
+        }
         for name, v in columns.items()
     }
     starts = rows * np.arange(episodes)
@@ -143,25 +171,40 @@ def files(data: Mapping[str, Any], pictures: np.ndarray | None = None) -> dict[s
         table[f"videos/{CAMERA}/from_timestamp"] = starts / data["fps"]
         table[f"videos/{CAMERA}/to_timestamp"] = (starts + rows) / data["fps"]
         measures[CAMERA] = pictures.reshape(len(index), *pictures.shape[2:])
-    table |= {f"{of}/{part}_index": [0] * episodes for of in stored for part in ("chunk", "file")}
+    table |= {
+        f"{of}/{part}_index": [0] * episodes
+        for of in stored
+        for part in ("chunk", "file")
+    }
     for name, values in measures.items():
         each = [statistics(part) for part in np.split(values, episodes)]
-        table |= {f"stats/{name}/{what}": [one[what] for one in each] for what in each[0]}
+        table |= {
+            f"stats/{name}/{what}": [one[what] for one in each] for what in each[0]
+        }
     info = {
-        "codebase_version": "v3.0", "robot_type": data["robot"], "total_episodes": episodes,
-        "total_frames": len(index), "total_tasks": 1, "chunks_size": 1000,
-        "data_files_size_in_mb": 100, "video_files_size_in_mb": 200, "fps": data["fps"],
+        "codebase_version": "v3.0",
+        "robot_type": data["robot"],
+        "total_episodes": episodes,
+        "total_frames": len(index),
+        "total_tasks": 1,
+        "chunks_size": 1000,
+        "data_files_size_in_mb": 100,
+        "video_files_size_in_mb": 200,
+        "fps": data["fps"],
         "splits": {"train": f"0:{episodes}"},
         "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
-        "video_path": None if pictures is None else
-        "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4",
+        "video_path": None
+        if pictures is None
+        else "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4",
         "features": features,
-    }  # fmt: skip
+    }
     overall = {name: statistics(values) for name, values in measures.items()}
     return found | {
         "meta/info.json": json.dumps(info, indent=1).encode(),
         "meta/stats.json": json.dumps(overall, indent=1).encode(),
-        "meta/tasks.parquet": parquet({"task_index": [0], "task": [data["task"]]}, index="task"),
+        "meta/tasks.parquet": parquet(
+            {"task_index": [0], "task": [data["task"]]}, index="task"
+        ),
         f"meta/episodes/{FILE}.parquet": parquet(table),
     }
 
@@ -172,7 +215,9 @@ def parquet(columns: Mapping[str, Any], index: str = "") -> bytes:
     pandas reads the column `index`, if one is given, as the index of the table.
     """
     arrays = {
-        name: pa.FixedSizeListArray.from_arrays(pa.array(values.ravel()), values.shape[1])
+        name: pa.FixedSizeListArray.from_arrays(
+            pa.array(values.ravel()), values.shape[1]
+        )
         if np.ndim(values) == 2 and isinstance(values, np.ndarray)
         else pa.array(values)
         for name, values in columns.items()
@@ -182,7 +227,13 @@ def parquet(columns: Mapping[str, Any], index: str = "") -> bytes:
         kinds = {True: ("int64", "int64"), False: ("unicode", "object")}
         names = [
             {"name": name, "field_name": name, "metadata": None}
-            | dict(zip(("pandas_type", "numpy_type"), kinds[of.type == pa.int64()], strict=True))
+            | dict(
+                zip(
+                    ("pandas_type", "numpy_type"),
+                    kinds[of.type == pa.int64()],
+                    strict=True,
+                )
+            )
             for name, of in arrays.items()
         ]
         about = {"index_columns": [index], "columns": names, "column_indexes": []}
@@ -204,19 +255,36 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
     found = {"min": values.min(0), "max": values.max(0), "mean": values.mean(0)}
     found |= {"std": values.std(0)}
     levels = np.quantile(values, QUANTILES, axis=0)
-    found |= {f"q{100 * q:02.0f}": level for q, level in zip(QUANTILES, levels, strict=True)}
+    found |= {
+        f"q{100 * q:02.0f}": level for q, level in zip(QUANTILES, levels, strict=True)
+    }
     shape = (-1, 1, 1) if of_pictures else (-1,)
-    return {what: of.reshape(shape).tolist() for what, of in found.items()} | {"count": [count]}
+    return {what: of.reshape(shape).tolist() for what, of in found.items()} | {
+        "count": [count]
+    }
 
 
 def about_video(pictures: np.ndarray, fps: int) -> dict[str, Any]:
     """Return the feature of the pictures."""
     height, width, channels = pictures.shape[2:]
-    facts = {"height": height, "width": width, "channels": channels, "fps": fps, "codec": "h264"}
+    facts = {
+        "height": height,
+        "width": width,
+        "channels": channels,
+        "fps": fps,
+        "codec": "h264",
+    }
     facts |= {"pix_fmt": PIXELS, "is_depth_map": False}
     names = ["height", "width", "channels"]
-    info = {f"video.{name}": value for name, value in facts.items()} | {"has_audio": False}
-    return {"dtype": "video", "shape": [height, width, channels], "names": names, "info": info}
+    info = {f"video.{name}": value for name, value in facts.items()} | {
+        "has_audio": False
+    }
+    return {
+        "dtype": "video",
+        "shape": [height, width, channels],
+        "names": names,
+        "info": info,
+    }
 
 
 def video(pictures: np.ndarray, fps: int) -> bytes:

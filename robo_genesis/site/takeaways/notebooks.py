@@ -18,28 +18,39 @@ from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
 
-AFTER_YOURS = "after-yours"  # The tag of a cell that students run after their own answer
+AFTER_YOURS = (
+    "after-yours"  # The tag of a cell that students run after their own answer
+)
 WAITS = "# Write your own text first. Then remove the # from the lines below, and run this cell.\n"
 
 SOURCE, OUTPUTS = "source_hidden", "outputs_hidden"
 
-# What Jupyter hides of a cell, by its tag on the site. Outputs are hidden in the executed notebook
-# alone: JupyterLab shows those of a cell that it runs, and a student must see a failed test.
-HIDDEN = {"hide-input": (SOURCE,), "hide-output": (OUTPUTS,), "hide-cell": (SOURCE, OUTPUTS)}
+# What Jupyter hides of a cell, by its tag on the site. Outputs are hidden in the
+# executed notebook alone: JupyterLab shows those of a cell that it runs, and a student
+# must see a failed test.
+HIDDEN = {
+    "hide-input": (SOURCE,),
+    "hide-output": (OUTPUTS,),
+    "hide-cell": (SOURCE, OUTPUTS),
+}
 
-BEFORE = "before the run"  # Words in the heading of each part of the work sheet that comes first
+# Words in the heading of each part of the work sheet that comes first
+BEFORE = "before the run"
 
 # The heading of a part of the work sheet.
 PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
 # Words of a lab that name parts of its work sheet.
-NAMED = re.compile(r"\bparts?\s+(\d+)(?:\s+(?:to|and)\s+(\d+))?\s+of\s+the\s+work\s+sheet")
+NAMED = re.compile(
+    r"\bparts?\s+(\d+)(?:\s+(?:to|and)\s+(\d+))?\s+of\s+the\s+work\s+sheet"
+)
 
 # The index of the lab's introduction, after the origin and the check of the versions.
 INTRODUCTION = 2
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
-# Code that requires versions by package, and otherwise says how to install the named wheel.
+# Code that requires versions by package, and otherwise says how to install the named
+# wheel.
 CHECK = """\
 # Is this the engine that the lab was written for?
 def check_versions(needed):
@@ -65,10 +76,13 @@ check_versions({needed!r})
 del check_versions"""
 
 
-def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> NotebookNode:
+def student_notebook(
+    page: Page, origin: str, check: str, writer: Writer
+) -> NotebookNode:
     """Return the lab to work in: no outputs, no solutions, and a first check of the versions.
 
-    The parts of a work sheet in the page's folder become cells to fill in; see `_with_work_sheet`.
+    The parts of a work sheet in the page's folder become cells to fill in; see
+    `_with_work_sheet`.
 
     Args:
         page: the lab.
@@ -117,23 +131,29 @@ def _cells(
 
 def _sections(text: str) -> list[NotebookNode]:
     """Return a cell for the text before the first heading of level two, and for each section."""
-    headings = (t for t in MarkdownIt().parse(text) if t.type == "heading_open" and not t.level)
-    starts = [heading.map[0] for heading in headings if heading.map and heading.tag == "h2"]
+    headings = (
+        t for t in MarkdownIt().parse(text) if t.type == "heading_open" and not t.level
+    )
+    starts = [
+        heading.map[0] for heading in headings if heading.map and heading.tag == "h2"
+    ]
     lines = text.splitlines()
-    parts = ("\n".join(lines[a:b]).strip() for a, b in pairwise([0, *starts, len(lines)]))
+    parts = (
+        "\n".join(lines[a:b]).strip() for a, b in pairwise([0, *starts, len(lines)])
+    )
     return [new_markdown_cell(part) for part in parts if part]
 
 
 def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode]:
     """Return a student notebook with the parts of the page's work sheet among its cells.
 
-    The sheet's beginning follows the lab's introduction. A part follows the cell that names it, or
-    the section with its heading. Of the others, those before the run follow the introduction, and
-    the rest is at the end.
+    The sheet's beginning follows the lab's introduction. A part follows the cell that
+    names it, or the section with its heading. Of the others, those before the run
+    follow the introduction, and the rest is at the end.
 
     Raises:
-        ValueError: the heading of a part has no number, or no part is to be filled in before the
-            run.
+        ValueError: the heading of a part has no number, or no part is to be filled in
+            before the run.
     """
     sheet = page.path.with_name(WORK_SHEET)
     if not sheet.is_file():
@@ -153,7 +173,9 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
             raise ValueError(
                 f"{sheet} has the part {heading!r}. Number it, as in `## 2. Measured`."
             )
-        follow.setdefault(place, []).append(new_markdown_cell(f"{title}\n{rest}".rstrip()))
+        follow.setdefault(place, []).append(
+            new_markdown_cell(f"{title}\n{rest}".rstrip())
+        )
     if not found_before:
         raise ValueError(
             f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
@@ -164,7 +186,11 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
 
 def _place(cells: Sequence[NotebookNode], heading: str, number: int) -> int:
     """Return the index of the cell that a part of the work sheet follows."""
-    heads = {k: c.source.split("\n")[0] for k, c in enumerate(cells) if c.cell_type == "markdown"}
+    heads = {
+        k: c.source.split("\n")[0]
+        for k, c in enumerate(cells)
+        if c.cell_type == "markdown"
+    }
     for k in heads:
         for first, last in NAMED.findall(cells[k].source):
             if int(first) <= number <= int(last or first):
@@ -181,7 +207,9 @@ def _code(
 ) -> list[NotebookNode]:
     """Return a code cell, and its caption below it where it draws a figure."""
     tags = list(cell.metadata.get("tags", []))
-    hidden = {key: True for tag in tags for key in HIDDEN.get(tag, ()) if ran or key == SOURCE}
+    hidden = {
+        key: True for tag in tags for key in HIDDEN.get(tag, ()) if ran or key == SOURCE
+    }
     code = new_code_cell(cell.source, metadata={"tags": tags} if tags else {})
     if ran is None and AFTER_YOURS in tags:
         code.source = WAITS + indent(cell.source, "# ")
@@ -191,7 +219,10 @@ def _code(
         code.outputs = [*map(without_stack, ran.outputs)]
         code.execution_count = ran.execution_count
     caption = cell.metadata.get("mystnb", {}).get("figure", {}).get("caption")
-    return [code, *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else [])]
+    return [
+        code,
+        *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else []),
+    ]
 
 
 def _notebook(cells: list[NotebookNode]) -> NotebookNode:

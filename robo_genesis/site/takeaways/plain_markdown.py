@@ -16,18 +16,33 @@ from myst_parser.parsers.directives import parse_directive_text
 from sphinx.config import Config
 from sphinx.directives.code import LiteralInclude, LiteralIncludeReader
 
-from robo_genesis.pipeline.pages.page_rules import ADMONITIONS, DIRECTIVE, PARSER, SOLUTION
+from robo_genesis.pipeline.pages.page_rules import (
+    ADMONITIONS,
+    DIRECTIVE,
+    PARSER,
+    SOLUTION,
+)
 
 # Words that replace a role whose text only the site can write.
 UNTITLED = {
-    "numref": "the figure", "eq": "the equation", "ref": "the section", "doc": "the site",
-}  # fmt: skip
+    "numref": "the figure",
+    "eq": "the equation",
+    "ref": "the section",
+    "doc": "the site",
+}
 
 # Tokens of the blocks that are not running text.
 BLOCKS = (
-    "fence", "code_block", "colon_fence", "math_block", "math_block_label", "amsmath",
-    "myst_target", "myst_line_comment", "myst_block_break",
-)  # fmt: skip
+    "fence",
+    "code_block",
+    "colon_fence",
+    "math_block",
+    "math_block_label",
+    "amsmath",
+    "myst_target",
+    "myst_line_comment",
+    "myst_block_break",
+)
 
 GUARD = re.compile(r" ?\{guard\}`[^`]*`")
 ROLE = re.compile(r"\{([a-z][\w:-]*)\}(`+)(.+?)\2", re.DOTALL)
@@ -55,7 +70,10 @@ def plain(text: str, writer: Writer) -> str:
         if token.type in BLOCKS and first >= at:
             indent = re.match(r"\s*", lines[first])[0]  # type: ignore[index] # matches any line
             block = _block(token, textwrap.dedent("\n".join(lines[first:last])), writer)
-            written += [_inline(lines[at:first], writer), textwrap.indent(block, indent)]
+            written += [
+                _inline(lines[at:first], writer),
+                textwrap.indent(block, indent),
+            ]
             at = last
     written.append(_inline(lines[at:], writer))
     return re.sub(r"\n{3,}", "\n\n", "\n".join(written)).strip()
@@ -71,7 +89,11 @@ def _block(token: Token, source: str, writer: Writer) -> str:
 def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
     """Return a directive as plain Markdown; a solution or an unlisted directive is dropped."""
     found = parse_directive_text(TestDirective, first_line, content)  # takes any option
-    argument, body, options = " ".join(found.arguments), "\n".join(found.body), found.options
+    argument, body, options = (
+        " ".join(found.arguments),
+        "\n".join(found.body),
+        found.options,
+    )
     classes = f"{name} {options.get('class')} {options.get('class-container')}".split()
     if SOLUTION in classes:
         return ""
@@ -88,7 +110,9 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
         case "math":
             return f"$$\n{body.strip()}\n$$"
         case "choice" | "number":
-            question = re.split(r"\n(?=[-*] )", body)[0]  # the causes below it answer it
+            question = re.split(r"\n(?=[-*] )", body)[
+                0
+            ]  # the causes below it answer it
             return f"**Question.** {plain(question, writer)}"
         case "figure":
             return f"*On the site, a figure: {plain(body, writer)}*"

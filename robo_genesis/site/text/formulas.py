@@ -1,10 +1,11 @@
 """Formulas: LaTeX becomes MathML while the site is built, and its font is in a style sheet.
 
-Pages need no script for MathML. The font is the part of STIX Two Math that the course uses: few
-systems have a font with the tables that a browser needs to place accents, bars and brackets.
-Without one the dot of a velocity is smaller than a pixel. The font is inside the style sheet, so a
-page opened from disk may use it. A script in the head asks for it before the first formula does: it
-is ready for the first frame, and nothing moves.
+Pages need no script for MathML. The font is the part of STIX Two Math that the course
+uses: few systems have a font with the tables that a browser needs to place accents,
+bars and brackets. Without one the dot of a velocity is smaller than a pixel. The font
+is inside the style sheet, so a page opened from disk may use it. A script in the head
+asks for it before the first formula does: it is ready for the first frame, and nothing
+moves.
 """
 
 import base64
@@ -26,7 +27,8 @@ from robo_genesis.pipeline import npm
 
 LOGGER = logging.getLogger(__name__)
 
-# latex2mathml knows `split` and `align*`, which align the same way; the numbers are Sphinx's own.
+# latex2mathml knows `split` and `align*`, which align the same way; the numbers are
+# Sphinx's own.
 ENVIRONMENTS = {"aligned": "split", "align": "align*", "equation": "equation*"}
 
 # MathML Core, which browsers implement, has neither `columnalign` nor bold variants.
@@ -38,8 +40,8 @@ FOR_BROWSERS = {
 # Signs above a letter; marked as an accent it keeps its size and is not set as a limit.
 ACCENTS = {*"˙¨^~¯→˘ˇ´`"}
 
-# HTML knows `<math>` without it. A prefix is registered for a whole process, and pycollada, which
-# the engine loads, takes the empty one.
+# HTML knows `<math>` without it. A prefix is registered for a whole process, and
+# pycollada, which the engine loads, takes the empty one.
 NAMESPACE = ' xmlns="http://www.w3.org/1998/Math/MathML"'
 
 PACKAGE = "@fontsource/stix-two-math"
@@ -60,8 +62,11 @@ SHOWN = {
     *map(chr, range(0x1D400, 0x1D434)),  # bold letters
 }
 
-# The letters that a browser shows for a variable of one letter; Unicode's italic h is Planck's.
-ITALIC = {*map(chr, (*range(0x1D434, 0x1D468), *range(0x1D6E2, 0x1D71C)))} - {"\U0001d455"} | {"ℎ"}
+# The letters that a browser shows for a variable of one letter; Unicode's italic h is
+# Planck's.
+ITALIC = {*map(chr, (*range(0x1D434, 0x1D468), *range(0x1D6E2, 0x1D71C)))} - {
+    "\U0001d455"
+} | {"ℎ"}
 
 
 def to_mathml(latex: str, display: str) -> str:
@@ -72,23 +77,33 @@ def to_mathml(latex: str, display: str) -> str:
         display: `block` or `inline`.
 
     Raises:
-        ValueError: the formula is not balanced, uses an unknown command, or a character that the
-            site's math font lacks.
+        ValueError: the formula is not balanced, uses an unknown command, or a character
+            that the site's math font lacks.
     """
     for name, known in ENVIRONMENTS.items():
         latex = re.sub(rf"\\(begin|end)\{{{name}\}}", rf"\\\1{{{known}}}", latex)
     try:
-        tree = ElementTree.fromstring(convert(latex, display=display).replace(NAMESPACE, ""))
-    except Exception as error:  # the converter's parser leaks KeyError, IndexError and its own
-        raise ValueError(f"{latex!r} is not valid: {type(error).__name__} {error}") from error
+        tree = ElementTree.fromstring(
+            convert(latex, display=display).replace(NAMESPACE, "")
+        )
+    except (
+        Exception
+    ) as error:  # the converter's parser leaks KeyError, IndexError and its own
+        raise ValueError(
+            f"{latex!r} is not valid: {type(error).__name__} {error}"
+        ) from error
     for over in tree.iter("mover"):
         if over[1].text in ACCENTS:
             over.set("accent", "true")
     markup = ElementTree.tostring(tree, encoding="unicode")
     unknown = re.search(r"\\[A-Za-z]*", markup)
     if unknown:
-        raise ValueError(f"{latex!r} uses {unknown[0]}, which latex2mathml does not know.")
-    if lacking := "".join(sorted({*"".join(tree.itertext())} - SHOWN - ITALIC - {"\n"})):
+        raise ValueError(
+            f"{latex!r} uses {unknown[0]}, which latex2mathml does not know."
+        )
+    if lacking := "".join(
+        sorted({*"".join(tree.itertext())} - SHOWN - ITALIC - {"\n"})
+    ):
         raise ValueError(
             f"{latex!r} shows {lacking}, which the site's font for formulas does not have. Use "
             "another symbol, or add it to SHOWN in robo_genesis/site/text/formulas.py."
@@ -169,9 +184,15 @@ def write_css(app: Sphinx) -> None:
     write_whole(folder / LICENCE, npm.published(f"{PACKAGE}/LICENSE"))
 
 
-def add_css(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+def add_css(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
+) -> None:
     """Load the style sheet and its font on a page with a formula."""
-    formulas = (*doctree.findall(nodes.math), *doctree.findall(nodes.math_block)) if doctree else ()
+    formulas = (
+        (*doctree.findall(nodes.math), *doctree.findall(nodes.math_block))
+        if doctree
+        else ()
+    )
     if formulas:
         app.add_css_file(STYLE)
         app.add_js_file(None, body=LOAD)

@@ -1,7 +1,7 @@
 """Links each term of the glossary at its first use on a page; the link's title is its definition.
 
-Only words of running text become links. Headings, code, formulas, tables, captions and other links
-stay unchanged, and a definition does not link to itself.
+Only words of running text become links. Headings, code, formulas, tables, captions and
+other links stay unchanged, and a definition does not link to itself.
 """
 
 import re
@@ -21,16 +21,31 @@ from robo_genesis.site.evidence.origin import above
 
 GLOSSARY = "glossary"
 
-# File in the glossary's folder: further forms of its terms, and terms that are not linked.
+# File in the glossary's folder: further forms of its terms, and terms that are not
+# linked.
 FORMS = "glossary_forms.yml"
 
 KEPT = (
-    addnodes.pending_xref, nodes.caption, nodes.literal, nodes.literal_block, nodes.math,
-    nodes.math_block, nodes.raw, nodes.reference, nodes.table, nodes.term, nodes.title,
-)  # fmt: skip
+    addnodes.pending_xref,
+    nodes.caption,
+    nodes.literal,
+    nodes.literal_block,
+    nodes.math,
+    nodes.math_block,
+    nodes.raw,
+    nodes.reference,
+    nodes.table,
+    nodes.term,
+    nodes.title,
+)
 KEPT_CLASSES = {
-    "course-map", "planned-lessons", "evidence-badge", "lesson-status", "measured", "provenance",
-}  # fmt: skip
+    "course-map",
+    "planned-lessons",
+    "evidence-badge",
+    "lesson-status",
+    "measured",
+    "provenance",
+}
 
 logger = logging.getLogger(__name__)
 
@@ -54,7 +69,11 @@ class Forms:
 def read_forms(book: Path) -> Forms:
     """Return the forms that a book declares, empty where it declares none."""
     file = book / FORMS
-    return Forms(**yaml.safe_load(file.read_text("utf8"))) if file.is_file() else Forms({}, [])
+    return (
+        Forms(**yaml.safe_load(file.read_text("utf8")))
+        if file.is_file()
+        else Forms({}, [])
+    )
 
 
 def glossary_terms(env: BuildEnvironment) -> dict[str, Term]:
@@ -64,8 +83,14 @@ def glossary_terms(env: BuildEnvironment) -> dict[str, Term]:
     found = {}
     for entry in env.get_doctree(GLOSSARY).findall(nodes.definition_list_item):
         definition = entry.next_node(nodes.definition)
-        first = definition.next_node(nodes.paragraph) if definition is not None else None
-        text = re.split(r"(?<=\.)\s", first.astext().replace("\n", " "))[0] if first else ""
+        first = (
+            definition.next_node(nodes.paragraph) if definition is not None else None
+        )
+        text = (
+            re.split(r"(?<=\.)\s", first.astext().replace("\n", " "))[0]
+            if first
+            else ""
+        )
         for term in entry.findall(nodes.term):
             if term["ids"]:
                 found[term.astext()] = Term(term["ids"][0], text)
@@ -74,7 +99,9 @@ def glossary_terms(env: BuildEnvironment) -> dict[str, Term]:
 
 def written_forms(terms: dict[str, Term], declared: Forms) -> dict[str, Term]:
     """Return each form that becomes a link, with its term."""
-    forms = {name: term for name, term in terms.items() if name not in declared.unlinked}
+    forms = {
+        name: term for name, term in terms.items() if name not in declared.unlinked
+    }
     for name in declared.forms.keys() & terms.keys():  # check_forms names the others
         others = declared.forms[name]
         forms |= {other: terms[name] for other in others if other not in terms}
@@ -113,7 +140,10 @@ class LinkTerms(SphinxPostTransform):
                 if term.anchor in seen or term.anchor in _own_anchors(text):
                     continue
                 seen.add(term.anchor)
-                parts += [nodes.Text(string[at : match.start()]), self.link(term, match.group())]
+                parts += [
+                    nodes.Text(string[at : match.start()]),
+                    self.link(term, match.group()),
+                ]
                 at = match.end()
             if parts:
                 text.parent.replace(text, [*parts, nodes.Text(string[at:])])
@@ -126,9 +156,14 @@ class LinkTerms(SphinxPostTransform):
             page = self.app.builder.get_relative_uri(self.env.docname, GLOSSARY)
             target = {"refuri": f"{page}#{term.anchor}"}
         return nodes.reference(
-            "", "", nodes.inline("", words), internal=True, classes=["term-link"],
-            reftitle=term.definition, **target,
-        )  # fmt: skip
+            "",
+            "",
+            nodes.inline("", words),
+            internal=True,
+            classes=["term-link"],
+            reftitle=term.definition,
+            **target,
+        )
 
 
 def join_texts(document: nodes.document) -> None:
@@ -144,7 +179,8 @@ def join_texts(document: nodes.document) -> None:
 def is_prose(text: nodes.Text) -> bool:
     """Return whether a text is in a paragraph, and in no element that stays unchanged."""
     return any(above(text, nodes.paragraph)) and not any(
-        isinstance(node, KEPT) or KEPT_CLASSES & set(node["classes"]) for node in above(text)
+        isinstance(node, KEPT) or KEPT_CLASSES & set(node["classes"])
+        for node in above(text)
     )
 
 
@@ -158,8 +194,12 @@ def _own_anchors(text: nodes.Text) -> set[str]:
 def check_forms(app: Sphinx, env: BuildEnvironment) -> None:
     """Warn about declared names that are not in the glossary; a warning fails the build."""
     declared = read_forms(Path(env.srcdir))
-    for name in sorted({*declared.forms, *declared.unlinked} - glossary_terms(env).keys()):
-        message = f"{FORMS} names {name!r}, which is not in the glossary. Add or correct it."
+    for name in sorted(
+        {*declared.forms, *declared.unlinked} - glossary_terms(env).keys()
+    ):
+        message = (
+            f"{FORMS} names {name!r}, which is not in the glossary. Add or correct it."
+        )
         logger.warning(message, location=GLOSSARY)
 
 

@@ -1,8 +1,8 @@
 """What pages leave out: docstrings in excerpts of the package, and, with `SOLUTIONS=0`, solutions.
 
-Solutions and answers are left out of pages and search index, and of the executed notebooks. The
-pages' sources, which contain them, are not published. A question that the page itself marks keeps
-its feedback.
+Solutions and answers are left out of pages and search index, and of the executed
+notebooks. The pages' sources, which contain them, are not published. A question that
+the page itself marks keeps its feedback.
 """
 
 import ast
@@ -18,7 +18,10 @@ from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
 from robo_genesis.pipeline.pages.syntax import is_text
 
-MARKS = {SOLUTION, f"tag_{SOLUTION}"}  # The second is the class that a code cell has from its tag
+MARKS = {
+    SOLUTION,
+    f"tag_{SOLUTION}",
+}  # The second is the class that a code cell has from its tag
 
 LEFT_OUT = "\0"  # Marks a line of a docstring; no Python contains it
 
@@ -30,7 +33,9 @@ class Excerpt(LiteralInclude):
         """Return what Sphinx returns, the code without docstrings."""
         found = super().run()
         if self.options.get("language") == "python":
-            for block in (b for node in found for b in node.findall(nodes.literal_block)):
+            for block in (
+                b for node in found for b in node.findall(nodes.literal_block)
+            ):
                 code = without_docstrings(block.astext())
                 block.rawsource, block.children = code, []
                 block += nodes.Text(code)
@@ -68,8 +73,12 @@ class LeaveOutSolutions(SphinxTransform):
     def apply(self, **kwargs: object) -> None:
         """Remove them from the page."""
         for node in [*self.document.findall(nodes.Element)]:
-            if MARKS.intersection((*node["classes"], *node.get("container_classes", ()))):
-                cell = "cell" in node["classes"]  # The outputs of cells below follow from it
+            if MARKS.intersection(
+                (*node["classes"], *node.get("container_classes", ()))
+            ):
+                cell = (
+                    "cell" in node["classes"]
+                )  # The outputs of cells below follow from it
                 said = [nodes.paragraph("", "", nodes.emphasis("", NO_SOLUTION))] * cell
                 place = node.parent.index(node)
                 node.parent[place : place + 1] = said

@@ -1,8 +1,9 @@
 """Questions whose right answer was measured: multiple choice, or a number with a tolerance.
 
-A page asks how one metric of a case compares with that of another, or for the value of a metric.
-The right answer is read from the accepted bundle when the page is rendered, so it cannot become
-stale. A list below the question gives the cause for each answer; it may be left out:
+A page asks how one metric of a case compares with that of another, or for the value of
+a metric. The right answer is read from the accepted bundle when the page is rendered,
+so it cannot become stale. A list below the question gives the cause for each answer; it
+may be left out:
 
     ```{choice} l04/lecture rise_time G1 G2
     When does G2 reach 90 % of its step?
@@ -19,12 +20,12 @@ stale. A list below the question gives the cause for each answer; it may be left
     - x57.3: That is in degrees.
     ```
 
-The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent;
-it may be below one. With the option `:hides:` the rest of its section, which has the results and
-the text about them, shows after an answer. With `:absent:` a choice asks for a second case that the
-bundle lacks, so that unknown is right; its cause says which measurement would tell. `:unit: mm`
-asks for a length in millimetres, other units for their thousandths, and `:unit: episodes` for a
-count.
+The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is
+in percent; it may be below one. With the option `:hides:` the rest of its section,
+which has the results and the text about them, shows after an answer. With `:absent:` a
+choice asks for a second case that the bundle lacks, so that unknown is right; its cause
+says which measurement would tell. `:unit: mm` asks for a length in millimetres, other
+units for their thousandths, and `:unit: episodes` for a count.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
 
@@ -64,7 +65,9 @@ CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 # The key of a typical wrong number: the value times this factor.
 FACTOR = re.compile(r"x\d+(\.\d+)?")
 # Below a question; `course.css` hides what follows it.
-HIDES = '<p class="after-answer">The rest of this section shows when you have answered.</p>'
+HIDES = (
+    '<p class="after-answer">The rest of this section shows when you have answered.</p>'
+)
 
 
 class question(between):  # noqa: N801 - docutils names nodes in lower case
@@ -74,21 +77,31 @@ class question(between):  # noqa: N801 - docutils names nodes in lower case
 def asked(value: float | None = None, tolerance: float = 0.0, **shown: Any) -> question:
     """Return a question: a multiple choice, or for a number if the right `value` is given.
 
-    `choice.js` announces the feedback of the chosen option, or that which fits what is typed.
+    `choice.js` announces the feedback of the chosen option, or that which fits what is
+    typed.
 
     Args:
         value: the right number.
         tolerance: how far from it a number counts as right.
-        shown: `name` of its fields, unique on the page; `answer`, what was measured, and its
-            `origin`. Of a choice also `options`, for each one (text, right, cause). Of a number
-            its `unit`, empty for none, and `feedback`, (key, text) by the keys of the directive.
+        shown: `name` of its fields, unique on the page; `answer`, what was measured,
+            and its `origin`. Of a choice also `options`, for each one (text, right,
+            cause). Of a number its `unit`, empty for none, and `feedback`, (key, text)
+            by the keys of the directive.
     """
-    right = "" if value is None else f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
+    right = (
+        ""
+        if value is None
+        else f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
+    )
     closing = filled(Path(__file__).with_name("question.html"), **shown)
-    return question(opening=f'<fieldset class="choice"{right}><legend>', closing=closing)
+    return question(
+        opening=f'<fieldset class="choice"{right}><legend>', closing=closing
+    )
 
 
-def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:
+def split_causes(
+    content: Sequence[str], keys: Sequence[str]
+) -> tuple[str, dict[str, str]]:
     """Return the question, and the cause of each answer that has one.
 
     Args:
@@ -96,16 +109,21 @@ def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict
         keys: the valid keys; `WRONG` represents all keys of its form.
 
     Raises:
-        LookupError: a key is not valid or given twice; the message lists the valid ones.
+        LookupError: a key is not valid or given twice; the message lists the valid
+            ones.
     """
     question, *items = re.split(r"\n(?=[-*] )", "\n".join(content))
     causes: dict[str, str] = {}
     for item in items:
         found = CAUSE.fullmatch(item.strip())
-        known = found and (found[1] in keys or (WRONG in keys and FACTOR.fullmatch(found[1])))
+        known = found and (
+            found[1] in keys or (WRONG in keys and FACTOR.fullmatch(found[1]))
+        )
         if found is None or not known or found[1] in causes:
             valid = ", ".join(f"`- {key}: …`" for key in keys)
-            raise LookupError(f"{item.strip()!r} is not a cause. Valid, once each: {valid}.")
+            raise LookupError(
+                f"{item.strip()!r} is not a cause. Valid, once each: {valid}."
+            )
         causes[found[1]] = " ".join(found[2].split())
     return " ".join(question.split()), causes
 
@@ -137,7 +155,9 @@ class Choice(Question):
         """See `Question.ask`."""
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
-        found, answer, origin = measured_order(lesson_page, metric, cases, "absent" in self.options)
+        found, answer, origin = measured_order(
+            lesson_page, metric, cases, "absent" in self.options
+        )
         smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
         resolution = small(smallest, found.unit)
         shown = options(found.unit, found.order, resolution, causes, found.margin)
@@ -153,7 +173,9 @@ def percents(text: str) -> float:
     with suppress(ValueError):
         if 0 < (value := float(text)) < 100:
             return value
-    raise ValueError(f"{text!r} is not a tolerance. Give percents above 0 and below 100: 0.5.")
+    raise ValueError(
+        f"{text!r} is not a tolerance. Give percents above 0 and below 100: 0.5."
+    )
 
 
 class Number(Question):
@@ -161,21 +183,31 @@ class Number(Question):
 
     required_arguments = 2
     option_spec = {  # noqa: RUF012 - as docutils declares it
-        "tolerance": percents, "unit": unchanged, "hides": flag,
-    }  # fmt: skip
+        "tolerance": percents,
+        "unit": unchanged,
+        "hides": flag,
+    }
 
     def ask(self, name: str) -> tuple[str, question]:
         """See `Question.ask`."""
         page, metric = self.arguments
         text, causes = split_causes(self.content, [*JUDGED, WRONG])
         if "tolerance" not in self.options:
-            raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
+            raise LookupError(
+                "the option tolerance is missing. Give percents: `:tolerance: 20`."
+            )
         percent, unit = self.options["tolerance"], self.options.get("unit", "")
-        return text, asked(name=name, **asked_number(page, metric, percent, causes, unit))
+        return text, asked(
+            name=name, **asked_number(page, metric, percent, causes, unit)
+        )
 
 
 def asked_number(
-    lesson_page: str, name: str, percent: float, causes: Mapping[str, str], unit: str = ""
+    lesson_page: str,
+    name: str,
+    percent: float,
+    causes: Mapping[str, str],
+    unit: str = "",
 ) -> dict[str, Any]:
     """Return the attributes of a question for a number.
 
@@ -197,13 +229,18 @@ def asked_number(
         raise LookupError(f"{lesson_page} did not observe {name}. Ask with {{choice}}.")
     verdicts = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
     verdicts |= {key: "No." for key in causes if key not in JUDGED}
-    feedback = [(key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()]
+    feedback = [
+        (key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()
+    ]
     value = 1000 * record.value if unit and unit not in COUNTED else record.value
     return {
-        "value": value, "tolerance": abs(value) * percent / 100,
-        "unit": unit or ("" if record.unit == "1" else record.unit), "feedback": feedback,
-        "answer": f"{text}; answers within {percent:g} % count as right.", "origin": origin,
-    }  # fmt: skip
+        "value": value,
+        "tolerance": abs(value) * percent / 100,
+        "unit": unit or ("" if record.unit == "1" else record.unit),
+        "feedback": feedback,
+        "answer": f"{text}; answers within {percent:g} % count as right.",
+        "origin": origin,
+    }
 
 
 def measured_order(
@@ -215,11 +252,12 @@ def measured_order(
         lesson_page: as `l04/lab`.
         metric: its name.
         cases: names of both.
-        absent: whether no page of the lesson may record the second case; no order is known then.
+        absent: whether no page of the lesson may record the second case; no order is
+            known then.
 
     Raises:
-        LookupError: the metric or a case is not in the bundle, and the message lists the known
-            ones; or the second case is, and must be absent.
+        LookupError: the metric or a case is not in the bundle, and the message lists
+            the known ones; or the second case is, and must be absent.
         BundleRefused: the bundle cannot be read.
     """
     observed = cases[:1] if absent else cases
@@ -228,9 +266,14 @@ def measured_order(
     lesson_name = lesson_page.split("/")[0]
     lesson, unit = find_lesson(lesson_name), records[cases[0]][metric].unit
     if absent and any(cases[1] in page.runs for page in lesson.pages.values()):
-        raise LookupError(f"{lesson_name} records {cases[1]}; ask for it without `:absent:`.")
+        raise LookupError(
+            f"{lesson_name} records {cases[1]}; ask for it without `:absent:`."
+        )
     first, second = (None if absent else records[case][metric].value for case in cases)
-    noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION[unit]
+    noun, resolution = (
+        lesson.about_metrics("noun")[metric],
+        lesson.spec.RESOLUTION[unit],
+    )
     margin = declared_margin(lesson_name, metric)
     found = Comparison(noun, unit, first, second, resolution, margin)
     if absent:
@@ -246,8 +289,12 @@ def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
     values, unit = (found.first, found.second), found.unit
     texts = [format_value(value, unit) for value in values]
     if unit in ("m", "rad", "m/s") and any(0 < abs(value) < 0.1 for value in values):
-        texts = [f"{round(1000 * value, 3) + 0.0:.3g} {SCALED[unit]}" for value in values]
-    pairs = ", ".join(f"{text} for {name}" for name, text in zip(names, texts, strict=True))
+        texts = [
+            f"{round(1000 * value, 3) + 0.0:.3g} {SCALED[unit]}" for value in values
+        ]
+    pairs = ", ".join(
+        f"{text} for {name}" for name, text in zip(names, texts, strict=True)
+    )
     sentence = f"{found.label[0].upper()}{found.label[1:]}: {pairs}."
     if found.order == "equal" and found.margin and found.first != found.second:
         sentence += f" A difference below {small(found.margin, unit)} does not count."
@@ -263,12 +310,18 @@ def small(value: float, unit: str) -> str:
 
 def declared_margin(lesson: str, metric: str) -> float:
     """Return the margin that a lesson declares for orderings of a metric, 0 if it declares none."""
-    found = (m for _, name, _, m in find_lesson(lesson).spec.RELATIONS if name == metric)
+    found = (
+        m for _, name, _, m in find_lesson(lesson).spec.RELATIONS if name == metric
+    )
     return max(found, default=0.0)
 
 
 def options(
-    unit: str, order: str | None, resolution: str, causes: Mapping[str, str], margin: float
+    unit: str,
+    order: str | None,
+    resolution: str,
+    causes: Mapping[str, str],
+    margin: float,
 ) -> list[tuple[str, bool, str]]:
     """Return each option, whether it was measured, and its cause; exactly one is true.
 

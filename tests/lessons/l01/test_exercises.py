@@ -46,7 +46,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in CASES.items() for how in of])
+@pytest.mark.parametrize(
+    ("name", "how"), [(n, how) for n, of in CASES.items() for how in of]
+)
 def test_only_the_right_solution_passes(name, how):
     sphere = FakeBody(1.0, spec.BASELINE.height)
     scene = FakeScene(sphere, dt=spec.BASELINE.dt, substeps=spec.BASELINE.substeps)

@@ -20,7 +20,9 @@ READINGS[machine.DOCTOR] = dict.fromkeys(machine.STEPS, 1)
 def test_a_stepped_fall_has_no_error_and_a_continuous_one_is_behind():
     found = fall_metrics(make_drop(CASE), CASE)
     assert found.final_height == pytest.approx(0.298895, abs=1e-6)
-    assert found.asked_height == pytest.approx(0.5 - 9.81 * CASE.h**2 * 30 * 31 / 2, abs=1e-6)
+    assert found.asked_height == pytest.approx(
+        0.5 - 9.81 * CASE.h**2 * 30 * 31 / 2, abs=1e-6
+    )
     assert found.formula_error < spec.FORMULA_TOLERANCE
     assert found.school_gap == pytest.approx(9.81 * CASE.h * 0.2 / 2, abs=1e-6)
     t = np.arange(CASE.steps + 1) * CASE.dt
@@ -47,15 +49,31 @@ def experiment(frames, case=CASE, **changed) -> Experiment:
         (CASE, {machine.TIMES: dict.fromkeys(TIMES, 900.0)}, set()),
     ],
 )
-def test_each_check_fails_on_its_own_fault_and_none_judges_a_time(frames, case, changed, failed):
+def test_each_check_fails_on_its_own_fault_and_none_judges_a_time(
+    frames, case, changed, failed
+):
     outcomes = experiment(frames, case=case, **changed).outcomes()
     assert {check.name for check in outcomes if not check.passed} == failed
 
 
 def test_the_text_says_what_was_measured(frames):
     run = experiment(frames)
-    bars = plots.starts(experiment(frames, times=TIMES | {"first_init": 0.4, "second_init": 1.6}))
-    first, second = np.reshape([label.get_text() for label in bars.axes[0].texts], (2, -1))
-    assert (*first[[0, 1, -1]], *second[[0, 1, -1]]) == ("< 1", "< 1", "2", "< 1", "2", "4")
+    bars = plots.starts(
+        experiment(frames, times=TIMES | {"first_init": 0.4, "second_init": 1.6})
+    )
+    first, second = np.reshape(
+        [label.get_text() for label in bars.axes[0].texts], (2, -1)
+    )
+    assert (*first[[0, 1, -1]], *second[[0, 1, -1]]) == (
+        "< 1",
+        "< 1",
+        "2",
+        "< 1",
+        "2",
+        "4",
+    )
     other = experiment(frames, case=replace(CASE, gravity=9.82))
-    assert ["more than rounding" in text.conclusion(of) for of in (run, other)] == [False, True]
+    assert ["more than rounding" in text.conclusion(of) for of in (run, other)] == [
+        False,
+        True,
+    ]

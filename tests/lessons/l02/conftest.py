@@ -22,7 +22,10 @@ def run(frames) -> Experiment:
         trials.TRAYS: {trials.PIECES: 0.0308, trials.HULL: 0.1749},
         trials.FURTHER: trials.expected_falls(),
     }
-    traces = {name: make_drop(case) for name, case in (spec.CASES | spec.SUBSTEP_CASES).items()}
+    traces = {
+        name: make_drop(case)
+        for name, case in (spec.CASES | spec.SUBSTEP_CASES).items()
+    }
     pictures = frames | {spec.TRAYS: frames["final"]}
     return Experiment(LECTURE, traces, [spec.LINK], readings, pictures, True)
 

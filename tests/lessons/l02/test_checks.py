@@ -19,7 +19,9 @@ def test_the_metrics_are_the_largest_of_all_samples():
     turn[5, 0] = (0, 2, 0)
     found = drop_metrics(replace(sound, link_pos=aside, link_ang=turn), spec.BASELINE)
     assert (found.sideways, found.turning) == pytest.approx((0.05, 2))
-    assert (found.duration, found.drop) == pytest.approx((0.2, 9.81 * 0.005**2 * 40 * 41 / 2))
+    assert (found.duration, found.drop) == pytest.approx(
+        (0.2, 9.81 * 0.005**2 * 40 * 41 / 2)
+    )
     assert found.final_speed == pytest.approx(9.81 * 0.2)
     assert found.continuous_gap == pytest.approx(0.5 * 9.81 * 0.005 * 0.2, abs=1e-7)
     assert found.formula_error < 1e-7
@@ -30,35 +32,69 @@ SPOILED = {
     "one more link": (reading("model", "links", 2), {"structure"}),
     "a wrong mass": (reading("body", "mass", 0.51), {"mass"}),
     "a start in motion": (trace(BASE, link_vel=put((0, 0, 0), 0.1)), {"start"}),
-    "a run that is too short": (case("substeps_10", steps=21), {"stamps", "one_factor"}),
+    "a run that is too short": (
+        case("substeps_10", steps=21),
+        {"stamps", "one_factor"},
+    ),
     "a box that hovers": (
-        trace(BASE, link_pos=put((8, 0, 2), 0.5)), {"falls", "stepped_formula"}),
+        trace(BASE, link_pos=put((8, 0, 2), 0.5)),
+        {"falls", "stepped_formula"},
+    ),
     "another rule of stepping": (
-        copied(BASE, "substeps_4"), {"stepped_formula", "first_order", "shrinks"}),
+        copied(BASE, "substeps_4"),
+        {"stepped_formula", "first_order", "shrinks"},
+    ),
     "a box that reaches the ground": (
         trace(BASE, link_pos=put((-2, 0, 2), 0.049)),
-        {"falls", "clear_of_ground", "stepped_formula"}),
-    "a push from the side": (trace(BASE, link_pos=put((4, 0, 0), 1e-4)), {"straight_down"}),
+        {"falls", "clear_of_ground", "stepped_formula"},
+    ),
+    "a push from the side": (
+        trace(BASE, link_pos=put((4, 0, 0), 1e-4)),
+        {"straight_down"},
+    ),
     "a box without an orientation": (
-        trace(BASE, link_quat=put(-1, (7, 0, 0, 0))), {"straight_down"}),
-    "a speed that is not g t": (trace(BASE, link_vel=put((5, 0, 2), -0.6)), {"falls", "speed"}),
-    "one picture twice": (frames(initial="final", final="final", trays="final"), {"posture"}),
-    "no picture of the trays": (frames(initial="initial", final="final"), {"invisible_lid"}),
+        trace(BASE, link_quat=put(-1, (7, 0, 0, 0))),
+        {"straight_down"},
+    ),
+    "a speed that is not g t": (
+        trace(BASE, link_vel=put((5, 0, 2), -0.6)),
+        {"falls", "speed"},
+    ),
+    "one picture twice": (
+        frames(initial="final", final="final", trays="final"),
+        {"posture"},
+    ),
+    "no picture of the trays": (
+        frames(initial="initial", final="final"),
+        {"invisible_lid"},
+    ),
     "a mesh that collides as it is drawn": (
-        reading("shapes", "duck_felt", 3534), {"two_geometries"}),
+        reading("shapes", "duck_felt", 3534),
+        {"two_geometries"},
+    ),
     "a tray in one piece": (reading("shapes", "tray_pieces", 1), {"two_geometries"}),
-    "a ball that fell through the lid": (reading("trays", "hull", 0.0308), {"invisible_lid"}),
-    "a heavier box that falls faster": (reading("further", "heavier", 0.21), {"further_falls"}),
+    "a ball that fell through the lid": (
+        reading("trays", "hull", 0.0308),
+        {"invisible_lid"},
+    ),
+    "a heavier box that falls faster": (
+        reading("further", "heavier", 0.21),
+        {"further_falls"},
+    ),
     "a call on the wrong side": (
-        reading(life_cycle.GROUP, "scene.step before build", 1), {"sides_of_build"}),
+        reading(life_cycle.GROUP, "scene.step before build", 1),
+        {"sides_of_build"},
+    ),
     "a second factor": (case("substeps_4", seed=1), {"one_factor"}),
-}  # fmt: skip
+}
 
 
 def test_a_sound_run_passes_all_checks_and_the_lab_says_so(run):
     assert failed(run) == set()
     lab = replace(run, page=DROP)
-    assert [name for name in text.SENTENCES if f"`{name}` failed" in text.conclusions(lab)] == []
+    assert [
+        name for name in text.SENTENCES if f"`{name}` failed" in text.conclusions(lab)
+    ] == []
     assert "The box fell 0.2011 m in 0.20 s" in text.conclusions(lab)
 
 
@@ -68,7 +104,9 @@ def test_a_spoiled_run_fails_its_check_and_the_lab_says_which(run, name):
     spoiled = spoil(run)
     assert failed(spoiled) == names
     said = text.conclusions(spoiled)
-    assert {of for of in text.SENTENCES if f"`{of}` failed" in said} == names & {*text.SENTENCES}
+    assert {of for of in text.SENTENCES if f"`{of}` failed" in said} == names & {
+        *text.SENTENCES
+    }
 
 
 def test_each_check_has_a_run_that_fails_it(run):
@@ -78,15 +116,22 @@ def test_each_check_has_a_run_that_fails_it(run):
 
 @pytest.mark.parametrize(
     ("changes", "names"),
-    [({"density": 1000}, {"mass"}), ({"height": 0.6}, {"start", "free_fall"}),
-     ({"steps": 10}, {"stamps", "free_fall"})],
-)  # fmt: skip
-def test_the_task_of_the_lab_fails_the_checks_of_its_answer(run, frames, changes, names):
+    [
+        ({"density": 1000}, {"mass"}),
+        ({"height": 0.6}, {"start", "free_fall"}),
+        ({"steps": 10}, {"stamps", "free_fall"}),
+    ],
+)
+def test_the_task_of_the_lab_fails_the_checks_of_its_answer(
+    run, frames, changes, names
+):
     case = replace(spec.BASELINE, **changes)
     changed = replace(
         reading("body", "mass", case.mass)(run),
-        page=DROP, traces={"baseline": make_drop(case)}, frames=frames,
-    )  # fmt: skip
+        page=DROP,
+        traces={"baseline": make_drop(case)},
+        frames=frames,
+    )
     assert {check.name for check in changed.outcomes() if not check.passed} == names
 
 
@@ -94,7 +139,10 @@ def test_tables_have_words_units_and_signs(run):
     assert "| continuous, g t² / 2 | 0.196200 | −4.9050 |" in text.three_drops(run)
     assert "| 10 | 1 | 0.197181 | 0.981 | 0.981 |" in text.substep_table(run)
     assert "| metric | 2 substeps of 5 ms |" in text.metric_table(run)
-    found = [text.readable(value, "m") for value in (None, 0.201105, 0.0, -0.00490494, 6.9e-8)]
+    found = [
+        text.readable(value, "m")
+        for value in (None, 0.201105, 0.0, -0.00490494, 6.9e-8)
+    ]
     assert found == ["not observed", "0.2011 m", "0.0000 m", "−4.9 mm", "0.069 µm"]
 
 

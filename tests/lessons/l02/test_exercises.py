@@ -44,15 +44,22 @@ CASES = {
         "right": OURS,
         "without the first state": lambda *of: [values[1:] for values in OURS(*of)],
         "without a reset": without_reset,
-        "speed downwards": lambda *of: (OURS(*of)[0], [-speed for speed in OURS(*of)[1]]),
+        "speed downwards": lambda *of: (
+            OURS(*of)[0],
+            [-speed for speed in OURS(*of)[1]],
+        ),
         "heights alone": lambda *of: OURS(*of)[:1],
     },
     "usable_frame": {
         "right": FRAME,
         "always": lambda rgb: True,
         "extremes": lambda rgb: FRAME(rgb) and rgb[..., 0].max() > 30,
-        "any dtype": lambda rgb: rgb.shape == (540, 720, 3) and bool((rgb != rgb[0, 0]).any()),
-        "any shape": lambda rgb: bool((rgb != rgb[0, 0]).any()) and rgb.dtype == np.uint8,
+        "any dtype": lambda rgb: (
+            rgb.shape == (540, 720, 3) and bool((rgb != rgb[0, 0]).any())
+        ),
+        "any shape": lambda rgb: (
+            bool((rgb != rgb[0, 0]).any()) and rgb.dtype == np.uint8
+        ),
     },
     "stepped": {
         "right": STEPPED,
@@ -63,10 +70,15 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in CASES.items() for how in of])
+@pytest.mark.parametrize(
+    ("name", "how"), [(n, how) for n, of in CASES.items() for how in of]
+)
 def test_only_the_right_solution_passes(name, how):
     scene, box = scene_with()(None)
     scene.step()  # the student's record starts from any state
-    more = {"scene": (None, spec.BASELINE), "record": (scene, box, make_drop(spec.BASELINE))}
+    more = {
+        "scene": (None, spec.BASELINE),
+        "record": (scene, box, make_drop(spec.BASELINE)),
+    }
     check = getattr(exercises, name)(CASES[name][how], *more.get(name, ()))
     assert check.passed == (how == "right"), check.detail

@@ -40,9 +40,15 @@ class Pretended:
 @pytest.mark.parametrize("rendered", [True, False])
 def test_every_call_is_tried_on_both_sides_and_belongs_to_one(rendered):
     scene = Pretended()
-    attempts = life_cycle.try_both_sides(scene, scene, scene if rendered else None, "morph")
+    attempts = life_cycle.try_both_sides(
+        scene, scene, scene if rendered else None, "morph"
+    )
     assert life_cycle.counts(attempts) == life_cycle.expected(rendered)
-    row = {"call": "`scene.step`", BEFORE: "GenesisException: Not built.", AFTER: "accepted"}
+    row = {
+        "call": "`scene.step`",
+        BEFORE: "GenesisException: Not built.",
+        AFTER: "accepted",
+    }
     assert row in life_cycle.rows(attempts)
 
 
@@ -62,8 +68,12 @@ def test_the_camera_that_a_page_declares_is_that_of_the_specification(page):
 
 
 def test_the_work_sheet_has_the_titles_of_the_lab():
-    sheet = (BOOK / "lessons" / "l02-life-cycle" / "worksheet.md").read_text().splitlines()
+    sheet = (
+        (BOOK / "lessons" / "l02-life-cycle" / "worksheet.md").read_text().splitlines()
+    )
     titles = [line for line in sheet if line.startswith("## ")]
-    lab = "\n".join(cell.source for cell in page_of("l02", "lab").notebook.cells).splitlines()
+    lab = "\n".join(
+        cell.source for cell in page_of("l02", "lab").notebook.cells
+    ).splitlines()
     assert len(titles) == 9
     assert {*titles} <= {*lab}

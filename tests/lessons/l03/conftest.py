@@ -14,14 +14,20 @@ from robo_genesis.sim.bodies.contacts import SETTINGS
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 # Of all pages; those of the lab are the longer ones.
-CASES = {n: case for page in LESSON.pages.values() for n, case in page.cases.items()} | spec.CASES
+CASES = {
+    n: case for page in LESSON.pages.values() for n, case in page.cases.items()
+} | spec.CASES
 
 CLEAN = study_spec.ELLIPTIC | study_spec.FINER_SLIDES
 READINGS = {
     "model": spec.EXPECTED_MODEL,
     "mass": {"cube": spec.BASELINE.mass, "ball": spec.DROPPED_BALL.mass},
-    study.GROUP: {name: theory.contact_seconds(study.case_of(name)) for name in study.ROWS},
-    **{name: {n: getattr(case, name) for n, case in CASES.items()} for name in SETTINGS},
+    study.GROUP: {
+        name: theory.contact_seconds(study.case_of(name)) for name in study.ROWS
+    },
+    **{
+        name: {n: getattr(case, name) for n, case in CASES.items()} for name in SETTINGS
+    },
 }
 """The engine's values of sound runs."""
 
@@ -32,14 +38,20 @@ def contact_traces() -> dict[str, ContactTrace]:
     traces = {
         name: slide_on_corners(case)
         if name in CLEAN
-        else mujoco_contacts.run_case(case, own_defaults=name == study_spec.OWN_DEFAULTS)
+        else mujoco_contacts.run_case(
+            case, own_defaults=name == study_spec.OWN_DEFAULTS
+        )
         for name, case in CASES.items()
     }
     for name in CLEAN:
-        rounding = np.full_like(traces[name].link_ang, 1e-6)  # of the forces at the corners
+        rounding = np.full_like(
+            traces[name].link_ang, 1e-6
+        )  # of the forces at the corners
         traces[name] = replace(traces[name], link_ang=rounding)
     for name in study_spec.ENGINE_PAIRS:  # two engines never agree to the last bit
-        traces[name] = replace(traces[name], link_pos=traces[name].link_pos + np.float32(1e-7))
+        traces[name] = replace(
+            traces[name], link_pos=traces[name].link_pos + np.float32(1e-7)
+        )
     return traces
 
 

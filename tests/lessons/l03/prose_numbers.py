@@ -20,7 +20,9 @@ CONFIGURED = {
     "highest height studied [m]": study_spec.HEIGHTS_STUDIED[-1],
     "finest step studied [ms]": 0.125,
     "fastest landing of the heights studied [m/s]": round(FASTEST, 1),
-    "least speed of a rebound with T = 10 ms [m/s]": round(4 * 9.81 * 0.01 * np.e**2, 1),
+    "least speed of a rebound with T = 10 ms [m/s]": round(
+        4 * 9.81 * 0.01 * np.e**2, 1
+    ),
     "window of a landing [s]": spec.BASELINE.duration,
     "friction of the first cubes, and the hold of a stop [s]": spec.PUSHED.friction,
     "friction of the other cubes": spec.BESIDE.friction,
@@ -32,7 +34,9 @@ CONFIGURED = {
     "step of T / 4 [ms]": 2.5,
     "height of the fixed step [m]": 0.02,
     "fall in the first calculation [m]": 0.05,
-    "e, to one digit, and the speed [m/s] of v T / e = 2 mm with T = 2 ms": round(float(np.e), 1),
+    "e, to one digit, and the speed [m/s] of v T / e = 2 mm with T = 2 ms": round(
+        float(np.e), 1
+    ),
     "largest impedance": mujoco_contacts.IMPEDANCE[1],
     "1 + μ² in the third calculation": 1 + HIGH**2,
     "T / 10 in the second calculation [ms], speed in the third [m/s]": 0.4,

@@ -5,7 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.body_runs import body_at, slide_on_corners
-from lessons.changed_runs import case, copied, failed, frames, metric, put, reading, shift, trace
+from lessons.changed_runs import (
+    case,
+    copied,
+    failed,
+    frames,
+    metric,
+    put,
+    reading,
+    shift,
+    trace,
+)
 from lessons.experiments import checks_of, each, run_with
 
 from robo_genesis.lessons.l03 import spec, study, study_spec, text
@@ -20,13 +30,19 @@ def moved(name, by, field="link_pos", axis=2, first=0, end=None):
 
 def deeper(name):
     """Return a function that lets a cube sink in deeper, at its deepest sample."""
-    return trace(name, link_pos=lambda at: shift((at[:, 0, 2].argmin(), 0, 2), -0.003)(at))
+    return trace(
+        name, link_pos=lambda at: shift((at[:, 0, 2].argmin(), 0, 2), -0.003)(at)
+    )
 
 
 def on_corners(name, **changes):
     """Return a function that lets a cube slide on four corners, with other settings."""
     return lambda run: replace(
-        run, traces={**run.traces, name: slide_on_corners(replace(run.cases[name], **changes))}
+        run,
+        traces={
+            **run.traces,
+            name: slide_on_corners(replace(run.cases[name], **changes)),
+        },
     )
 
 
@@ -51,7 +67,9 @@ def never_rebounding(run):
     for name in study_spec.STEP_CASES["h_5000us"]:
         height = run.traces[name].link_pos[:, 0, 2]
         landed = np.maximum.accumulate(height < REST)
-        run = trace(name, link_pos=put((landed, 0, 2), np.minimum(height[landed], REST)))(run)
+        run = trace(
+            name, link_pos=put((landed, 0, 2), np.minimum(height[landed], REST))
+        )(run)
     return run
 
 
@@ -61,7 +79,10 @@ SPOILERS = {
     "settings": [reading("friction", "low_on_050", 0.45), without_substeps],
     "stamps": [case("low_on_030", duration=2.01)],
     "one_factor": [case("bounce_sub4", spring=(1.0, 0.02))],
-    "lands": [trace("baseline", contacts=np.zeros_like), moved("baseline", -0.05, first=30)],
+    "lands": [
+        trace("baseline", contacts=np.zeros_like),
+        moved("baseline", -0.05, first=30),
+    ],
     "reported_late": [trace("dt10_sub1", penetration=lambda a: np.roll(a, -1))],
     "equal_step_equal_states": [moved("dt20_sub2", 1e-5, axis=0, first=5)],
     "settles": [moved("baseline", -0.05, first=30)],
@@ -75,7 +96,10 @@ SPOILERS = {
     "energy_converges": [metric("bounce_sub100", first_kept=of) for of in (90.0, None)],
     "posture": [frames(initial="initial", final="initial")],
     "time_constants": [reading(study.GROUP, "h_20000us", 0.01)],
-    "rebound_goes": [moved("h_500us_10000", 0.002, first=-20, end=-19), never_rebounding],
+    "rebound_goes": [
+        moved("h_500us_10000", 0.002, first=-20, end=-19),
+        never_rebounding,
+    ],
     "scatter_shrinks": [deeper("h_125us_10000")],
     "depth_by_hand": [deeper("h_125us_10000")],
     "first_step_decides": [deeper("h_10000us_10000")],
@@ -83,17 +107,21 @@ SPOILERS = {
         moved("low_on_030_elliptic", 0.001, first=10, end=12),
         trace("low_on_030_elliptic", contacts=put(5, 3)),
     ],
-    "clean_slides_are_coulomb_s": [moved("high_on_030_elliptic", 0.001, axis=0, first=10)],
+    "clean_slides_are_coulomb_s": [
+        moved("high_on_030_elliptic", 0.001, axis=0, first=10)
+    ],
     "clean_slides_order": [moved("high_on_030_elliptic", 0.001, axis=0, first=10)],
     "larger_friction_rules": [on_corners("low_on_050_elliptic", surface_friction=0.3)],
     "hop_follows_step": [
-        moved("hop_2500us_low", 0.02, first=1), moved("hop_100us_high", 0.02, first=1)
+        moved("hop_2500us_low", 0.02, first=1),
+        moved("hop_100us_high", 0.02, first=1),
     ],
     "hop_follows_speed": [moved("hop_200mm_s", 0.002, first=1)],
     "default_cone_hops": [on_corners("high_on_050")],
     "stops_nearly_right": [moved("low_on_050", 0.05, axis=0, first=10)],
     "hop_is_paid_by_friction": [
-        on_corners("high_on_050"), moved("low_on_050", -0.1, "link_vel", 0, first=1, end=2)
+        on_corners("high_on_050"),
+        moved("low_on_050", -0.1, "link_vel", 0, first=1, end=2),
     ],
     "the_cone_alone_hops": [copied("low_on_050_convex", "low_on_050_elliptic")],
     "half_the_step_contradicts": [on_corners("high_on_050")],
@@ -102,7 +130,7 @@ SPOILERS = {
     "engines_hop_alike": [copied("low_on_050_convex", "low_on_050_elliptic")],
     "release_speed": [moved("release_5ms_10000", 0.2, "link_vel", 2, first=220)],
     "stiff_contacts_rebound": [moved("release_10ms_10000", 0.01, first=270)],
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("check", "spoil"), each(SPOILERS))

@@ -73,41 +73,60 @@ CASES = {
     "push": {
         "right": SOLVED["push"],
         "before it settles": push_first,
-        "settled in milliseconds": pushed(ALONG_X, lambda seconds: round(1000 * seconds)),
+        "settled in milliseconds": pushed(
+            ALONG_X, lambda seconds: round(1000 * seconds)
+        ),
         "along y": pushed((0, 1, 0, 0, 0, 0)),
         "all DOFs": pushed((1,) * 6),
     },
     "contact_reading": {
         "right": SOLVED["read_contacts"],
-        "all bodies": read_as(lambda depths: max(depths.tolist(), default=0.0), with_entity=None),
+        "all bodies": read_as(
+            lambda depths: max(depths.tolist(), default=0.0), with_entity=None
+        ),
         "largest of nothing": read_as(lambda depths: depths.max().item()),
         "the first contact": read_as(lambda depths: next(iter(depths.tolist()), 0.0)),
         "one value": lambda cube, table: (4,),
     },
     "landing": {
         "right": SOLVED["landing"],
-        "the sign of the depth": lambda clear: (clear.min(), SOLVED["landing"](clear)[1]),
-        "the start as rebound": lambda clear: (SOLVED["landing"](clear)[0], clear.max()),
-        "after the deepest sample": lambda clear: (
-            SOLVED["landing"](clear)[0], max(0.0, clear[clear.argmin() + 1:].max(initial=0.0))
+        "the sign of the depth": lambda clear: (
+            clear.min(),
+            SOLVED["landing"](clear)[1],
         ),
-        "depth of what never lands": lambda clear: (-clear.min(), SOLVED["landing"](clear)[1]),
+        "the start as rebound": lambda clear: (
+            SOLVED["landing"](clear)[0],
+            clear.max(),
+        ),
+        "after the deepest sample": lambda clear: (
+            SOLVED["landing"](clear)[0],
+            max(0.0, clear[clear.argmin() + 1 :].max(initial=0.0)),
+        ),
+        "depth of what never lands": lambda clear: (
+            -clear.min(),
+            SOLVED["landing"](clear)[1],
+        ),
     },
     "stopping": {
         "right": SOLVED["stop"],
         "the first slow sample": first_slow,
-        "speed with its sign": lambda t, x, speed: SOLVED["stop"](t, x, np.maximum(speed, 0)),
+        "speed with its sign": lambda t, x, speed: SOLVED["stop"](
+            t, x, np.maximum(speed, 0)
+        ),
         "position for distance": lambda t, x, speed: (
             SOLVED["stop"](t, x, speed)[0],
-            None if SOLVED["stop"](t, x, speed)[0] is None
+            None
+            if SOLVED["stop"](t, x, speed)[0] is None
             else SOLVED["stop"](t, x, speed)[1] + x[0],
         ),
         "end of the window for not observed": end_for_none,
     },
-}  # fmt: skip
+}
 
 
-@pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in CASES.items() for how in of])
+@pytest.mark.parametrize(
+    ("name", "how"), [(n, how) for n, of in CASES.items() for how in of]
+)
 def test_only_the_right_solution_passes(experiments, name, how):
     run = experiments["lab"]
     scene, _, cube = scene_with()(None)

@@ -7,8 +7,20 @@ import numpy as np
 import pytest
 from lessons.body_runs import body_at, slide_on_corners
 
-from robo_genesis.lessons.l03 import metrics, plots, spec, study, study_spec, tables, theory
-from robo_genesis.lessons.l03.metrics import bounce_metrics, landing_metrics, slide_metrics
+from robo_genesis.lessons.l03 import (
+    metrics,
+    plots,
+    spec,
+    study,
+    study_spec,
+    tables,
+    theory,
+)
+from robo_genesis.lessons.l03.metrics import (
+    bounce_metrics,
+    landing_metrics,
+    slide_metrics,
+)
 from robo_genesis.lessons.l03.text import readable
 from robo_genesis.sim.bodies.contacts import TOP
 
@@ -25,9 +37,15 @@ REST = spec.BASELINE.rest_height
         (theory.kept_at_bounces(0.001), np.exp(-2 * np.pi * 0.001)),
         (theory.impact_speed(spec.BASELINE), np.sqrt(2 * 9.81 * 0.235)),
         (theory.contact_seconds(spec.BASELINE), 0.01),
-        (theory.contact_seconds(replace(spec.BASELINE, time_constant=0.002)), 0.01),  # two steps
+        (
+            theory.contact_seconds(replace(spec.BASELINE, time_constant=0.002)),
+            0.01,
+        ),  # two steps
         (theory.rebound(spec.BASELINE), 0),
-        (theory.upward_blow(replace(spec.PUSHED, speed=1.0)), 0.4),  # 2 · 0.5 · 0.5 / 1.25 m/s
+        (
+            theory.upward_blow(replace(spec.PUSHED, speed=1.0)),
+            0.4,
+        ),  # 2 · 0.5 · 0.5 / 1.25 m/s
         (theory.hop(replace(spec.PUSHED, speed=1.0)), 0.16 / 19.62),
         (theory.hop(spec.PUSHED), 4 * theory.hop(replace(spec.PUSHED, substeps=4))),
     ],
@@ -55,7 +73,9 @@ def test_depth_and_release_are_those_of_the_equation():
         deepest = max(deepest, x)
     assert deepest == pytest.approx(theory.depth(case), rel=1e-3)
     assert -v == pytest.approx(theory.release_speed(case), rel=1e-3)
-    assert v**2 / (2 * case.gravity) - x == pytest.approx(theory.rebound(case), rel=1e-2)
+    assert v**2 / (2 * case.gravity) - x == pytest.approx(
+        theory.rebound(case), rel=1e-2
+    )
 
 
 def test_energies_of_a_state_by_hand():
@@ -70,7 +90,11 @@ def test_energies_of_a_state_by_hand():
     assert metrics.total_energy(turning, case) == pytest.approx([total + more] * 2)
 
 
-REACHES = [((1, 0, 0), 0.04 * np.sqrt(2)), ((0, 1, 0), 0.04 * np.sqrt(2)), ((0, 0, 1), 0.04)]
+REACHES = [
+    ((1, 0, 0), 0.04 * np.sqrt(2)),
+    ((0, 1, 0), 0.04 * np.sqrt(2)),
+    ((0, 0, 1), 0.04),
+]
 
 
 @pytest.mark.parametrize(("axis", "reach"), REACHES)
@@ -91,12 +115,18 @@ def test_flights_are_the_stretches_in_the_air():
 
 def test_metrics_of_a_landing_by_hand():
     z = REST + np.array([0.02, 0.01, -0.008, -0.001, 0.003, 0.002, -0.0001, 0, 0, 0])
-    trace = body_at(z, contacts=[0, 0, 0, 4, 0, 0, 4, 4, 4, 4], vz=[0, -1, 0.5, 0.2] + [0] * 6)
+    trace = body_at(
+        z, contacts=[0, 0, 0, 4, 0, 0, 4, 4, 4, 4], vz=[0, -1, 0.5, 0.2] + [0] * 6
+    )
     found = landing_metrics(trace, spec.BASELINE)
     assert (found.penetration, found.rebound) == pytest.approx((0.008, 0.003), abs=1e-6)
     assert (found.touchdown, found.upward_speed) == pytest.approx((0.02, 0.5))
-    assert found.separated == pytest.approx(0.02)  # two samples without contact and clear
-    assert (found.resting_time, found.resting_offset) == pytest.approx((0.06, 0), abs=1e-6)
+    assert found.separated == pytest.approx(
+        0.02
+    )  # two samples without contact and clear
+    assert (found.resting_time, found.resting_offset) == pytest.approx(
+        (0.06, 0), abs=1e-6
+    )
     never = landing_metrics(body_at([1.0] * 5), spec.BASELINE)
     assert (never.touchdown, never.resting_time) == (None, None)
     assert (never.penetration, never.rebound, never.separated) == (0, 0, 0)
@@ -105,7 +135,9 @@ def test_metrics_of_a_landing_by_hand():
 def test_a_stop_takes_a_hold():
     speed = np.array([1, 0.005, 0.5] + [0.005] * 11 + [0.0])
     assert metrics.stopped_at(speed, 0.01) == 3  # not the one slow sample before
-    assert metrics.stopped_at(speed[:13], 0.01) is None  # the window ends before the hold does
+    assert (
+        metrics.stopped_at(speed[:13], 0.01) is None
+    )  # the window ends before the hold does
     assert metrics.stopped_at(np.full(40, 0.01), 0.01) is None  # slower, not as slow
 
 
@@ -133,7 +165,9 @@ def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
 def test_the_table_of_both_engines_says_when_runs_separate(experiments):
     rows = tables.engines(experiments["contact"]).splitlines()[2:]
     assert re.fullmatch(r"\| landing, h = 5 ms \|.*\| never \| – and – \|", rows[0])
-    assert re.match(r"\| landing, h = 5 ms, MuJoCo's own contact \|(?!.*never)", rows[-1])
+    assert re.match(
+        r"\| landing, h = 5 ms, MuJoCo's own contact \|(?!.*never)", rows[-1]
+    )
 
 
 def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):
@@ -141,16 +175,24 @@ def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):
     gone = replace(run.metrics["low_on_050"], stop_distance=None)
     without = replace(run, accepted=run.metrics | {"low_on_050": gone})
     assert "not observed" in tables.slides(without)
-    assert [len(plots.stopping_distances(of).axes[0].patches) for of in (run, without)] == [4, 3]
+    assert [
+        len(plots.stopping_distances(of).axes[0].patches) for of in (run, without)
+    ] == [4, 3]
 
 
 @pytest.mark.parametrize(
     ("value", "unit", "words"),
     [
-        (0.006431, "m", "6.43 mm"), (-2.5e-5, "m", "−0.0250 mm"), (0.41040, "m", "0.4104 m"),
-        (0.00123, "J", "1.23 mJ"), (0.13074, "J", "131 mJ"), (2.5e-7, "J", "0.250 µJ"),
-        (0.22, "s", "0.22 s"), (0.0, "m", "0 mm"), (None, "m", "not observed"),
+        (0.006431, "m", "6.43 mm"),
+        (-2.5e-5, "m", "−0.0250 mm"),
+        (0.41040, "m", "0.4104 m"),
+        (0.00123, "J", "1.23 mJ"),
+        (0.13074, "J", "131 mJ"),
+        (2.5e-7, "J", "0.250 µJ"),
+        (0.22, "s", "0.22 s"),
+        (0.0, "m", "0 mm"),
+        (None, "m", "not observed"),
     ],
-)  # fmt: skip
+)
 def test_a_value_has_a_unit_of_its_size(value, unit, words):
     assert readable(value, unit) == words

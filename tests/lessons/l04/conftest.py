@@ -10,7 +10,9 @@ from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 
 LINKS = ("link0", "link4", "hand")
-PAGES = {name: page for name, page in LESSON.pages.items() if name not in ("lab", "mistakes")}
+PAGES = {
+    name: page for name, page in LESSON.pages.items() if name not in ("lab", "mistakes")
+}
 """The pages with runs beyond those of the lab."""
 
 
@@ -21,7 +23,9 @@ def experiments(joints, frames) -> dict[str, Experiment]:
     second = study_spec.SECOND_RUNS
     traces = {n: driven(case, LINKS) for n, case in cases.items() if n not in second}
     for name, of in second.items():
-        traces[name] = mujoco_joints.run_case(cases[name], LINKS, of.timestep, of.integrator)
+        traces[name] = mujoco_joints.run_case(
+            cases[name], LINKS, of.timestep, of.integrator
+        )
     traces[study_spec.ASSIGNED] = assigned(spec.BASELINE, LINKS, traces["baseline"])
     known = {"model": spec.EXPECTED_MODEL, study.GROUP: study.by_model(traces)}
     given = (traces, known, LINKS, frames, joints)

@@ -7,7 +7,8 @@ CONFIGURED = {
     "window [s]": spec.WINDOW,
     "step of joint4 [rad]": spec.STEP,
     "small step of joint4 [rad]": study_spec.SMALL_STEP,
-    "demand of the small step of G1 [N·m]": float(spec.G1.kp[spec.ENTRY]) * study_spec.SMALL_STEP,
+    "demand of the small step of G1 [N·m]": float(spec.G1.kp[spec.ENTRY])
+    * study_spec.SMALL_STEP,
     "open finger [m]": Q_START[-1],
     "rise fraction": metrics.RISE_FRACTION,
     "settling band [rad]": metrics.SETTLING_BAND,

@@ -25,4 +25,6 @@ def test_each_symptom_is_visible_before_the_fold_that_explains_it(site):
 def test_a_measured_number_says_where_it_comes_from(site):
     page = parsed(site, f"{FOLDER}/lecture")
     origins = {number["data-provenance"] for number in page.select(".measured")}
-    assert any(re.search(r"l04/lecture on cpu, Genesis .*, run \w{8}", of) for of in origins)
+    assert any(
+        re.search(r"l04/lecture on cpu, Genesis .*, run \w{8}", of) for of in origins
+    )

@@ -12,7 +12,10 @@ from robo_genesis.lessons.l04 import spec, study_spec
 @pytest.mark.parametrize(
     ("spoil", "refusal"),
     [
-        (case("MuJoCo_Euler_G2_substeps_2", note=""), "cases: .*note of the case MuJoCo"),
+        (
+            case("MuJoCo_Euler_G2_substeps_2", note=""),
+            "cases: .*note of the case MuJoCo",
+        ),
         (pop(METRICS, "readings", "inertia_Genesis"), "metrics: .*inertia_G"),
     ],
 )

@@ -4,7 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import case, copied, failed, frames, joints, metric, put, reading, trace
+from lessons.changed_runs import (
+    case,
+    copied,
+    failed,
+    frames,
+    joints,
+    metric,
+    put,
+    reading,
+    trace,
+)
 from lessons.experiments import checks_of, each, run_with
 
 from robo_genesis.core.checks import CheckFailed, require
@@ -48,45 +58,72 @@ def moving_at_the_end(run):
 
 SPOILERS = {
     "mapping": [
-        reading("model", "links", 10), joints(names=("base", *LAB.joints[1:])),
-        joints(types=("SPHERICAL",) * 9), joints(dofs_idx_local=np.arange(9) // 2),
+        reading("model", "links", 10),
+        joints(names=("base", *LAB.joints[1:])),
+        joints(types=("SPHERICAL",) * 9),
+        joints(dofs_idx_local=np.arange(9) // 2),
     ],
     "configuration": [
-        case("baseline", kp=put(0, np.nan)), case("baseline", kv=spec.BASELINE.kv[:8]),
-        joints(lower=put(0, -np.inf)), joints(types=("SPHERICAL",) * 9),
+        case("baseline", kp=put(0, np.nan)),
+        case("baseline", kv=spec.BASELINE.kv[:8]),
+        joints(lower=put(0, -np.inf)),
+        joints(types=("SPHERICAL",) * 9),
     ],
-    "target_limits": [case("baseline", q_start=put(8, 0.05)), joints(upper=put(3, -1.9))],
+    "target_limits": [
+        case("baseline", q_start=put(8, 0.05)),
+        joints(upper=put(3, -1.9)),
+    ],
     "baseline_approaches": [metric("baseline", final_error=0.25)],
     "stamps": [case("baseline", steps=119), trace("G2", t=lambda t: t * (1 + 1e-6))],
     "same_start": [
-        trace("G2", start_qd=put(1, 1e-6)), trace("G3", q=put((0, 0), 1e-6)),
+        trace("G2", start_qd=put(1, 1e-6)),
+        trace("G3", q=put((0, 0), 1e-6)),
         trace("G3", link_pos=put((0, 1, 2), 0.6)),
     ],
-    "one_factor": [case("G3", kp=put(0, 4501.0)), case("G1", kp=spec.G2.kp), case("G2", seed=1)],
+    "one_factor": [
+        case("G3", kp=put(0, 4501.0)),
+        case("G1", kp=spec.G2.kp),
+        case("G2", seed=1),
+    ],
     "control_law": [case("baseline", kv=put(K, 349.0)), copied("G1", "G2")],
     "not_observed": [
-        metric("G1", rise_time=None), metric("G1", rise_time=1.2),
-        metric("G2", settling_time=None), metric("G2", settling_time=0.01),
+        metric("G1", rise_time=None),
+        metric("G1", rise_time=1.2),
+        metric("G2", settling_time=None),
+        metric("G2", settling_time=0.01),
     ],
     "measurements": [trace("G1", control_force=put((4, 0), -87.1))],
     "saturation": [
-        metric("G2", saturation_samples=999), metric("G2", saturation_duration=9.0),
+        metric("G2", saturation_samples=999),
+        metric("G2", saturation_duration=9.0),
         trace("G1", effort_limit=put(0, 90.0)),
     ],
     "posture": [frames(), lambda run: replace(run, rendered=False)],
     "claimed_orders": [copied("G2", "G1"), overshoot("G3", 0.1)],
     "clipped_start": [
-        trace("G1", start_control_force=put(K, 80.0)), copied("G2", "G1"), copied("G3", "G2"),
-        trace("G2", control_force=np.abs), trace("G1", qd=put((6, K), 0.0)),
+        trace("G1", start_control_force=put(K, 80.0)),
+        copied("G2", "G1"),
+        copied("G3", "G2"),
+        trace("G2", control_force=np.abs),
+        trace("G1", qd=put((6, K), 0.0)),
         trace("G3", control_force=np.abs),
     ],
     "gravity_support": [reading(study.GROUP, "gravity_G2", 30.0), moving_at_the_end],
-    "ends_at_rest": [metric("G3", final_velocity=-0.02), metric("G1", final_error=0.011)],
-    "same_beginning": [copied("G2_longer", "G1"), trace("G2_longer", qd=put((3, 0), 9.0))],
+    "ends_at_rest": [
+        metric("G3", final_velocity=-0.02),
+        metric("G1", final_error=0.011),
+    ],
+    "same_beginning": [
+        copied("G2_longer", "G1"),
+        trace("G2_longer", qd=put((3, 0), 9.0)),
+    ],
     "same_metrics": [metric("G2_longer", settling_time=1.5)],
     "same_model": [reading(study.GROUP, name, 1.01) for name in REPORTED],
     "implicit_term": [reading(study.GROUP, "mass_KV_300", 2.5)],
-    "clipped_before_parting": [trace("G2", start_control_force=put(K, 80.0)), as_theory],
+    "clipped_before_parting": [
+        trace("G2", start_control_force=put(K, 80.0)),
+        as_theory,
+    ],
     "small_step_unsaturated": [
         trace("G2_small", start_control_force=put(K, -87.0)),
         trace("G2_hold", control_force=put((7, K), 87.0)),
@@ -96,24 +133,32 @@ SPOILERS = {
     "model_predicts": [overshoot("G1", 0.01), lifted("G2_small", 0.0001)],
     "stable_engines": [copied("G2", "MuJoCo_Euler_G2_substeps_2")],
     "first_step": [
-        copied("G3", "G2"), trace("G3", start_control_force=put(K, 40.0)),
+        copied("G3", "G2"),
+        trace("G3", start_control_force=put(K, 40.0)),
         trace("MuJoCo_implicitfast_G3_substeps_2", qd=put((0, K), 0.5)),
     ],
-    "convergence": [overshoot("G2_substeps_4", 0.07), overshoot("G2_substeps_50", 0.07)],
+    "convergence": [
+        overshoot("G2_substeps_4", 0.07),
+        overshoot("G2_substeps_50", 0.07),
+    ],
     "one_limit": [overshoot("G2_substeps_50", 0.0415)],
     "second_engine_order": [copied(IMPLICIT_G2, "MuJoCo_implicitfast_G1_substeps_2")],
     "order_at_finer_step": [
-        copied("G2_substeps_4", "G1_substeps_4"), copied("G3_substeps_20", "G2_substeps_20"),
+        copied("G2_substeps_4", "G1_substeps_4"),
+        copied("G3_substeps_20", "G2_substeps_20"),
     ],
     "grid_matches_cases": [
-        trace(GRID_G2, q=put((60, K), 0.0)), metric(GRID_G2, saturation_samples=99),
+        trace(GRID_G2, q=put((60, K), 0.0)),
+        metric(GRID_G2, saturation_samples=99),
         metric(GRID_G2, rise_time=None),
     ],
     "grid_within_gains": [
-        case(GRID_G2, kp=put(K, 7001.0)), case(GRID_G2, kv=put(K, 99.0)),
-        case(GRID_G2, q_target=put(K, -1.74)), case(GRID_G2, kv=put(0, 99.0)),
+        case(GRID_G2, kp=put(K, 7001.0)),
+        case(GRID_G2, kv=put(K, 99.0)),
+        case(GRID_G2, q_target=put(K, -1.74)),
+        case(GRID_G2, kv=put(0, 99.0)),
     ],
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("check", "spoil"), each(SPOILERS))
@@ -122,7 +167,9 @@ def test_a_spoiled_run_fails_its_check(experiments, monkeypatch, check, spoil):
     assert not failed(sound)
     run = spoil(sound)
     monkeypatch.setattr(spec, "CASES", {case: run.cases[case] for case in spec.CASES})
-    with pytest.raises(CheckFailed, match=rf"^L04 CHECK: FAILED \[{check}\] \S.* expected "):
+    with pytest.raises(
+        CheckFailed, match=rf"^L04 CHECK: FAILED \[{check}\] \S.* expected "
+    ):
         require("l04", run.outcomes())
 
 

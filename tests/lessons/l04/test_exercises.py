@@ -25,8 +25,12 @@ class Playback:
         """Accept a command."""
 
     def __getattr__(self, getter):
-        name = {"get_dofs_position": "q", "get_dofs_velocity": "qd", "get_dofs_force":
-                "internal_force", "get_dofs_control_force": "control_force"}[getter]  # fmt: skip
+        name = {
+            "get_dofs_position": "q",
+            "get_dofs_velocity": "qd",
+            "get_dofs_force": "internal_force",
+            "get_dofs_control_force": "control_force",
+        }[getter]
         sample = max(0, self.now - (name != "q"))
         values = getattr(self.trace, name)[sample]
         tensor = SimpleNamespace(numpy=lambda: values)
@@ -68,17 +72,23 @@ CASES = {  # of each exercise the right solution, then wrong ones
     ],
     "control_loop": [
         RECORD,
-        altered(0, lambda t: t / 2), altered(1, lambda q: q[1:]), altered(3, lambda force: -force),
+        altered(0, lambda t: t / 2),
+        altered(1, lambda q: q[1:]),
+        altered(3, lambda force: -force),
         lambda *given: RECORD(*given[:-1], given[-1] - 1),  # a command is missing
     ],
     "pd_law": [
         SOLVED["pd_effort"],
         lambda e, v, kp, kv, limit: min(limit, kp * e - kv * v),
-        lambda e, v, *gains: SOLVED["pd_effort"](e, -v, *gains),  # wrong sign of damping
+        lambda e, v, *gains: SOLVED["pd_effort"](
+            e, -v, *gains
+        ),  # wrong sign of damping
     ],
     "step_response": [
         SOLVED["measure"],
-        lambda *given: [given[0][-1] if v is None else v for v in SOLVED["measure"](*given)],
+        lambda *given: [
+            given[0][-1] if v is None else v for v in SOLVED["measure"](*given)
+        ],
         not_settled,
         lambda t, q, target: (1.0, (q - target).max(), None),  # signed overshoot
         lambda t, q, target: SOLVED["measure"](t + t[1], q, target),  # one sample late
@@ -86,13 +96,17 @@ CASES = {  # of each exercise the right solution, then wrong ones
     "stepped": [
         SOLVED["stepped"],
         lambda *given: SOLVED["stepped"](*given[:4], np.inf, *given[5:]),  # no limit
-        lambda *given: SOLVED["stepped"](*given[:5], -given[5], *given[6:]),  # gravity upwards
+        lambda *given: SOLVED["stepped"](
+            *given[:5], -given[5], *given[6:]
+        ),  # gravity upwards
         lambda *given: SOLVED["stepped"](*given)[1:],  # start missing
     ],
-}  # fmt: skip
+}
 
 
-@pytest.mark.parametrize(("name", "k"), [(n, k) for n, of in CASES.items() for k in range(len(of))])
+@pytest.mark.parametrize(
+    ("name", "k"), [(n, k) for n, of in CASES.items() for k in range(len(of))]
+)
 def test_only_the_right_solution_passes(experiment, name, k):
     joints, traces = experiment.joints, experiment.traces
     dofs = dict(zip(joints.names, joints.dofs_idx_local.tolist(), strict=True))

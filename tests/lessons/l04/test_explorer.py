@@ -23,7 +23,10 @@ def data(site) -> dict:
 @pytest.fixture(scope="module", params=["light", "dark"])
 def opened(request, browser, address, site) -> Iterator[tuple[Page, str]]:
     """A window of a phone and the address of the lecture: in the light, from disk in the dark."""
-    base, size = {"light": address, "dark": site.as_uri()}, {"width": 320, "height": 900}
+    base, size = (
+        {"light": address, "dark": site.as_uri()},
+        {"width": 320, "height": 900},
+    )
     page = browser.new_page(viewport=size, color_scheme=request.param, has_touch=True)
     problems = errors(page)
     yield page, f"{base[request.param]}/{LECTURE}.html"
@@ -51,7 +54,9 @@ def without_question(page, kp, kv):
 
 
 def answer(page, text):
-    page.locator(".explorer .question").get_by_role("button", name=text, exact=True).click()
+    page.locator(".explorer .question").get_by_role(
+        "button", name=text, exact=True
+    ).click()
 
 
 def shown(page):
@@ -78,7 +83,8 @@ def test_it_opens_at_g2(page, data):
 
 
 QUESTIONS = [
-    # the answers before, the run before and the run, the question's metric, the answer, its verdict
+    # the answers before, the run before and the run, the question's metric, the answer,
+    # its verdict
     (0, (7000, 100), (6125, 100), "rise time", "too close to call", "Yes"),
     (0, (7000, 100), (3500, 300), "rise time", "earlier", "No"),
     (1, (7000, 100), (6125, 100), "overshoot", "lower", "Yes"),
@@ -86,8 +92,12 @@ QUESTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("earlier", "first", "second", "noun", "said", "verdict"), QUESTIONS)
-def test_a_prediction_is_judged_by_runs(page, data, earlier, first, second, noun, said, verdict):
+@pytest.mark.parametrize(
+    ("earlier", "first", "second", "noun", "said", "verdict"), QUESTIONS
+)
+def test_a_prediction_is_judged_by_runs(
+    page, data, earlier, first, second, noun, said, verdict
+):
     for turn in range(earlier):
         choose(page, *((7000, 150), (7000, 100))[turn % 2])
         answer(page, "Skip")
@@ -122,7 +132,9 @@ def test_where_neither_run_has_a_rise_time_the_record_cannot_tell(page):
     }""")
     assert overflow == []  # on a phone, with the question open
     answer(page, "this record cannot tell")
-    assert shown(page)[0].startswith("Yes. The rise time: this record cannot tell, first not obs")
+    assert shown(page)[0].startswith(
+        "Yes. The rise time: this record cannot tell, first not obs"
+    )
 
 
 def test_the_curve_is_drawn_to_scale(page, data):

@@ -10,7 +10,8 @@ from robo_genesis.lessons.l04 import explorer, spec, study_spec
 
 POINTS = study_spec.POINTS
 G2 = study_spec.CASE_POINTS["G2"]
-SHIPPED = 60_000  # Most bytes that the explorer's data may take, compressed as a server sends them
+# Most bytes that the explorer's data may take, compressed as a server sends them
+SHIPPED = 60_000
 
 
 def cells_of(data):
@@ -26,11 +27,18 @@ def test_the_packed_runs_are_the_measured_ones(experiments):
     drawn = round(data["curves"]["until"] / data["curves"]["dt"])
     for point, cell in zip(POINTS, cells_of(data), strict=True):
         run = experiments["batch"].traces[point.name]
-        q, force = (np.array(cell[n]) * of["unit"] + of["zero"] for n, of in curves.items())
-        assert np.abs(q - run.q[: drawn + 1, spec.ENTRY]).max() < 0.51 * explorer.PACKED["q"]
+        q, force = (
+            np.array(cell[n]) * of["unit"] + of["zero"] for n, of in curves.items()
+        )
+        assert (
+            np.abs(q - run.q[: drawn + 1, spec.ENTRY]).max()
+            < 0.51 * explorer.PACKED["q"]
+        )
         off = np.abs(force - run.control_force[:drawn, spec.ENTRY]).max()
         assert off < 0.51 * explorer.PACKED["force"]
-        assert np.ptp(run.q[drawn:, spec.ENTRY]) < 5e-4  # rad, no motion after the drawn part
+        assert (
+            np.ptp(run.q[drawn:, spec.ENTRY]) < 5e-4
+        )  # rad, no motion after the drawn part
 
 
 def test_metrics_measures_and_sentence_of_a_point(experiments):
@@ -44,8 +52,13 @@ def test_metrics_measures_and_sentence_of_a_point(experiments):
         f"Saturated: {measured.saturation_samples} of 120 samples at the force limit."
     )
     assert explorer.CELLS.keys() == spec.MARGINS.keys() - {"settling_time"}
-    for name, measure, found in zip(explorer.CELLS, data["measures"], cell["numbers"], strict=True):
-        assert (measure["margin"], found) == (spec.MARGINS[name], getattr(measured, name))
+    for name, measure, found in zip(
+        explorer.CELLS, data["measures"], cell["numbers"], strict=True
+    ):
+        assert (measure["margin"], found) == (
+            spec.MARGINS[name],
+            getattr(measured, name),
+        )
     rise, peak = f"{1000 * measured.rise_time:.0f}", f"{measured.peak_speed:.2f}"
     assert cell["texts"][1::2] == [rise, peak]
     rows = explorer.table(experiments["batch"]).splitlines()[2:]

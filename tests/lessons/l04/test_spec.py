@@ -26,9 +26,13 @@ MODEL = spec.EXPECTED_MODEL
         (study_spec, "EXAMPLE_CASES", {}, ("lecture",)),
     ],
 )
-def test_inputs_are_parameters_and_judgements_are_none(monkeypatch, module, name, other, pages):
+def test_inputs_are_parameters_and_judgements_are_none(
+    monkeypatch, module, name, other, pages
+):
     before = {page: LESSON.pages[page].parameters() for page in PAGES}
     assert json.loads(json.dumps(before, allow_nan=False)) == before
     monkeypatch.setattr(module, name, other)
-    changed = [page for page in PAGES if LESSON.pages[page].parameters() != before[page]]
+    changed = [
+        page for page in PAGES if LESSON.pages[page].parameters() != before[page]
+    ]
     assert changed == [*pages]

@@ -21,18 +21,38 @@ def with_metrics(run, **by_case):
     ("change", "says"),
     [
         ({}, "- Between G2 and G3 only `kv[joint4]` differs; every other entry"),
-        ({"G3": replace(MEASURED, rise_time=None)}, "costs response time: G3 reaches 90 % after"),
-        ({"G3": replace(MEASURED, rise_time=0.0)}, "costs no response time: G3 reaches 90 % ear"),
+        (
+            {"G3": replace(MEASURED, rise_time=None)},
+            "costs response time: G3 reaches 90 % after",
+        ),
+        (
+            {"G3": replace(MEASURED, rise_time=0.0)},
+            "costs no response time: G3 reaches 90 % ear",
+        ),
         ({"G2": MEASURED, "G3": MEASURED}, "- No cost in response time is visible"),
-        ({name: replace(MEASURED, rise_time=None) for name in ("G2", "G3")}, "cost in response"),
-        ({"G1": replace(MEASURED, final_velocity=-0.5)},
-         "- G1 is faster than 0.01 rad/s at the end, so its error is not final."),
-        ({"G1": replace(MEASURED, settling_time=None)}, "- Settling of G1 into ±0.01 rad was not"),
+        (
+            {name: replace(MEASURED, rise_time=None) for name in ("G2", "G3")},
+            "cost in response",
+        ),
+        (
+            {"G1": replace(MEASURED, final_velocity=-0.5)},
+            "- G1 is faster than 0.01 rad/s at the end, so its error is not final.",
+        ),
+        (
+            {"G1": replace(MEASURED, settling_time=None)},
+            "- Settling of G1 into ±0.01 rad was not",
+        ),
         ({"G1": MEASURED}, "- G1 stays within ±0.01 rad from 0.31 s on."),
-        ({"G1": MEASURED}, "- G1 has 7 samples (0.07 s) at or above 99 % of its limit; its peak"),
-        ({"G1": replace(MEASURED, saturation_samples=0)}, "- G1 has no sample at or above 99 %"),
+        (
+            {"G1": MEASURED},
+            "- G1 has 7 samples (0.07 s) at or above 99 % of its limit; its peak",
+        ),
+        (
+            {"G1": replace(MEASURED, saturation_samples=0)},
+            "- G1 has no sample at or above 99 %",
+        ),
     ],
-)  # fmt: skip
+)
 def test_the_lab_says_what_the_runs_show(experiment, change, says):
     assert says in text.conclusions(with_metrics(experiment, **change))
 
@@ -44,10 +64,14 @@ def test_no_difference_is_attributed_to_several_factors():
 
 TIMES = st.none() | st.floats(0, 1.2)
 METRICS = st.builds(
-    replace, st.just(MEASURED), rise_time=TIMES, settling_time=TIMES,
-    overshoot=st.floats(0, 0.2), final_velocity=st.floats(-5, 5),
+    replace,
+    st.just(MEASURED),
+    rise_time=TIMES,
+    settling_time=TIMES,
+    overshoot=st.floats(0, 0.2),
+    final_velocity=st.floats(-5, 5),
     saturation_samples=st.integers(0, 120),
-)  # fmt: skip
+)
 
 
 @given(found=st.tuples(METRICS, METRICS, METRICS))
@@ -55,7 +79,9 @@ def test_every_outcome_gives_four_blocks_without_an_absolute_claim(experiment, f
     by_case = dict(zip(("G1", "G2", "G3"), found, strict=True))
     told = text.conclusions(with_metrics(experiment, **by_case))
     assert re.findall(r"\*\*(\d)\.", told) == ["1", "2", "3", "4"]
-    assert not re.search(r"\b(always|universally|never|nan|none|inf)\b", told, re.IGNORECASE)
+    assert not re.search(
+        r"\b(always|universally|never|nan|none|inf)\b", told, re.IGNORECASE
+    )
 
 
 @pytest.mark.parametrize(

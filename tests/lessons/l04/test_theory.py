@@ -11,7 +11,10 @@ T = np.linspace(0, 1.2, 24001)
 
 @pytest.mark.parametrize("damping", [20.0, 100.0, 122.7, 300.0])
 def test_response_and_overshoot_are_those_of_the_transfer_function(damping):
-    joint, plant = IdealJoint(1.077, damping, 3500.0), control.tf([3500.0], [1.077, damping, 3500])
+    joint, plant = (
+        IdealJoint(1.077, damping, 3500.0),
+        control.tf([3500.0], [1.077, damping, 3500]),
+    )
     oracle = control.step_response(plant, T).outputs
     assert joint.response(T) == pytest.approx(oracle, abs=1e-6)
     overshoot = control.step_info(plant, T=T)["Overshoot"]

@@ -17,15 +17,21 @@ from robo_genesis.sim.arm.franka import Q_START
 def reaches(joints) -> Experiment:
     """The runs and answers of the page about many solutions, which pass its checks."""
     found = answer(spec.TARGET, Q_START, 100)
-    runs = {n: driven(control_case(case, found), LINKS) for n, case in spec.CASES.items()}
+    runs = {
+        n: driven(control_case(case, found), LINKS) for n, case in spec.CASES.items()
+    }
     for name, case in spec.QUESTIONS.items():
         starts = case.starts
         if name == "vertical_restarted":  # where the first start fails, another one
             failed = ~study.answers(runs["vertical"], case)["accepted"]
-            starts = np.where(failed[:, None], spec.RANDOM_STARTS[1 : 1 + case.steps], starts)
+            starts = np.where(
+                failed[:, None], spec.RANDOM_STARTS[1 : 1 + case.steps], starts
+            )
         target = kinematics.Pose(case.positions, case.quat)
         limits = spec.ARM_LIMITS
-        q = kinematics.solve(target, starts[:, :7], *limits, iterations=100, damping=0.01)
+        q = kinematics.solve(
+            target, starts[:, :7], *limits, iterations=100, damping=0.01
+        )
         postures = np.hstack([q, starts[:, 7:]])
         runs[name] = assigned(case.start, LINKS, runs["baseline"], postures)
     apart, angle = map(float, kinematics.distances(found.error))

@@ -28,7 +28,10 @@ def with_answer(position, quat, name="unreachable"):
 
 
 CHANGES = [
-    ("mapping", lambda run: replace(run, links=(*run.links[:8], "flange", *run.links[9:]))),
+    (
+        "mapping",
+        lambda run: replace(run, links=(*run.links[:8], "flange", *run.links[9:])),
+    ),
     ("stamps", trace("baseline", t=lambda t: 2 * t)),
     ("acceptance", reading("ik", "residual_m", 6e-4)),
     ("acceptance", reading("ik", "residual_m", 2e-5)),
@@ -36,7 +39,10 @@ CHANGES = [
     ("second_engine", moved_hand("kp_doubled", 1e-5)),
     ("arrived", moved_hand("kp_doubled", 0.05)),
     ("sag_explains", copied("baseline", "kp_doubled")),
-    ("smaller_angles_explain_more", trace("kp_doubled", link_pos=lambda at: 1.001 * at)),
+    (
+        "smaller_angles_explain_more",
+        trace("kp_doubled", link_pos=lambda at: 1.001 * at),
+    ),
     ("kp_has_a_price", copied("kp_doubled", "baseline")),
     ("kp_has_a_price", copied("kp_doubled_ramp", "kp_doubled")),
     ("kp_has_a_price", moved_hand("kp_doubled_ramp", 5e-3)),
@@ -47,8 +53,14 @@ CHANGES = [
     ("repeatable", trace("kp_doubled", target=shift((0, 0), 1e-6))),
     ("first_start_fails", with_answer(spec.TARGET, spec.DOWN, "many_starts")),
     ("restarts_rescue_few", copied("vertical_restarted", "vertical")),
-    ("restarts_rescue_few", with_answer(spec.PLANES["vertical"], spec.DOWN, "vertical_restarted")),
-    ("map_has_targets_in_the_floor", with_answer(spec.BEYOND_REACH, spec.DOWN, "vertical")),
+    (
+        "restarts_rescue_few",
+        with_answer(spec.PLANES["vertical"], spec.DOWN, "vertical_restarted"),
+    ),
+    (
+        "map_has_targets_in_the_floor",
+        with_answer(spec.BEYOND_REACH, spec.DOWN, "vertical"),
+    ),
     ("unreachable_refused", with_answer(spec.BEYOND_REACH, spec.DOWN)),
     ("nearest_is_nearer", with_answer(*kinematics.hand_pose(study.nearest()[0]))),
 ]
@@ -67,15 +79,24 @@ def test_each_check_of_the_page_has_such_a_change(reaches):
 
 def test_the_lecture_compares_solver_steps_and_force_limits(reaches):
     found = answer(spec.TARGET, spec.BASELINE.q_start, 100)
-    more = {name: case for name, case in LECTURE.cases.items() if name not in reaches.traces}
-    runs = {name: driven(control_case(case, found), LINKS) for name, case in more.items()}
+    more = {
+        name: case for name, case in LECTURE.cases.items() if name not in reaches.traces
+    }
+    runs = {
+        name: driven(control_case(case, found), LINKS) for name, case in more.items()
+    }
     run = replace(reaches, page=LECTURE, traces={**reaches.traces, **runs})
-    changes = (lambda of: of, copied("kp_doubled_fine", "kp_doubled"),
-               copied("unlimited", "kp_doubled"))  # fmt: skip
+    changes = (
+        lambda of: of,
+        copied("kp_doubled_fine", "kp_doubled"),
+        copied("unlimited", "kp_doubled"),
+    )
     outcomes = [evaluate(checks.LECTURE[-2:], change(run)) for change in changes]
     assert [[check.passed for check in of] for of in outcomes] == [
-        [True, True], [False, True], [True, False],
-    ]  # fmt: skip
+        [True, True],
+        [False, True],
+        [True, False],
+    ]
 
 
 def test_the_record_of_answers_has_the_dt_of_its_case():
@@ -105,7 +126,9 @@ def test_an_answer_that_is_not_accepted_is_not_commanded():
         control_case(spec.BASELINE, IkAnswer(q, np.zeros(6, np.float32)))
     low = answer(spec.IN_THE_FLOOR.position, spec.BASELINE.q_start, 100)
     assert kinematics.distances(low.error)[0] < spec.IK.position_tolerance
-    with pytest.raises(NotAccepted, match=r"fingertips is -0\.0623 m, accepted is 0\.03 m"):
+    with pytest.raises(
+        NotAccepted, match=r"fingertips is -0\.0623 m, accepted is 0\.03 m"
+    ):
         control_case(spec.IN_THE_FLOOR, low)
 
 
@@ -117,13 +140,19 @@ def test_the_metrics_of_a_run_are_three_distances(reaches):
         study.sag_lengths(reaches.traces["baseline"], spec.BASELINE.kp)[0]
     )
     assert reaches.metrics["gravity_compensated"].final_distance < 5e-4
-    assert reaches.metrics["kp_doubled"].overshoot > 0.05 > reaches.metrics["baseline"].overshoot
+    assert (
+        reaches.metrics["kp_doubled"].overshoot
+        > 0.05
+        > reaches.metrics["baseline"].overshoot
+    )
 
 
 def test_a_self_motion_keeps_the_hand_in_place_and_groups_solutions(reaches):
     target = kinematics.Pose(spec.TARGET, spec.DOWN)
     curve = study.self_motion(reaches.traces["baseline"].target[0, :7], target)
-    assert np.abs(kinematics.pose_error(target, kinematics.hand_pose(curve))).max() < 1e-3
+    assert (
+        np.abs(kinematics.pose_error(target, kinematics.hand_pose(curve))).max() < 1e-3
+    )
     assert np.linalg.norm(np.diff(curve, axis=0), axis=1).max() < 0.1
     assert np.ptp(curve, axis=0).max() > 0.5
     ((of_curve, inside),) = study.families(curve[::5], target)

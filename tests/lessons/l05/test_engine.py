@@ -11,7 +11,9 @@ from robo_genesis.sim.arm import kinematics
 pytestmark = pytest.mark.engine
 
 
-def test_answers_depend_on_their_start_alone_and_are_measured_where_the_engine_says(lab):
+def test_answers_depend_on_their_start_alone_and_are_measured_where_the_engine_says(
+    lab,
+):
     of = spec.MANY_STARTS
     case = replace(of, positions=of.positions[:20], starts=spec.RANDOM_STARTS[:20])
     trace, errors = solve_all(lab.scene, lab.franka, lab.joints, case)

@@ -53,7 +53,10 @@ def left_out(where):
     """Return a projection without the points that a function of depth and pixel chooses."""
 
     def project(points, K, transform):
-        depth, at = cameras.in_camera(points, transform)[:, 2:], PROJECT(points, K, transform)
+        depth, at = (
+            cameras.in_camera(points, transform)[:, 2:],
+            PROJECT(points, K, transform),
+        )
         return np.where(where(depth, at), np.nan, at)
 
     return project
@@ -83,28 +86,50 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
     },
     "step": {
         "right": STEP,
-        "right, JᵀJ": lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(len(J.T)), J.T @ e),
+        "right, JᵀJ": lambda J, e, d: np.linalg.solve(
+            J.T @ J + d**2 * np.eye(len(J.T)), J.T @ e
+        ),
         "typed damping": lambda J, e, d: STEP(J, e, 0.01),
         "bounded": lambda J, e, d: np.clip(STEP(J, e, d), -0.05, 0.05),
         "as a column": lambda J, e, d: STEP(J, e, d)[:, None],
-        "six rows alone": lambda J, e, d: J.T @ np.linalg.solve(J @ J.T + d**2 * np.eye(6), e),
-        "seven joints alone": lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(7), J.T @ e),
-        "damping for six rows alone": lambda J, e, d: STEP(J, e, d if len(e) == 6 else 0.01),
+        "six rows alone": lambda J, e, d: (
+            J.T @ np.linalg.solve(J @ J.T + d**2 * np.eye(6), e)
+        ),
+        "seven joints alone": lambda J, e, d: np.linalg.solve(
+            J.T @ J + d**2 * np.eye(7), J.T @ e
+        ),
+        "damping for six rows alone": lambda J, e, d: STEP(
+            J, e, d if len(e) == 6 else 0.01
+        ),
         "error changed": in_place(STEP, 1),
     },
     "acceptance": {
         "right": ACCEPT,
         "signed": fed(ACCEPT, lambda q, e, *rest: (q, np.maximum(e, 0), *rest)),
-        "rotation alone": fed(ACCEPT, lambda q, e, tip, a, b, c: (q, e, tip, np.inf, b, c)),
+        "rotation alone": fed(
+            ACCEPT, lambda q, e, tip, a, b, c: (q, e, tip, np.inf, b, c)
+        ),
         "arm alone": fed(ACCEPT, lambda q, *rest: (q[:7], *rest)),
-        "typed tolerances": fed(ACCEPT, lambda q, e, tip, a, b, c: (q, e, tip, 5e-4, 5e-3, c)),
-        "typed clearance": fed(ACCEPT, lambda q, e, tip, a, b, c: (q, e, tip, a, b, 0.03)),
+        "typed tolerances": fed(
+            ACCEPT, lambda q, e, tip, a, b, c: (q, e, tip, 5e-4, 5e-3, c)
+        ),
+        "typed clearance": fed(
+            ACCEPT, lambda q, e, tip, a, b, c: (q, e, tip, a, b, 0.03)
+        ),
         "clearance above zero": fed(ACCEPT, lambda *given: (*given[:5], 0)),
-        "size of the clearance": fed(ACCEPT, lambda q, e, tip, *rest: (q, e, abs(tip), *rest)),
-        "below the tolerances": fed(ACCEPT, lambda *g: (*g[:3], 0.99 * g[3], 0.99 * g[4], g[5])),
-        "rotation about z left out": fed(ACCEPT, lambda q, e, *r: (q, e * (1, 1, 1, 1, 1, 0), *r)),
+        "size of the clearance": fed(
+            ACCEPT, lambda q, e, tip, *rest: (q, e, abs(tip), *rest)
+        ),
+        "below the tolerances": fed(
+            ACCEPT, lambda *g: (*g[:3], 0.99 * g[3], 0.99 * g[4], g[5])
+        ),
+        "rotation about z left out": fed(
+            ACCEPT, lambda q, e, *r: (q, e * (1, 1, 1, 1, 1, 0), *r)
+        ),
         "ends of q alone": fed(ACCEPT, lambda q, *rest: (q[[0, -1]], *rest)),
-        "turn not a number": fed(ACCEPT, lambda q, e, *r: (q, [*e[:3], *np.nan_to_num(e[3:])], *r)),
+        "turn not a number": fed(
+            ACCEPT, lambda q, e, *r: (q, [*e[:3], *np.nan_to_num(e[3:])], *r)
+        ),
     },
     "project": {
         "right": PROJECT,
@@ -114,14 +139,20 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
         "middle typed": lambda p, k, t: PROJECT(p, np.c_[k[:, :2], (16, 10, 1)], t),
         "points behind kept": behind_kept,
         "one point alone": lambda p, k, t: PROJECT(p[:1], k, t)[0],
-        "beside the picture": left_out(lambda depth, at: at.min(axis=1, keepdims=True) < 0),
+        "beside the picture": left_out(
+            lambda depth, at: at.min(axis=1, keepdims=True) < 0
+        ),
         "far points left out": left_out(lambda depth, at: depth > 20),
         "near points left out": left_out(lambda depth, at: depth < 0.1),
-        "others change": lambda p, k, t: PROJECT(p, k, t) + np.isnan(PROJECT(p, k, t)).any(),
+        "others change": lambda p, k, t: (
+            PROJECT(p, k, t) + np.isnan(PROJECT(p, k, t)).any()
+        ),
     },
     "back_project": {
         "right": BACK,
-        "half a pixel missing": lambda d, k, t: BACK(d, k + np.outer([0.5, 0.5, 0], [0, 0, 1]), t),
+        "half a pixel missing": lambda d, k, t: BACK(
+            d, k + np.outer([0.5, 0.5, 0], [0, 0, 1]), t
+        ),
         "camera coordinates": lambda d, k, t: BACK(d, k, cameras.FLIP),
         "fx for fy": lambda d, k, t: BACK(d, fx_alone(k), t),
         "one depth for all": lambda d, k, t: BACK(np.full_like(d, d.mean()), k, t),
@@ -130,7 +161,9 @@ CASES = {  # wrong solutions that only few of a test's findings tell from a righ
 }
 
 
-@pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in CASES.items() for how in of])
+@pytest.mark.parametrize(
+    ("name", "how"), [(n, how) for n, of in CASES.items() for how in of]
+)
 def test_only_right_solutions_pass(reaches, name, how):
     more = {"forward": (reaches.traces["baseline"],)}.get(name, ())
     check = getattr(exercises, name)(CASES[name][how], *more)

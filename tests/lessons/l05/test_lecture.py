@@ -21,7 +21,9 @@ SPHERE = Marker(13, spec.TARGET, spec.MARKER_RADIUS)
 @pytest.fixture(scope="module", params=[True, False], ids=["camera", "RENDER=0"])
 def run(request, reaches, frames):
     """The lab as a camera without errors sees it."""
-    view = closed_view(SPHERE, spec.FOV, CAMERA_RES, looking(spec.VIEW["pos"], spec.VIEW["lookat"]))
+    view = closed_view(
+        SPHERE, spec.FOV, CAMERA_RES, looking(spec.VIEW["pos"], spec.VIEW["lookat"])
+    )
     segments = {"plane": PLANE, "hand": 10, "marker": SPHERE.number}
     seen = {"view_world": view_record.numbers(view), "segments": segments}
     return replace(
@@ -37,7 +39,9 @@ def run(request, reaches, frames):
 def test_the_checks_hold_and_pictures_are_skipped_where_there_are_none(run):
     assert [check.detail for check in run.outcomes() if not check.passed] == []
     shown = text.marker_table(run), text.depth_table(run), text.conclusions(run)
-    assert [text.NO_PICTURE in part for part in shown] == [not run.rendered] * 2 + [False]
+    assert [text.NO_PICTURE in part for part in shown] == [not run.rendered] * 2 + [
+        False
+    ]
     assert ("The pixels of the marker are" in shown[2]) == run.rendered
     assert len(plots.picture(run).axes[0].images) == run.rendered
     assert plots.posture(run).axes
@@ -65,7 +69,9 @@ def test_the_ground_is_judged_in_each_view_of_the_page(run):
 
 def test_tables_and_figures_give_the_numbers_of_the_runs(run):
     base = run.metrics["baseline"]
-    apart, angle = (f"{1000 * value:.3f}" for value in (base.final_distance, base.final_angle))
+    apart, angle = (
+        f"{1000 * value:.3f}" for value in (base.final_distance, base.final_angle)
+    )
     assert f"| {apart} | {angle} |" in text.error_table(run)
     assert f"| end to target [mm] | {apart} |" in text.metric_table(run)
     assert "is accepted" in text.conclusions(run)
@@ -74,6 +80,8 @@ def test_tables_and_figures_give_the_numbers_of_the_runs(run):
 
 @pytest.mark.parametrize("run", [True], indirect=True)
 @pytest.mark.parametrize(("name", "value"), [("transform_03", 1.6), ("far", 21.0)])
-def test_a_sound_bundle_is_accepted_and_another_camera_refused(engine, tmp_path, run, name, value):
+def test_a_sound_bundle_is_accepted_and_another_camera_refused(
+    engine, tmp_path, run, name, value
+):
     spoil = metric("view_world", name, value)
     assert "checks" in accepted_then_refused(engine, tmp_path, "l05", "lab", run, spoil)

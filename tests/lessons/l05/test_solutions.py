@@ -10,20 +10,28 @@ def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(reaches):
     for found, axis in zip(data["maps"], (2, 1), strict=True):
         cells = {cell["answer"]: cell for row in found["rows"] for cell in row["cells"]}
         rows, targets = data["tables"][found["caption"]], data["postures"][found["run"]]
-        assert sorted(cells) == list(range(1, 64)) == [int(row["answer"]) for row in rows]
+        assert (
+            sorted(cells) == list(range(1, 64)) == [int(row["answer"]) for row in rows]
+        )
         assert cells[1]["values"] == [*rows[0].values()][1:]
         top = targets[found["rows"][0]["cells"][0]["answer"] - 1]
         assert top[axis] == targets[:, axis].max()
         assert top[0] == targets[:, 0].min() == float(found["columns"][0])
-        answers = study.answers(reaches.traces[found["run"]], spec.QUESTIONS[found["run"]])
+        answers = study.answers(
+            reaches.traces[found["run"]], spec.QUESTIONS[found["run"]]
+        )
         accepted = answers["accepted"]
         assert [row["accepted"] == "yes" for row in rows] == accepted.tolist()
-        assert [cells[k]["state"] == "accepted" for k in sorted(cells)] == accepted.tolist()
+        assert [
+            cells[k]["state"] == "accepted" for k in sorted(cells)
+        ] == accepted.tolist()
 
 
 def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(reaches):
     (found,) = explorer.explored(reaches, "solutions")["maps"]
-    assert {cell["state"] for row in found["rows"] for cell in row["cells"]} == {"accepted"}
+    assert {cell["state"] for row in found["rows"] for cell in row["cells"]} == {
+        "accepted"
+    }
     q = reaches.traces["many_starts"].q
     for row in found["rows"]:
         assert (np.diff(q[[cell["answer"] for cell in row["cells"]], 0]) >= 0).all()

@@ -35,7 +35,9 @@ def swept(runs) -> dict:
     m = {name: world_metrics(runs[name], spec.VARIANTS[name]) for name in spec.SWEPT}
     readings = {"sweep_end": {}, "sweep_overshoot": {}}
     for (kp, kv, load), row in spec.SWEEP.items():
-        recorded = m["stiff_robot" if kp > kv else "loaded_robot" if load else "plain_robot"]
+        recorded = m[
+            "stiff_robot" if kp > kv else "loaded_robot" if load else "plain_robot"
+        ]
         share = 0.5 if kp > kv and load else 1.0
         end = m["loaded_robot"].final_distance if share < 1 else recorded.final_distance
         readings["sweep_end"][row] = share * end
@@ -49,11 +51,15 @@ def worlds(joints) -> Experiment:
     runs = {name: run_of(world) for name, world in spec.WORLDS.items()}
     for k in spec.ENVS:
         runs[f"alone_{k}"] = replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING)
-    runs |= {name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain_robot"}
+    runs |= {
+        name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain_robot"
+    }
     runs["plain_robot"] = beginning(runs["env_0"], spec.SWITCH)
     for name, world in spec.COPIES.items():
         runs[name] = beginning(runs[f"env_{name[-1]}"], world.steps)
-    masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}
+    masses = {
+        name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()
+    }
     equality = study.LECTURE_READINGS[study.EQUALITY].units
     residuals = [study.residual(position, joints) for position in spec.MIXED]
     known = swept(runs) | {

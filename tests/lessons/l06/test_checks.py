@@ -20,11 +20,15 @@ def moved_hand(name, by, samples):
 
 
 def still(name):
-    return trace(name, link_pos=lambda at: put(slice(spec.SWITCH, None), at[spec.SWITCH])(at))
+    return trace(
+        name, link_pos=lambda at: put(slice(spec.SWITCH, None), at[spec.SWITCH])(at)
+    )
 
 
 def swapped(run, one, other):
-    return replace(run, traces={**run.traces, one: run.traces[other], other: run.traces[one]})
+    return replace(
+        run, traces={**run.traces, one: run.traces[other], other: run.traces[one]}
+    )
 
 
 CHANGES = [
@@ -57,7 +61,8 @@ CHANGES = [
     ("untouched_keep_their_state", still("env_1")),
     ("partial_reset", trace("again_1", q=shift(3, 1e-6))),
     ("own_gains_and_mass", reading("hand_mass", LOADED, spec.HAND_MASS)),
-    # a load in another row, a stiff row that kept its gains, a plain row with a neighbour's
+    # a load in another row, a stiff row that kept its gains, a plain row with a
+    # neighbour's
     ("own_gains_and_mass", lambda run: swapped(run, STIFF, LOADED)),
     ("own_gains_and_mass", lambda run: trace(STIFF, q=run.traces[PLAIN].q)(run)),
     ("own_gains_and_mass", lambda run: trace(PLAIN, q=run.traces[STIFF].q)(run)),
@@ -91,7 +96,10 @@ def test_the_lab_says_which_checks_fail_if_two_rows_are_swapped(worlds):
 
 def test_a_row_that_is_not_accepted_is_not_commanded():
     worlds = [spec.WORLDS[f"env_{k}"] for k in spec.ENVS]
-    q, error = np.tile(np.float32(spec.FIRST.q_start), (4, 1)), np.zeros((4, 6), np.float32)
+    q, error = (
+        np.tile(np.float32(spec.FIRST.q_start), (4, 1)),
+        np.zeros((4, 6), np.float32),
+    )
     assert commands(worlds, IkAnswer(q, error)) == pytest.approx(q)
     error[2, 0] = 1e-3
     q[3, 0] = np.nan
@@ -102,6 +110,9 @@ def test_a_row_that_is_not_accepted_is_not_commanded():
 def test_the_metrics_tell_when_a_hand_moved(worlds):
     m = worlds.metrics
     assert m["env_0"].moved_later < 1e-5 < 0.1 < m["env_1"].moved_later
-    assert (m[PLAIN].moved_later, m[PLAIN].final_distance) == (None, m[PLAIN].first_distance)
+    assert (m[PLAIN].moved_later, m[PLAIN].final_distance) == (
+        None,
+        m[PLAIN].first_distance,
+    )
     assert m["unlimited_robot"].overshoot < 0.01 < m[STIFF].overshoot
     assert m["env_3"].first_distance < 0.02 > m["env_3"].final_distance

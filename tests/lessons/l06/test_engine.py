@@ -54,12 +54,16 @@ def test_answers_of_some_environments_are_those_of_all(four):
     assert (some.error == every.error[[3, 1]]).all()
 
 
-@pytest.mark.parametrize(("rows", "envs", "message"), [
-    (1, [1, 3], r"shape \(1, 9\), expected one row"),
-    (4, [1, 3], r"shape \(4, 9\), expected one row"),
-    (2, [1, 1], r"Environments \[1, 1\]"), (1, [4], r"Environments \[4\]"),
-    (0, [], r"Environments \[\]"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("rows", "envs", "message"),
+    [
+        (1, [1, 3], r"shape \(1, 9\), expected one row"),
+        (4, [1, 3], r"shape \(4, 9\), expected one row"),
+        (2, [1, 1], r"Environments \[1, 1\]"),
+        (1, [4], r"Environments \[4\]"),
+        (0, [], r"Environments \[\]"),
+    ],
+)
 def test_a_command_that_would_broadcast_is_refused(four, rows, envs, message):
     cases = [world.commanding(world.q_start) for world in WORLDS]
     batch = Batch(**vars(four), cases=cases)
@@ -70,29 +74,44 @@ def test_a_command_that_would_broadcast_is_refused(four, rows, envs, message):
 def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
     set_link_mass(four.robot, "hand", [1.0], [1])
     four.scene.reset()
-    assert set_link_mass(four.robot, "hand", [0.73], [2]) == pytest.approx([0.73, 1, 0.73, 0.73])
+    assert set_link_mass(four.robot, "hand", [0.73], [2]) == pytest.approx(
+        [0.73, 1, 0.73, 0.73]
+    )
     assert set_link_mass(four.robot, "hand", [0.73], [1]) == pytest.approx([0.73] * 4)
 
 
 @pytest.mark.parametrize("size", [1, 2, 64])
-def test_rows_of_batches_of_other_sizes_agree_within_the_bounds(real_engine, measured, size):
+def test_rows_of_batches_of_other_sizes_agree_within_the_bounds(
+    real_engine, measured, size
+):
     worlds = [WORLDS[k % len(WORLDS)] for k in range(size)]
     runs = reach(**vars(robot_in_scene(real_engine.gs, size, **EACH)), worlds=worlds)
     for k, run in enumerate(runs):
         apart = study.largest_differences(run, measured[f"env_{k % len(WORLDS)}"])
-        assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), (k, apart)
-        assert study.entries_that_differ(run, runs[k % len(WORLDS)])[0] == 0  # the same world
+        assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), (
+            k,
+            apart,
+        )
+        assert (
+            study.entries_that_differ(run, runs[k % len(WORLDS)])[0] == 0
+        )  # the same world
 
 
-def test_without_its_option_a_scene_has_one_set_of_gains_whatever_environment_is_named(real_engine):
+def test_without_its_option_a_scene_has_one_set_of_gains_whatever_environment_is_named(
+    real_engine,
+):
     robot = robot_in_scene(real_engine.gs, 2).robot
     robot.set_dofs_kp(kp := 2 * spec.FIRST.kp, range(len(kp)), envs_idx=[1])
     assert to_numpy(robot.get_dofs_kp()) == pytest.approx(kp)
 
 
 @pytest.mark.parametrize("substeps", [4, 8])
-def test_a_stiff_arm_passes_its_target_farther_at_a_finer_step_as_well(real_engine, substeps):
-    robots = [replace(of, substeps=substeps) for of in spec.VARIANTS.values() if not of.load]
+def test_a_stiff_arm_passes_its_target_farther_at_a_finer_step_as_well(
+    real_engine, substeps
+):
+    robots = [
+        replace(of, substeps=substeps) for of in spec.VARIANTS.values() if not of.load
+    ]
     scene = robot_in_scene(real_engine.gs, len(robots), substeps, **EACH)
     runs = reach(**vars(scene), worlds=robots)
     plain, stiff, unlimited = (m.overshoot for m in map(world_metrics, runs, robots))

@@ -32,11 +32,20 @@ def test_tables_give_the_numbers_of_the_runs(run):
     rows = text.row_table(run).splitlines()[2:]
     assert all(value in row for value, row in zip(last, rows, strict=True))
     assert text.mixed_table(run).count("**refused**") == 1
-    equality = [line.split("|")[2:-1] for line in text.equality_table(run).splitlines()[2:]]
-    assert [float(of[1]) for of in equality[: len(study.pairs())]] == [0] * len(study.pairs())
+    equality = [
+        line.split("|")[2:-1] for line in text.equality_table(run).splitlines()[2:]
+    ]
+    assert [float(of[1]) for of in equality[: len(study.pairs())]] == [0] * len(
+        study.pairs()
+    )
     rounding = equality[len(study.pairs())][2].strip()
     assert rounding == "0.238 µrad"  # what the fixture adds
-    assert [of[2].strip() for of in equality[-4:]] == ["0 µrad", "1,000 µrad", "0 µrad", "1.00 rad"]
+    assert [of[2].strip() for of in equality[-4:]] == [
+        "0 µrad",
+        "1,000 µrad",
+        "0 µrad",
+        "1.00 rad",
+    ]
     assert f"{1000 * m['loaded_robot'].final_distance:.2f} |" in text.variant_table(run)
     assert f"| {1000 * m['stiff_robot'].overshoot:.0f} / " in text.sweep_table(run)
 
@@ -47,7 +56,9 @@ def test_the_map_has_the_sweep_and_opens_at_the_plain_robot(run):
     (opened,) = (cell for cell in cells if cell["opens"])
     m = run.metrics["plain_robot"]
     assert len(cells) == len(spec.SWEEP) == 256
-    assert opened["numbers"] == pytest.approx([1000 * m.final_distance, 1000 * m.overshoot])
+    assert opened["numbers"] == pytest.approx(
+        [1000 * m.final_distance, 1000 * m.overshoot]
+    )
     assert opened["sentence"].startswith("KP × 1, KV × 1: passes")
 
 
@@ -63,18 +74,26 @@ def test_the_conclusions_follow_the_runs(run):
 def test_figures_draw_what_the_tables_say(run):
     lines = plots.distance(run).axes[0].lines
     last = [line.get_ydata()[-1] for line in lines[: len(spec.WORLDS)]]
-    assert last == pytest.approx([1000 * run.metrics[n].final_distance for n in spec.WORLDS])
+    assert last == pytest.approx(
+        [1000 * run.metrics[n].final_distance for n in spec.WORLDS]
+    )
 
 
 def test_the_replay_has_a_sphere_at_each_target_in_the_colour_of_its_run():
     parts = target_parts()
     assert len(parts) == 4
     centre = parts[1].vertices.mean(axis=0)
-    assert centre == pytest.approx(spec.TARGETS[0] + np.array([*spec.PLACES[1], 0]), abs=1e-6)
+    assert centre == pytest.approx(
+        spec.TARGETS[0] + np.array([*spec.PLACES[1], 0]), abs=1e-6
+    )
     assert parts[1].rgb == tuple(bytes.fromhex(MARKS["first"].light[1:]))
 
 
 @pytest.mark.parametrize("run", [True], indirect=True)
 def test_a_sound_bundle_is_accepted_and_a_moved_hand_is_refused(engine, tmp_path, run):
-    spoil = in_archive("beside_0", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))
-    assert "link_pos" in accepted_then_refused(engine, tmp_path, "l06", "lecture", run, spoil)
+    spoil = in_archive(
+        "beside_0", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01)
+    )
+    assert "link_pos" in accepted_then_refused(
+        engine, tmp_path, "l06", "lecture", run, spoil
+    )

@@ -74,26 +74,35 @@ def known():
     found = {}
     for size in throughput.DEEPER.sizes:
         time = float(of.step_time(size)) * (2 if size == 1024 else 1)
-        found |= {f"build_{size}": 1.0, f"memory_{size}": 100.0 + size, f"step_{size}": time}
+        found |= {
+            f"build_{size}": 1.0,
+            f"memory_{size}": 100.0 + size,
+            f"step_{size}": time,
+        }
         found |= {f"fastest_{size}": time / 1.1, f"slowest_{size}": 1.1 * time}
     others = {"step_four_of_256": 0.016984, "step_four_of_250": 0.0168}
     for part, each in (("sphere", 2e-6), ("robot_1", 9e-6), ("robot_4", 3e-5)):
-        others |= {f"step_{part}_{size}": 0.0004 + size * each for size in throughput.ENDS}
+        others |= {
+            f"step_{part}_{size}": 0.0004 + size * each for size in throughput.ENDS
+        }
     return SimpleNamespace(readings={throughput.GROUP: found | others})
 
 
-@pytest.mark.parametrize(("table", "says"), [
-    ("throughput_table", "| 4 | 0.664 | 1.08 | 6,020 |"),
-    ("throughput_table", "| 1000 | 16.6 | 26.9 | **60,200** |"),
-    ("throughput_details", "| 4 | 0.604 to 0.73 | 15.1 | 1.0 | 104 |"),
-    ("model_table", "| 64, fitted | 1.62 | 1.6 to 1.6 | 1.00 to 1.00 |"),
-    ("model_table", "| 1024 | 34 | 17 to 17 | 2.00 to 2.00 |"),
-    ("constants_table", "*b*, the part of each environment [µs] | 16 to 16 |"),
-    ("parts_table", "| robot, substeps: 4 | 0.4 | 30 |"),
-    ("parts_table", "| sphere, substeps: 2 | 0.4 | 2 |"),
-    ("cache_table", "| one scene of 1024 | 34 | 33.2 |"),
-    ("cache_table", "| four scenes of 256, in turn | 17 | 16.6 |"),
-    ("cache_table", "| four scenes of 250, in turn | 16.8 | 16.8 |"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        ("throughput_table", "| 4 | 0.664 | 1.08 | 6,020 |"),
+        ("throughput_table", "| 1000 | 16.6 | 26.9 | **60,200** |"),
+        ("throughput_details", "| 4 | 0.604 to 0.73 | 15.1 | 1.0 | 104 |"),
+        ("model_table", "| 64, fitted | 1.62 | 1.6 to 1.6 | 1.00 to 1.00 |"),
+        ("model_table", "| 1024 | 34 | 17 to 17 | 2.00 to 2.00 |"),
+        ("constants_table", "*b*, the part of each environment [µs] | 16 to 16 |"),
+        ("parts_table", "| robot, substeps: 4 | 0.4 | 30 |"),
+        ("parts_table", "| sphere, substeps: 2 | 0.4 | 2 |"),
+        ("cache_table", "| one scene of 1024 | 34 | 33.2 |"),
+        ("cache_table", "| four scenes of 256, in turn | 17 | 16.6 |"),
+        ("cache_table", "| four scenes of 250, in turn | 16.8 | 16.8 |"),
+    ],
+)
 def test_tables_give_the_known_values(known, table, says):
     assert says in getattr(text, table)(known)

@@ -24,7 +24,9 @@ def trace_of(name: str, case: table.SceneCase) -> Trace:
     if isinstance(case, table_map.MapCase):
         answers = [answer(target, spec.GOOD.q_start, 20).q for target in case.targets]
         before = driven(spec.GOOD.commanding(spec.GOOD.q_start), LINKS)
-        return table_map.with_bodies(assigned(case.start, LINKS, before, np.stack(answers)))
+        return table_map.with_bodies(
+            assigned(case.start, LINKS, before, np.stack(answers))
+        )
     lifts = metrics.lifts(case)
     command = case.q_start
     if lifts:
@@ -53,7 +55,9 @@ def trace_of(name: str, case: table.SceneCase) -> Trace:
 def wrist_pose() -> np.ndarray:
     """Return the pose of the camera on the hand at home."""
     hand, pose = kinematics.hand_pose(spec.GOOD.q_start), np.eye(4)
-    pose[:3, :3] = np.stack([kinematics.rotate(hand.quat, axis) for axis in np.eye(3)], axis=1)
+    pose[:3, :3] = np.stack(
+        [kinematics.rotate(hand.quat, axis) for axis in np.eye(3)], axis=1
+    )
     pose[:3, 3] = hand.position
     return pose @ np.array(table.ON_HAND)
 
@@ -61,8 +65,18 @@ def wrist_pose() -> np.ndarray:
 def readings() -> dict[str, dict[str, float]]:
     """Return what the engine would report of the lecture's scenes."""
     scenes = [spec.SCENES[name] for name in spec.SCENES_OF_LECTURE]
-    usual = {"depth": 2e-4, "accepted": 2, "pregrasp": 0.136, "grasp": 0.036, "touches": 0}
-    usual |= dict.fromkeys(rungs.FINGERS, 2) | {"descending": 0, "world": 1300.0, "wrist": 1700.0}
+    usual = {
+        "depth": 2e-4,
+        "accepted": 2,
+        "pregrasp": 0.136,
+        "grasp": 0.036,
+        "touches": 0,
+    }
+    usual |= dict.fromkeys(rungs.FINGERS, 2) | {
+        "descending": 0,
+        "world": 1300.0,
+        "wrist": 1700.0,
+    }
     found = {
         group: {name: usual.get(name.split("_", 1)[-1], 0) for name in of.units}
         for group, of in LECTURE.groups(rendered=True).items()
@@ -70,7 +84,9 @@ def readings() -> dict[str, dict[str, float]]:
     for name, case in zip(spec.SCENES_OF_LECTURE, scenes, strict=True):
         found["object"][f"{name}_mass"] = case.density * case.volume
     found["contacts"]["wide_descending"] = 50
-    found["contacts"] |= dict.fromkeys(("forced_descending", "forced_fine_descending"), 3)
+    found["contacts"] |= dict.fromkeys(
+        ("forced_descending", "forced_fine_descending"), 3
+    )
     for name, field, pose in (
         ("world", 42.0, geometry.looking(spec.VIEW["pos"], spec.VIEW["lookat"])),
         ("wrist", 60.0, wrist_pose()),
@@ -86,7 +102,10 @@ def readings() -> dict[str, dict[str, float]]:
 def scenes(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
     runs = {name: of.case for name, of in LECTURE.runs.items()}
-    traces, found = {name: trace_of(name, case) for name, case in runs.items()}, readings()
+    traces, found = (
+        {name: trace_of(name, case) for name, case in runs.items()},
+        readings(),
+    )
     apart, angle, _ = table_map.residuals(traces["table"])
     good = ((apart <= 5e-4) & (angle <= 5e-3)).reshape(-1, 2).sum(axis=1).tolist()
     for name in table_map.COUNTED:

@@ -29,7 +29,9 @@ def fallen(case, end):
     motion = np.zeros_like(place)
     motion[..., 2] = np.where(rest, 0, -GRAVITY * times(case)[:, None])
     unturned = np.broadcast_to([1, 0, 0, 0], (*place.shape[:2], 4))
-    return BodyTrace(times(case), *map(np.float32, (place, unturned, motion, 0 * motion)))
+    return BodyTrace(
+        times(case), *map(np.float32, (place, unturned, motion, 0 * motion))
+    )
 
 
 def end_of(name, case):
@@ -42,9 +44,18 @@ def end_of(name, case):
 def run():
     volume = {"one_hull": 590.0, "default": 190.0, "pieces": 114.0, "visual": 114.0}
     mass = {of: 1e-6 * bowl.DENSITY * volume[of] for of in bowl.CHOICES}
-    flat = {of: dict.fromkeys(MESHES.readings[of].units, bowl.HEIGHT) for of in MESHES.readings}
-    known = flat | {"bowl_volume": volume, "bowl_mass": mass, "uncovered": {"default": 0.0}}
-    traces = {name: fallen(case, end_of(name, case)) for name, case in bowls.CASES.items()}
+    flat = {
+        of: dict.fromkeys(MESHES.readings[of].units, bowl.HEIGHT)
+        for of in MESHES.readings
+    }
+    known = flat | {
+        "bowl_volume": volume,
+        "bowl_mass": mass,
+        "uncovered": {"default": 0.0},
+    }
+    traces = {
+        name: fallen(case, end_of(name, case)) for name, case in bowls.CASES.items()
+    }
     return Experiment(MESHES, traces, BALLS, known, {}, False)
 
 
@@ -61,13 +72,18 @@ def test_volume_of_the_mesh_is_that_of_its_facets_and_of_the_pieces():
     assert sum(piece.volume for piece in pieces) == pytest.approx(mesh.volume, rel=1e-6)
     assert mesh.bounds[:, 2].tolist() == [0, bowl.HEIGHT]
     assert bowls.outside(pieces, mesh.triangles_center).max() < 1e-9
-    assert bowls.outside([mesh.convex_hull], np.array([[0, 0, 0.06]]))[0] == pytest.approx(0.01)
+    assert bowls.outside([mesh.convex_hull], np.array([[0, 0, 0.06]]))[
+        0
+    ] == pytest.approx(0.01)
 
 
 def test_balls_inside_are_counted_and_the_lowest_is_found(run):
     inside = run.metrics["in_default"]
     assert (inside.inside, inside.lowest) == (100, pytest.approx(bowl.WALL))
-    assert (run.metrics["in_one_hull"].inside, run.metrics["in_one_hull"].lowest) == (0, None)
+    assert (run.metrics["in_one_hull"].inside, run.metrics["in_one_hull"].lowest) == (
+        0,
+        None,
+    )
 
 
 SPOILED = {
@@ -76,8 +92,12 @@ SPOILED = {
     "hulls_cover": reading("uncovered", "default", 1e-3),
     "default_is_closer": reading("bowl_volume", "one_hull", 300.0),
     "mass_is_of_collision": reading("bowl_mass", "default", 0.046),
-    "small_balls_count_as_inside": trace("small_in_pieces_h1000us", link_pos=shift((..., 0), 0.2)),
-    "fast_small_balls_sink": trace("small_from_inside_h1000us", link_pos=lambda p: p - 0.003),
+    "small_balls_count_as_inside": trace(
+        "small_in_pieces_h1000us", link_pos=shift((..., 0), 0.2)
+    ),
+    "fast_small_balls_sink": trace(
+        "small_from_inside_h1000us", link_pos=lambda p: p - 0.003
+    ),
     "stamps": trace("in_pieces", t=lambda t: 2 * t),
 }
 

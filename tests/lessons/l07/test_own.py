@@ -14,7 +14,9 @@ def not_written(results):
 
 
 def by_margin(results):
-    return next((rung for rung, of in results.items() if of["margin"] != GOOD["margin"]), None)
+    return next(
+        (rung for rung, of in results.items() if of["margin"] != GOOD["margin"]), None
+    )
 
 
 @pytest.mark.parametrize(
@@ -22,8 +24,18 @@ def by_margin(results):
     [
         ([], {}, by_margin, ["ladder: none", "passes all five"]),
         (["seen"], {"seen": {"margin": 0}}, by_margin, ["ladder: seen", "fails seen."]),
-        (["seen", "built"], {}, by_margin, ["differ: built and seen", "fails built and seen."]),
-        ([], {"stable": None}, by_margin, ["do not judge stable yet", "passes all five"]),
+        (
+            ["seen", "built"],
+            {},
+            by_margin,
+            ["differ: built and seen", "fails built and seen."],
+        ),
+        (
+            [],
+            {"stable": None},
+            by_margin,
+            ["do not judge stable yet", "passes all five"],
+        ),
         (["stable"], {}, not_written, ["graspable yet", "fails stable."]),
     ],
 )

@@ -19,8 +19,12 @@ def run():
     cases = REST.cases
     traces = {name: mujoco_contacts.run_case(of) for name, of in cases.items()}
     for name in rest.TWINS:  # two engines never agree to the last bit
-        traces[name] = replace(traces[name], link_pos=traces[name].link_pos + np.float32(1e-7))
-    readings = {s: {name: getattr(cases[name], s) for name in rest.CASES} for s in SETTINGS}
+        traces[name] = replace(
+            traces[name], link_pos=traces[name].link_pos + np.float32(1e-7)
+        )
+    readings = {
+        s: {name: getattr(cases[name], s) for name in rest.CASES} for s in SETTINGS
+    }
     return Experiment(REST, traces, ("body",), readings, {}, False)
 
 
@@ -29,9 +33,17 @@ def run():
     [
         ({}, 4.27e-6, 0.0),
         ({"tilt": np.radians(10)}, 4.2e-6, 2.81e-4),
-        ({"tilt": np.radians(10), "cone": "elliptic", "impratio": 100.0}, 26.9e-6, 2.25e-6),
+        (
+            {"tilt": np.radians(10), "cone": "elliptic", "impratio": 100.0},
+            26.9e-6,
+            2.25e-6,
+        ),
         ({"friction": 1.0, "time_constant": 0.02}, 107.8e-6, 0.0),
-        ({"friction": 2.0}, 252.3e-6, 0.0),  # deeper than half of the width of the impedance
+        (
+            {"friction": 2.0},
+            252.3e-6,
+            0.0,
+        ),  # deeper than half of the width of the impedance
     ],
 )
 def test_the_formulas_give_known_values(changes, depth, creep):
@@ -49,7 +61,10 @@ def test_the_scope_ends_where_an_uphill_edge_is_free():
     [
         (np.zeros(31), 0.0),
         (np.linspace(0, 3e-4, 31), 2e-4),  # creeps at 1 mm/s
-        (5e-3 * np.sin(np.pi * np.arange(31) / 10), 1e-2),  # both ends of each window are equal
+        (
+            5e-3 * np.sin(np.pi * np.arange(31) / 10),
+            1e-2,
+        ),  # both ends of each window are equal
     ],
 )
 def test_the_window_compares_all_its_samples(heights, moved):
@@ -64,7 +79,10 @@ SPOILERS = [
     ("settings", reading("friction", "tilt_10_box", 0.4)),
     ("stamps", case("tilt_10_box", duration=0.6)),
     ("creeps_as_computed", metric("tilt_5_firm", creep=2.4e-4)),
-    ("creeps_as_computed", metric("tilt_15_box", creep=4.2e-4)),  # where an edge is free
+    (
+        "creeps_as_computed",
+        metric("tilt_15_box", creep=4.2e-4),
+    ),  # where an edge is free
     ("sinks_as_computed", metric("elliptic_0_box", sunk=4.3e-6)),
     ("friction_lets_creep", copied("tilt_10_firm", "tilt_10_box")),
     ("what_counts", copied("h_1ms_box", "tilt_10_firm")),

@@ -49,7 +49,9 @@ def test_the_corners_of_both_shapes():
 def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
     assert failed(scenes) == set()
     assert rungs.failed(scenes, "baseline") == []
-    assert text.ladder_table(scenes).count("**fails**") == len(spec.SCENES_OF_LECTURE) - 1
+    assert (
+        text.ladder_table(scenes).count("**fails**") == len(spec.SCENES_OF_LECTURE) - 1
+    )
     for figure in (plots.settling, plots.lifts, plots.views):
         assert figure(scenes).axes
 
@@ -60,23 +62,35 @@ SPOILED = {
     "deep at the start": (reading("object", "baseline_depth", 2e-3), {"one_rung"}),
     "another mass": (reading("object", "baseline_mass", 0.2), {"one_rung"}),
     "a ball beside the bowl": (
-        trace("baseline_at_rest", link_pos=put((-1, BALL, 0), 0.9)), {"one_rung"}
+        trace("baseline_at_rest", link_pos=put((-1, BALL, 0), 0.9)),
+        {"one_rung"},
     ),
-    "it slides": (trace("baseline_at_rest", link_pos=shift((-1, OBJECT, 0), 4e-4)), {"one_rung"}),
+    "it slides": (
+        trace("baseline_at_rest", link_pos=shift((-1, OBJECT, 0), 4e-4)),
+        {"one_rung"},
+    ),
     "no answer": (reading("reach", "baseline_accepted", 1), {"one_rung"}),
     "low fingertips": (reading("reach", "baseline_grasp", 0.01), {"one_rung"}),
     "something on the way": (reading("reach", "baseline_touches", 1), {"one_rung"}),
-    "touched on the way down": (reading("contacts", "baseline_descending", 1), {"one_rung"}),
+    "touched on the way down": (
+        reading("contacts", "baseline_descending", 1),
+        {"one_rung"},
+    ),
     "one finger": (reading("contacts", "baseline_held_left", 0), {"one_rung"}),
-    "it slips": (trace("baseline", link_pos=shift((-1, OBJECT, 2), -0.02)), {"one_rung"}),
+    "it slips": (
+        trace("baseline", link_pos=shift((-1, OBJECT, 2), -0.02)),
+        {"one_rung"},
+    ),
     "another number": (reading("fails", "hovering", 3), {"one_rung"}),
     "the hovering one falls": (
-        trace("hovering_at_rest", link_pos=shift((-1, OBJECT, 2), -1e-5)), {"hovering_is_at_rest"}
+        trace("hovering_at_rest", link_pos=shift((-1, OBJECT, 2), -1e-5)),
+        {"hovering_is_at_rest"},
     ),
     "both steps lift": (
-        trace("forced_fine", link_pos=shift((-1, OBJECT, 2), 0.04)), {"lift_depends_on_the_step"}
+        trace("forced_fine", link_pos=shift((-1, OBJECT, 2), 0.04)),
+        {"lift_depends_on_the_step"},
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", SPOILED)
@@ -91,19 +105,28 @@ def test_a_second_run_of_the_engine_is_equal(real_engine):
 
     from robo_genesis.lessons.l07 import study
 
-    page = SimpleNamespace(traces={}, readings={}, frames={}, links=[], render=False, joints=None)
+    page = SimpleNamespace(
+        traces={}, readings={}, frames={}, links=[], render=False, joints=None
+    )
     first = [study.examine(page, real_engine.gs, "baseline")] and dict(page.traces)
     study.examine(page, real_engine.gs, "baseline")
     for name, of in first.items():
         again = page.traces[name]
-        assert all(np.array_equal(getattr(of, f), getattr(again, f)) for f in of.arrays())
+        assert all(
+            np.array_equal(getattr(of, f), getattr(again, f)) for f in of.arrays()
+        )
 
 
-@pytest.mark.parametrize("wrong", [None, "outside", "accepted", "touches", "descending"])
+@pytest.mark.parametrize(
+    "wrong", [None, "outside", "accepted", "touches", "descending"]
+)
 def test_the_symptoms_of_the_scenes(wrong):
     readings = {
         "pixels": {"outside_wrist": 1.0 * (wrong == "outside"), "wide_wrist": 9.0},
-        "reach": {"below_accepted": 2 - (wrong == "accepted"), "below_touches": wrong != "touches"},
+        "reach": {
+            "below_accepted": 2 - (wrong == "accepted"),
+            "below_touches": wrong != "touches",
+        },
         "contacts": {"wide_descending": wrong != "descending"},
     }
     found = checks.symptoms(SimpleNamespace(readings=readings))

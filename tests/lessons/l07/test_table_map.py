@@ -13,7 +13,9 @@ GRASP = (2 * MIDDLE + 2, HAND, 2)
 def test_each_cell_shows_its_own_answer(scenes):
     data = explorer.explored(scenes)
     cells = [cell for row in data["maps"][0]["rows"][::-1] for cell in row["cells"]]
-    for number, (cell, place) in enumerate(zip(cells, table_map.CASE.places, strict=True)):
+    for number, (cell, place) in enumerate(
+        zip(cells, table_map.CASE.places, strict=True)
+    ):
         assert cell["answer"] == 2 * number + 2
         assert data["postures"]["table"][cell["answer"] - 1][:2] == pytest.approx(place)
         assert len(cell["values"]) == len(data["columns"])
@@ -22,11 +24,31 @@ def test_each_cell_shows_its_own_answer(scenes):
 
 
 SPOILED = {
-    "another count": (reading("table_reached", str(MIDDLE), 1), "reachable", {"map_follows"}),
-    "low fingertips": (trace("table", link_pos=shift(GRASP, -0.05)), "reachable", {"map_follows"}),
-    "the bowl in the way": (reading("table_free", str(MIDDLE), 1), "graspable", {"map_follows"}),
-    "no picture": (reading("view_wrist", "intrinsics_02", -9e3), "wrist", {"map_follows"}),
-    "a hand elsewhere": (trace("table", link_pos=shift(GRASP, 1e-3)), "", {"map_follows"}),
+    "another count": (
+        reading("table_reached", str(MIDDLE), 1),
+        "reachable",
+        {"map_follows"},
+    ),
+    "low fingertips": (
+        trace("table", link_pos=shift(GRASP, -0.05)),
+        "reachable",
+        {"map_follows"},
+    ),
+    "the bowl in the way": (
+        reading("table_free", str(MIDDLE), 1),
+        "graspable",
+        {"map_follows"},
+    ),
+    "no picture": (
+        reading("view_wrist", "intrinsics_02", -9e3),
+        "wrist",
+        {"map_follows"},
+    ),
+    "a hand elsewhere": (
+        trace("table", link_pos=shift(GRASP, 1e-3)),
+        "",
+        {"map_follows"},
+    ),
 }
 
 

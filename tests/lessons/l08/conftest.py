@@ -41,8 +41,12 @@ def arm(x: float, y: float) -> tuple[Trace, np.ndarray]:
     for k in PHASES[1:]:
         way = goals[k] - command[-1]
         way[7:] = 0  # the fingers have their own command
-        command.append(command[-1] + way * min(1, 0.012 / max(np.abs(way).max(), 1e-12)))
-        command[-1][7:] = 0.0235 if 2 <= k < 6 else 0.04  # where the object would stop the fingers
+        command.append(
+            command[-1] + way * min(1, 0.012 / max(np.abs(way).max(), 1e-12))
+        )
+        command[-1][7:] = (
+            0.0235 if 2 <= k < 6 else 0.04
+        )  # where the object would stop the fingers
     rest = case.control.steps + 1 - len(PHASES)
     commands = np.vstack([command[1:], np.tile(command[-1], (rest, 1))])
     run = driven(replace(case.control, q_target=commands), LINKS)
@@ -51,7 +55,9 @@ def arm(x: float, y: float) -> tuple[Trace, np.ndarray]:
 
 def level_of(error: float) -> int:
     """Return the rungs of an episode by the error along the pads [m]."""
-    return 7 if error > -3.75e-3 else 3 if error > -6.5e-3 else 2 if error > -9.5e-3 else 1
+    return (
+        7 if error > -3.75e-3 else 3 if error > -6.5e-3 else 2 if error > -9.5e-3 else 1
+    )
 
 
 def path(start, level, arm, falls_in=False) -> np.ndarray:
@@ -77,7 +83,9 @@ def batch(case, own) -> Episodes:
     errors = (case.beliefs - case.starts)[:, 0]
     levels = [level_of(error) for error in errors]
     falls = (errors < -3.75e-3) & (errors > -4.5e-3)
-    at = np.stack([path(*of) for of in zip(case.starts, levels, arms, falls, strict=True)], axis=1)
+    at = np.stack(
+        [path(*of) for of in zip(case.starts, levels, arms, falls, strict=True)], axis=1
+    )
     sampled = arms[0][1][::every]
     q = np.stack([run.q[::every] for run, _ in arms], axis=1)
     others = [k for k in range(n) if k not in own]
@@ -86,11 +94,15 @@ def batch(case, own) -> Episodes:
     hand[:, :2] = case.beliefs[others] - [PADS, 0]
     target = kinematics.Pose(hand, np.tile(DOWN, (len(others), 1)))
     limits = (np.full(7, -3.0), np.full(7, 4.0))
-    solved = kinematics.solve(target, q[closing, others, :7], *limits, iterations=60, damping=0.01)
+    solved = kinematics.solve(
+        target, q[closing, others, :7], *limits, iterations=60, damping=0.01
+    )
     q[closing, others, :7] = solved
     pressed = np.zeros((len(sampled), n, 2), np.float32)
     for k, level in enumerate(levels):
-        until = {1: picking.CLOSE, 2: picking.MOVE, 3: picking.LOWER}.get(level, picking.OPEN)
+        until = {1: picking.CLOSE, 2: picking.MOVE, 3: picking.LOWER}.get(
+            level, picking.OPEN
+        )
         pressed[(sampled >= picking.LIFT) & (sampled < until), k] = 11.7
     return Episodes(
         t=np.arange(case.steps + 1) * case.dt,
@@ -118,15 +130,27 @@ def whole(arm, start, level) -> Trace:
 def episodes(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
     own = {row: arm(*spec.ASKEW.beliefs[row].tolist()) for row in spec.SHOWN.values()}
-    askew, exact = batch(spec.ASKEW, own), batch(spec.EXACT, {0: arm(*spec.FEW[0].tolist())})
+    askew, exact = (
+        batch(spec.ASKEW, own),
+        batch(spec.EXACT, {0: arm(*spec.FEW[0].tolist())}),
+    )
     names = [of.name for of in fields(askew) if of.name != "t"]
-    permuted = replace(askew, **{name: getattr(askew, name)[:, spec.ORDER] for name in names})
+    permuted = replace(
+        askew, **{name: getattr(askew, name)[:, spec.ORDER] for name in names}
+    )
     traces = {"exact": exact, "again": exact, "askew": askew, "permuted": permuted}
-    traces |= {n: whole(own[k], spec.STARTS[k], spec.REACH[n]) for n, k in spec.SHOWN.items()}
+    traces |= {
+        n: whole(own[k], spec.STARTS[k], spec.REACH[n]) for n, k in spec.SHOWN.items()
+    }
     return Experiment(
-        page=LECTURE, traces=traces, links=[*LINKS, "object"],
-        readings={"model": spec.EXPECTED_MODEL}, frames={}, rendered=False, joints=joints,
-    )  # fmt: skip
+        page=LECTURE,
+        traces=traces,
+        links=[*LINKS, "object"],
+        readings={"model": spec.EXPECTED_MODEL},
+        frames={},
+        rendered=False,
+        joints=joints,
+    )
 
 
 def demonstrated(batch: Episodes) -> Demonstrations:

@@ -4,7 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import case, copied, failed, metric, put, reading, shift, with_fields
+from lessons.changed_runs import (
+    case,
+    copied,
+    failed,
+    metric,
+    put,
+    reading,
+    shift,
+    with_fields,
+)
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l08 import creep
@@ -18,9 +27,13 @@ GROUPS = ("friction", "time_constant")
 @pytest.fixture(scope="module")
 def run():
     cases = CREEP.cases
-    traces = {n: mujoco_grippers.run_case(of, n in creep.CASES) for n, of in cases.items()}
+    traces = {
+        n: mujoco_grippers.run_case(of, n in creep.CASES) for n, of in cases.items()
+    }
     for name in creep.TWINS:  # two engines never agree to the last bit
-        traces[name] = replace(traces[name], link_pos=traces[name].link_pos + np.float32(3e-8))
+        traces[name] = replace(
+            traces[name], link_pos=traces[name].link_pos + np.float32(3e-8)
+        )
     readings = {of: {n: getattr(cases[n], of) for n in creep.CASES} for of in GROUPS}
     readings["contacts"] = dict.fromkeys(creep.CASES, CONTACTS)
     return Experiment(CREEP, traces, LINKS, readings, {}, False)
@@ -30,7 +43,11 @@ def run():
     ("changes", "depth", "speed"),
     [
         ({}, 263.1e-6, 1.2318e-3),
-        ({"friction": 2.0}, 1287.9e-6, 1.5793e-3),  # deeper than the width of the impedance
+        (
+            {"friction": 2.0},
+            1287.9e-6,
+            1.5793e-3,
+        ),  # deeper than the width of the impedance
         ({"force": 40.0}, 654.5e-6, 0.7925e-3),
         ({"mass": 1.5}, 14.3e-6, 3.0886e-3),  # heavier than µN
         ({"cone": "elliptic"}, 263.1e-6, 6.16e-6),
@@ -43,7 +60,9 @@ def test_the_formulas_give_known_values(changes, depth, speed):
 
 
 def test_a_pyramid_with_impratio_is_softer_in_mujoco():
-    one, other = (np.array(creep.formulas(HeldCase(impratio=1e4), of)) for of in (False, True))
+    one, other = (
+        np.array(creep.formulas(HeldCase(impratio=1e4), of)) for of in (False, True)
+    )
     assert other / one == pytest.approx(2, rel=1e-3)
 
 

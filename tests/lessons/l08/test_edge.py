@@ -33,7 +33,9 @@ def outcomes(name, case):
 def run(joints):
     paced = {"length": np.repeat([4, 6, 8], edge.TIMED), "creep": 1.5e-3}
     made = {
-        name: episodes(case, *outcomes(name, case), **(paced if name == "paced" else {}))
+        name: episodes(
+            case, *outcomes(name, case), **(paced if name == "paced" else {})
+        )
         for name, case in edge.COUNTED.items()
     }
     for name, of in list(made.items()):
@@ -69,7 +71,9 @@ def test_a_check_fails_for_a_spoiled_run(run, check):
 @pytest.mark.parametrize("array", ["q", "object_pos", "object_quat"])
 def test_a_batch_begins_as_its_case_says(run, array):
     spoiled = trace("boxes", **{array: put((0, 5), 0.7)})(run)
-    assert "laws_of_motion" in {check.name for check in spoiled.outcomes() if not check.passed}
+    assert "laws_of_motion" in {
+        check.name for check in spoiled.outcomes() if not check.passed
+    }
 
 
 def test_a_clock_ends_the_descent_whatever_is_measured():

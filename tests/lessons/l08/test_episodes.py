@@ -15,7 +15,12 @@ PLACED = spec.SHOWN["placed"]
 
 @pytest.mark.parametrize(
     ("k", "n", "low", "high"),
-    [(1, 1, 0.207, 1.0), (64, 64, 0.943, 1.0), (256, 256, 0.985, 1.0), (0, 10, 0.0, 0.278)],
+    [
+        (1, 1, 0.207, 1.0),
+        (64, 64, 0.943, 1.0),
+        (256, 256, 0.985, 1.0),
+        (0, 10, 0.0, 0.278),
+    ],
 )
 def test_wilson_intervals_that_others_publish(k, n, low, high):
     assert rates.wilson(k, n) == pytest.approx((low, high), abs=6e-4)
@@ -120,18 +125,30 @@ def test_each_cell_shows_its_own_episode(episodes):
 SPOILED = {
     "another model": (reading("model", "links", 10), {"structure"}),
     "a failure where the place is known": (
-        trace("exact", touches=put((-1, 0), 1)), {"place_is_enough", "order_does_not_matter"}
+        trace("exact", touches=put((-1, 0), 1)),
+        {"place_is_enough", "order_does_not_matter"},
     ),
     "a rate of one half": (metric("askew", resting=128.0), {"turned_camera"}),
-    "no more lifted than placed": (metric("askew", raised_once=180.0), {"words_differ"}),
+    "no more lifted than placed": (
+        metric("askew", raised_once=180.0),
+        {"words_differ"},
+    ),
     "a hand at its command": (metric("exact", short=0.0), {"pads_are_short"}),
     "a grip that does not slide": (metric("exact", creep=0.0), {"held_but_sliding"}),
     "another episode in the replay": (
         trace("askew", touches=put((-1, PLACED), 1)),
-        {"along_the_pads", "edge_of_the_pads", "order_does_not_matter", "shown_episodes"},
+        {
+            "along_the_pads",
+            "edge_of_the_pads",
+            "order_does_not_matter",
+            "shown_episodes",
+        },
     ),
-    "a batch in the order of another": (copied("permuted", "askew"), {"order_does_not_matter"}),
-}  # fmt: skip
+    "a batch in the order of another": (
+        copied("permuted", "askew"),
+        {"order_does_not_matter"},
+    ),
+}
 
 
 @pytest.mark.parametrize("name", SPOILED)

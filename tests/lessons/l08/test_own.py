@@ -19,13 +19,30 @@ def test_the_lab_passes_its_checks(lab):
     assert plots.posture(lab).axes
 
 
-@pytest.mark.filterwarnings("ignore:Mean of empty slice", "ignore:invalid value encountered")
+@pytest.mark.filterwarnings(
+    "ignore:Mean of empty slice", "ignore:invalid value encountered"
+)
 @pytest.mark.parametrize(
     ("arrays", "said"),
     [
-        ({}, ["64 of 64 episodes", "94.3 to 100.0 %", "No episode fails.", "last bit", "11.7 N"]),
-        ({"touches": put((-1, 5), 1)}, ["63 of 64", "first: 1 at “released”.", "batch: 1."]),
-        ({"force": put((ALL, ALL, 0), 0)}, ["0 of 64", "first: 64 at “held”.", "are not measured"]),
+        (
+            {},
+            [
+                "64 of 64 episodes",
+                "94.3 to 100.0 %",
+                "No episode fails.",
+                "last bit",
+                "11.7 N",
+            ],
+        ),
+        (
+            {"touches": put((-1, 5), 1)},
+            ["63 of 64", "first: 1 at “released”.", "batch: 1."],
+        ),
+        (
+            {"force": put((ALL, ALL, 0), 0)},
+            ["0 of 64", "first: 64 at “held”.", "are not measured"],
+        ),
         ({"phase": put(ALL, 8)}, ["first: 64 at “planned”.", "are not measured"]),
     ],
 )
@@ -38,7 +55,10 @@ def test_the_student_s_numbers_stand_beside_the_course_s(lab):
     given = lab.traces["exact"], EXACT
     table = own.counted(SOLVED["rungs"], *given).splitlines()
     assert [line.split()[1:] for line in table[1:8]] == [["64", "64"]] * 7
-    assert own.rate(SOLVED["rungs"], SOLVED["wilson"], *given).count("94.3 to 100.0 %") == 2
+    assert (
+        own.rate(SOLVED["rungs"], SOLVED["wilson"], *given).count("94.3 to 100.0 %")
+        == 2
+    )
     assert own.slide(SOLVED["creep"], *given).count("1.60 mm/s") == 2
     assert "differ in the episodes" in own.counted(lambda *arrays: 3, *given)
     none = trace("exact", force=put(ALL, 0))(lab).traces["exact"]
@@ -57,7 +77,9 @@ def test_what_is_missing_is_named(lab, capsys):
 def test_the_student_s_expert_is_the_course_s():
     mine = own.waypoints(SOLVED["grasp_pose"], EXACT)
     assert np.allclose(mine, EXACT.waypoints, rtol=0, atol=1e-12)
-    expert = own.machine(SOLVED["ended"])(EXACT, np.zeros((9, 64, 7)), np.ones(64, bool))
+    expert = own.machine(SOLVED["ended"])(
+        EXACT, np.zeros((9, 64, 7)), np.ones(64, bool)
+    )
     q, expert.since[:2] = np.zeros((64, 9)), 9
     expert.phase[:] = np.arange(64) % 8
     assert expert.ends(q, q).tolist() == super(type(expert), expert).ends(q, q).tolist()

@@ -20,18 +20,26 @@ def result(tmp_path, monkeypatch):
     folder = tmp_path / "cache" / "pages" / "page" / "fingerprint"
     folder.mkdir(parents=True)
     (folder / RECORD).write_text(os.urandom(16).hex())
-    monkeypatch.setattr("robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda of: None)
+    monkeypatch.setattr(
+        "robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda of: None
+    )
     page = SimpleNamespace(notebook=new_notebook())
-    return PageResult(page, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder)
+    return PageResult(
+        page, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder
+    )
 
 
-def test_an_accepted_page_is_compared_again_when_its_record_changed(result, monkeypatch):
+def test_an_accepted_page_is_compared_again_when_its_record_changed(
+    result, monkeypatch
+):
     calls = []
     monkeypatch.setattr(shown, "require_shown", lambda *given: calls.append(given) or 7)
     assert [outputs_compared(result, None) for _ in range(2)] == [7, 7]
     assert len(calls) == 1
     (result.folder / RECORD).write_text(os.urandom(16).hex())
-    monkeypatch.setattr(shown, "require_shown", Mock(side_effect=BundleRefused("shown", "other")))
+    monkeypatch.setattr(
+        shown, "require_shown", Mock(side_effect=BundleRefused("shown", "other"))
+    )
     for _ in range(2):  # a refusal is not kept
         with pytest.raises(BundleRefused, match="other"):
             outputs_compared(result, None)
@@ -43,7 +51,9 @@ def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
     facts = SimpleNamespace(lesson="l04", page=page, render=SimpleNamespace(mode=mode))
     facts.backend = SimpleNamespace(requested="cpu")
     require_contract(facts, contract)
-    with pytest.raises(BundleRefused, match=r"backend\.requested is cpu, expected auto"):
+    with pytest.raises(
+        BundleRefused, match=r"backend\.requested is cpu, expected auto"
+    ):
         require_contract(facts, contract | {"ROBO_GENESIS_BACKEND": "auto"})
     facts.render.mode = "another"
     with pytest.raises(BundleRefused, match=rf"frames: .* expected {mode}"):

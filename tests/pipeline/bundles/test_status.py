@@ -35,10 +35,15 @@ def test_a_sound_bundle_is_verified(folder):
     status = bundle_status(folder, "l04", "lab")
     assert (status.state, status.reason) == ("verified", "")
     assert status.sentence.startswith("Lab run by hand, Genesis ")
-    assert "14 of 14 checks passed, camera frames by llvmpipe, measured 20" in status.sentence
+    assert (
+        "14 of 14 checks passed, camera frames by llvmpipe, measured 20"
+        in status.sentence
+    )
 
 
-def test_a_build_without_a_camera_says_clean_kernel_and_skip(recorder, experiment, monkeypatch):
+def test_a_build_without_a_camera_says_clean_kernel_and_skip(
+    recorder, experiment, monkeypatch
+):
     monkeypatch.setenv("ROBO_GENESIS_COMMAND", "make book")
     recorder.contract = replace(recorder.contract, render=False)
     written = recorder.write(replace(experiment, frames={}, rendered=False), None)
@@ -54,15 +59,29 @@ STATES = [
     ("stale", "stale", older_compiler, OLD_COMPILER),
     ("stale", "stale", SPOILED["an older engine"][2], OLD_ENGINE),
     ("stale", "stale", part("source", page="0" * 64), "The lab's code changed since."),
-    ("stale", "stale", SPOILED["another module"][2], "The course's code changed since."),
-    ("stale", "older-schema", SPOILED["an older schema"][2],
-     "It was recorded in an older form of the bundle."),
-    ("failed", "failed", SPOILED["a link too many, and it says so"][2], "did not all pass."),
+    (
+        "stale",
+        "stale",
+        SPOILED["another module"][2],
+        "The course's code changed since.",
+    ),
+    (
+        "stale",
+        "older-schema",
+        SPOILED["an older schema"][2],
+        "It was recorded in an older form of the bundle.",
+    ),
+    (
+        "failed",
+        "failed",
+        SPOILED["a link too many, and it says so"][2],
+        "did not all pass.",
+    ),
     ("refused", "files", SPOILED["no log"][2], UNREADABLE),
     # A bundle cannot set its own state.
     ("refused", "bad-schema", predicate(state="verified"), UNREADABLE),
     ("refused", "bad-schema", manifest(lambda m: m.update(badge="verified")), ""),
-]  # fmt: skip
+]
 spoil_stale = both(STATES[1][2], seal)
 
 
@@ -98,7 +117,9 @@ def test_recorded_bundles_are_found_and_nothing_else(book, tmp_path):
     assert [path.name for path in recorded_folders(book)] == ["amdgpu", "cpu", "cuda"]
 
 
-def test_a_build_continues_with_what_is_sound_and_stops_at_the_rest(book, courses_pages):
+def test_a_build_continues_with_what_is_sound_and_stops_at_the_rest(
+    book, courses_pages
+):
     cpu = book / "evidence" / "l04" / "cpu"
     for spoil, state in ((seal, "verified"), (spoil_stale, "stale")):
         spoil(cpu)
@@ -107,8 +128,12 @@ def test_a_build_continues_with_what_is_sound_and_stops_at_the_rest(book, course
     (cpu / "log.txt").unlink()
     (cpu.parent / "amdgpu").write_text("no bundle")
     file, folder = refused_records(book, {})
-    assert file.startswith("evidence/l04/amdgpu: the recorded bundle is refused: missing-file:")
-    assert folder.startswith("evidence/l04/cpu: the recorded bundle is refused: files: ")
+    assert file.startswith(
+        "evidence/l04/amdgpu: the recorded bundle is refused: missing-file:"
+    )
+    assert folder.startswith(
+        "evidence/l04/cpu: the recorded bundle is refused: files: "
+    )
 
 
 def test_the_folder_of_another_lesson_and_a_link_are_refused(book, courses_pages):
@@ -121,7 +146,9 @@ def test_the_folder_of_another_lesson_and_a_link_are_refused(book, courses_pages
     assert "evidence/l04 is a link" in status.reason
 
 
-def test_a_bundle_without_the_claims_is_inconclusive(book, courses_pages, undecided, experiment):
+def test_a_bundle_without_the_claims_is_inconclusive(
+    book, courses_pages, undecided, experiment
+):
     status = recorded_status(book, "l04", "cpu")
     assert (status.state, status.badge) == ("inconclusive", "cpu-inconclusive")
     assert status.manifest is not None
@@ -136,7 +163,9 @@ def test_a_bundle_without_the_claims_is_inconclusive(book, courses_pages, undeci
 
 
 importer = "(MJCF) Approximating tendon."
-IMPORTED = both(log("Approximating tendon.", importer), predicate(warnings=[importer]), seal)
+IMPORTED = both(
+    log("Approximating tendon.", importer), predicate(warnings=[importer]), seal
+)
 
 
 @pytest.mark.parametrize(
@@ -144,19 +173,31 @@ IMPORTED = both(log("Approximating tendon.", importer), predicate(warnings=[impo
     [
         (lambda f: None, "copy", "a run on the CPU has its run_id 01234567"),
         (own_run_id, "copy", "all its arrays of baseline, G1, G2, G3, expected"),
-        (both(own_run_id, rewrite(internal_force=last_bit)), "copy", "arrays of baseline, G2, G3"),
-        (measured_elsewhere, "log", "missing warnings of the model importer is (MJCF) Approx"),
+        (
+            both(own_run_id, rewrite(internal_force=last_bit)),
+            "copy",
+            "arrays of baseline, G2, G3",
+        ),
+        (
+            measured_elsewhere,
+            "log",
+            "missing warnings of the model importer is (MJCF) Approx",
+        ),
         (both(measured_elsewhere, IMPORTED), None, ""),
     ],
 )
 @pytest.mark.parametrize("where", ["recorded", "built"])
-def test_an_accelerator_s_run_is_its_own(folder, tmp_path, courses_pages, spoil, code, said, where):
+def test_an_accelerator_s_run_is_its_own(
+    folder, tmp_path, courses_pages, spoil, code, said, where
+):
     lesson = tmp_path / "book" / "evidence" / "l04"
     here = Path(shutil.copytree(folder, lesson / "cpu"))
     spoil(here)
     here = on("amdgpu")(here)
     IMPORTED(folder)
-    lab = Path(shutil.copytree(folder, lesson / "cpu")) if where == "recorded" else folder
+    lab = (
+        Path(shutil.copytree(folder, lesson / "cpu")) if where == "recorded" else folder
+    )
     labs = {"l04": lab if where == "built" else None}
     status = recorded_status(tmp_path / "book", "l04", "amdgpu", labs=labs)
     assert (status.state, status.code) == ("refused" if code else "verified", code)
@@ -165,7 +206,11 @@ def test_an_accelerator_s_run_is_its_own(folder, tmp_path, courses_pages, spoil,
     assert len(refused) == (1 if code else 0)
 
 
-OTHERS = [drop_case, both(part("engine", version="1.2.0"), seal), lambda f: shutil.rmtree(f)]
+OTHERS = [
+    drop_case,
+    both(part("engine", version="1.2.0"), seal),
+    lambda f: shutil.rmtree(f),
+]
 
 
 @pytest.mark.parametrize("spoil", OTHERS)

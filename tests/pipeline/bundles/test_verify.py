@@ -23,7 +23,11 @@ OF_BODIES = {"contact", "second-engine"}  # the tests of L03 spoil its runs
 def codes():
     """Every code that the readers can refuse with, from their source."""
     package = Path(robo_genesis.__file__).parent
-    trees = [ast.parse(file.read_text("utf8")) for name in READERS for file in package.glob(name)]
+    trees = [
+        ast.parse(file.read_text("utf8"))
+        for name in READERS
+        for file in package.glob(name)
+    ]
     return {
         call.args[0].value
         for tree in trees
@@ -38,11 +42,17 @@ def codes():
 
 def test_every_code_has_a_spoiler():
     reached = {code for *both, _ in SPOILED.values() for code in both if code}
-    apart = {"run-id", "copy", "commit"} | OF_BODIES  # these need a second run, or a repository
+    apart = {
+        "run-id",
+        "copy",
+        "commit",
+    } | OF_BODIES  # these need a second run, or a repository
     assert reached | apart == codes() | {FAILED}
 
 
-def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, monkeypatch):
+def test_an_accepted_bundle_is_recomputed_only_when_something_changed(
+    folder, monkeypatch
+):
     recomputed, recompute = [], verify.recompute
 
     def counted(*given):
@@ -61,7 +71,9 @@ def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, mo
     monkeypatch.setattr(verify, "_code", lambda: code)
     verify_bundle(folder, once=True)
     assert len(recomputed) == 1
-    (folder / "metrics.json").write_text((folder / "metrics.json").read_text().replace("1", "2", 1))
+    (folder / "metrics.json").write_text(
+        (folder / "metrics.json").read_text().replace("1", "2", 1)
+    )
     seal(folder)
     for _ in range(2):  # a refusal is not kept
         with pytest.raises(BundleRefused):
@@ -94,7 +106,9 @@ def refusal(folder):
 
 
 @pytest.mark.parametrize("how", SPOILED)
-def test_a_spoiled_bundle_is_refused_also_after_digests_and_key_were_made_right(folder, how):
+def test_a_spoiled_bundle_is_refused_also_after_digests_and_key_were_made_right(
+    folder, how
+):
     code, sealed, spoil = SPOILED[how]
     there = moved(spoil(folder), folder)
     found, says_what_is_valid = refusal(there)
@@ -106,10 +120,14 @@ def test_a_spoiled_bundle_is_refused_also_after_digests_and_key_were_made_right(
 
 
 def test_run_lesson_and_page_are_the_expected_ones(folder):
-    verify_bundle(folder, bundle.read_manifest(folder).predicate.run_id, lesson="l04", page="lab")
+    verify_bundle(
+        folder, bundle.read_manifest(folder).predicate.run_id, lesson="l04", page="lab"
+    )
     with pytest.raises(BundleRefused, match=r"^run-id: .*Execute the page again"):
         verify_bundle(folder, "f" * 32)
-    with pytest.raises(BundleRefused, match=r"^lesson: .*page is lab, expected lecture"):
+    with pytest.raises(
+        BundleRefused, match=r"^lesson: .*page is lab, expected lecture"
+    ):
         verify_bundle(folder, page="lecture")
 
 
@@ -120,7 +138,9 @@ def checkout(tmp_path):
 
 
 LAB = "book/lessons/l04-joint-control/lab.md"
-SPEC, METRICS, CLAIMS = (f"robo_genesis/lessons/l04/{n}.py" for n in ("spec", "metrics", "checks"))
+SPEC, METRICS, CLAIMS = (
+    f"robo_genesis/lessons/l04/{n}.py" for n in ("spec", "metrics", "checks")
+)
 HARMLESS = [
     (LAB, "page.facts()", "page.facts()  # once"),
     (LAB, "\n# ", "\n# Another title, and "),
@@ -145,13 +165,17 @@ def edit(checkout, name, old, new):
     [
         (HARMLESS, []),
         ([("pyproject.toml", "-world==", "-world==9.")], ["engine.version"]),
-        ([("requirements.lock", "\nquadrants==", "\nquadrants==9.")],
-         ["engine.quadrants_version"]),
+        (
+            [("requirements.lock", "\nquadrants==", "\nquadrants==9.")],
+            ["engine.quadrants_version"],
+        ),
         ([(LAB, "page.facts()", "pass")], ["source.page"]),
         ([MEASURED], ["source.modules.lessons.l04.metrics"]),
     ],
-)  # fmt: skip
-def test_an_edit_makes_stale_what_it_decides_and_nothing_else(folder, checkout, edits, stale):
+)
+def test_an_edit_makes_stale_what_it_decides_and_nothing_else(
+    folder, checkout, edits, stale
+):
     for change in edits:
         edit(checkout, *change)
     found = changed(bundle.read_manifest(folder), checkout, checkout / "book") or []
@@ -174,7 +198,9 @@ def test_a_commit_is_older_than_the_run_and_has_its_code(folder, checkout, tmp_p
     for at in (folder, gpu):
         verified(at, head)
         verified(at, other, dirty=True)
-        with pytest.raises(BundleRefused, match=rf"^commit: .*{other} is source\.modules\."):
+        with pytest.raises(
+            BundleRefused, match=rf"^commit: .*{other} is source\.modules\."
+        ):
             verified(at, other)
     edit(checkout, *HARMLESS[0])
     verified(folder, head)
@@ -184,4 +210,6 @@ def test_a_commit_is_older_than_the_run_and_has_its_code(folder, checkout, tmp_p
     (checkout / ".git" / "shallow").write_text(f"{head}\n")
     verified(gpu, UNKNOWN)
     with pytest.raises(BundleRefused, match=r"^time: .*expected after its commit"):
-        verified(folder, head, started="2020-01-01T00:00:00Z", ended="2020-01-01T00:00:00Z")
+        verified(
+            folder, head, started="2020-01-01T00:00:00Z", ended="2020-01-01T00:00:00Z"
+        )

@@ -5,7 +5,16 @@ import shutil
 
 import pytest
 from loading import ENGINE, JUPYTER, run_watched
-from spoilers import SPOILED, both, filed_as, measured_elsewhere, metric, older_compiler, on, seal
+from spoilers import (
+    SPOILED,
+    both,
+    filed_as,
+    measured_elsewhere,
+    metric,
+    older_compiler,
+    on,
+    seal,
+)
 
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
 from robo_genesis.evidence import advice
@@ -14,7 +23,9 @@ from robo_genesis.evidence import advice
 @pytest.fixture
 def command(tmp_path, monkeypatch, courses_pages):
     """The script, on a book without bundles."""
-    spec = importlib.util.spec_from_file_location("verify", ROOT / "build_scripts" / "verify.py")
+    spec = importlib.util.spec_from_file_location(
+        "verify", ROOT / "build_scripts" / "verify.py"
+    )
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     monkeypatch.setattr(script, "BOOK", tmp_path / "book")
@@ -32,7 +43,9 @@ def recorded(folder, tmp_path):
 
 @pytest.fixture
 def built(folder, tmp_path):
-    return shutil.copytree(folder, tmp_path / "book" / "_build" / "evidence" / "l04" / "cpu")
+    return shutil.copytree(
+        folder, tmp_path / "book" / "_build" / "evidence" / "l04" / "cpu"
+    )
 
 
 def test_no_bundle_is_said_and_no_error(command, capsys):
@@ -56,7 +69,10 @@ stale = both(older_compiler, seal)
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (stale, "stale        stale: manifest.json: engine.quadrants_version is 1.2.9, expected"),
+        (
+            stale,
+            "stale        stale: manifest.json: engine.quadrants_version is 1.2.9, expected",
+        ),
         (filed_as("rocm"), "rocm     refused      backend: "),
     ],
 )
@@ -68,9 +84,14 @@ def test_what_is_not_current_is_status_1(command, recorded, built, capsys, spoil
     assert "l04 built      cpu      verified" in out
 
 
-def test_what_does_not_show_the_claims_is_status_1(command, recorded, undecided, capsys):
+def test_what_does_not_show_the_claims_is_status_1(
+    command, recorded, undecided, capsys
+):
     assert command.main() == 1
-    assert "inconclusive Not shown of what the lesson claims: peak_speed" in capsys.readouterr().out
+    assert (
+        "inconclusive Not shown of what the lesson claims: peak_speed"
+        in capsys.readouterr().out
+    )
 
 
 @pytest.fixture
@@ -100,14 +121,18 @@ ADVICE = {
 }
 OF_CODE = (
     "an older schema",
-    "an edited metric", "a found value too many", "a link too many, and it says so",
+    "an edited metric",
+    "a found value too many",
+    "a link too many, and it says so",
     "a dropped case",
-)  # fmt: skip
+)
 ADVICE |= {how: advice.BY_CODE[SPOILED[how][1] or SPOILED[how][0]] for how in OF_CODE}
 
 
 @pytest.mark.parametrize("how", [*ADVICE, "no log"])
-def test_a_student_learns_what_a_refusal_means_and_nothing_about_damage(check, folder, how):
+def test_a_student_learns_what_a_refusal_means_and_nothing_about_damage(
+    check, folder, how
+):
     both(SPOILED[how][2], seal)(folder)
     status, lines = check(folder)
     meant = [line for line in lines if line.startswith("What this means: ")]
@@ -138,7 +163,9 @@ def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder)
     assert "verified" in said
     assert "numpy" in loaded
     assert not loaded & {*ENGINE, *JUPYTER, "matplotlib"}
-    said, loaded = run_watched("compare.py", "--report", str(folder.parent), *[str(folder)] * 2)
+    said, loaded = run_watched(
+        "compare.py", "--report", str(folder.parent), *[str(folder)] * 2
+    )
     assert "\nEqual. Rows: " in said
     assert not loaded & {*ENGINE, *JUPYTER, "matplotlib"}
 

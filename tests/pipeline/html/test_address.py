@@ -22,10 +22,17 @@ def test_an_address_ends_with_a_slash_and_has_a_root(given, address, root):
 
 
 INVALID = [
-    "example.org", "ftp://example.org", "https://", "https://a.org/?x", "https://a.org/#x",
-    "https://a.org/course/index.html", "https://a.org/b c/", "https://user:pw@a.org/", " ",
+    "example.org",
+    "ftp://example.org",
+    "https://",
+    "https://a.org/?x",
+    "https://a.org/#x",
+    "https://a.org/course/index.html",
+    "https://a.org/b c/",
+    "https://user:pw@a.org/",
+    " ",
     "https://a.org/b/ ",
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("given", INVALID)

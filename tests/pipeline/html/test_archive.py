@@ -30,7 +30,11 @@ def test_all_files_but_the_archive_itself_are_packed_to_the_same_bytes_each_time
     with zipfile.ZipFile(archive) as packed:
         found = {name: packed.read(name) for name in packed.namelist()}
     # A packed page does not offer what it is part of.
-    files = {".hidden": b"\x89PNG", "index.html": b"<p>Home</p>", "sub/a page.html": b"<p>Page"}
+    files = {
+        ".hidden": b"\x89PNG",
+        "index.html": b"<p>Home</p>",
+        "sub/a page.html": b"<p>Page",
+    }
     assert found == {f"{FOLDER}/{name}": content for name, content in files.items()}
     assert OFFER in (html / "index.html").read_text()
 

@@ -11,16 +11,24 @@ GOOD = """\
 <a href="#">top</a> <a href="sub/">folder</a>
 <img src="picture.png" alt="Joint angle over time, three cases">
 <pre>{eval}`x` in code is fine</pre>"""
-GOOD += "".join(f"<ul class='a {name}'><li>{{a}}`b` $$ [[1 2]]</li></ul>" for name in QUOTING)
+GOOD += "".join(
+    f"<ul class='a {name}'><li>{{a}}`b` $$ [[1 2]]</li></ul>" for name in QUOTING
+)
 
 
 def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
     (folder / "sub").mkdir()
     (folder / "index.html").write_text(PAGE.format(head=head, body=body))
-    (folder / "sub/page.html").write_text(PAGE.format(head="", body="<p id='part'>Part</p>"))
-    (folder / "sub/index.html").write_text(PAGE.format(head="", body="<a href='../#top'>up</a>"))
+    (folder / "sub/page.html").write_text(
+        PAGE.format(head="", body="<p id='part'>Part</p>")
+    )
+    (folder / "sub/index.html").write_text(
+        PAGE.format(head="", body="<a href='../#top'>up</a>")
+    )
     (folder / "picture.png").touch()
-    (folder / "style.css").write_text("/* url(https://a.org/x) */ p { src: url(picture.png) }")
+    (folder / "style.css").write_text(
+        "/* url(https://a.org/x) */ p { src: url(picture.png) }"
+    )
     return folder
 
 
@@ -32,14 +40,20 @@ def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
         ("/sub/page.html", "leads out of /course/, the path of the site."),
     ],
 )
-def test_addresses_from_the_root_begin_with_the_path_of_the_site(tmp_path, href, reason):
+def test_addresses_from_the_root_begin_with_the_path_of_the_site(
+    tmp_path, href, reason
+):
     make_site(tmp_path, body=f'<a href="{href}">a page</a>')
     links = run_checks(Site(tmp_path, "/course/"))[0]
     assert links.problems == ((f"index.html: {href!r} {reason}",) if reason else ())
 
 
 def problems(folder: Path) -> dict[str, tuple[str, ...]]:
-    return {check.name: check.problems for check in run_checks(Site(folder)) if check.problems}
+    return {
+        check.name: check.problems
+        for check in run_checks(Site(folder))
+        if check.problems
+    }
 
 
 def test_a_good_site_passes_and_everything_was_looked_at(tmp_path):
@@ -54,7 +68,10 @@ LINKED = (
     ('<a href="gone.html">x</a>', "'gone.html' leads to no file"),
     ('<a href="sub/page.html#gone">x</a>', "names no element of sub/page.html"),
     ('<a href="../outside.html">x</a>', "leads to no file"),
-    ('<img srcset="picture.png 1x, gone.png 2x" alt="A picture">', "'gone.png' leads to no"),
+    (
+        '<img srcset="picture.png 1x, gone.png 2x" alt="A picture">',
+        "'gone.png' leads to no",
+    ),
     ('<p style="background: url(gone.svg)">x</p>', "'gone.svg' leads to no file"),
 )
 ALT_TEXTS = ("", 'alt=""', 'alt="figure.png"', 'alt="picture"')
@@ -77,8 +94,15 @@ MARKUP = (
     ("body", "check", "said"),
     [
         *((body, "links", said) for body, said in LINKED),
-        *((f'<img src="picture.png" {alt}>', "alt texts", "has the alt text") for alt in ALT_TEXTS),
-        ('<svg class="drawing" aria-label=""></svg>', "alt texts", "has the alt text ''"),
+        *(
+            (f'<img src="picture.png" {alt}>', "alt texts", "has the alt text")
+            for alt in ALT_TEXTS
+        ),
+        (
+            '<svg class="drawing" aria-label=""></svg>',
+            "alt texts",
+            "has the alt text ''",
+        ),
         *((body, "third parties", "") for body in LOADED),
         *((body, "leftovers", "") for body in MARKUP),
     ],
@@ -96,7 +120,9 @@ def test_each_problem_is_found_by_its_check_alone(tmp_path, body, check, said):
 def test_style_sheets_and_script_files_are_searched(tmp_path):
     site = make_site(tmp_path)
     (site / "style.css").write_text("@import url('https://fonts.googleapis.com/css');")
-    (site / "theme.js").write_text('load("https://cdn.jsdelivr.net/x.js"); // "https://a.org/"')
+    (site / "theme.js").write_text(
+        'load("https://cdn.jsdelivr.net/x.js"); // "https://a.org/"'
+    )
     assert problems(site)["third parties"] == (
         "style.css: https://fonts.googleapis.com/css",
         "theme.js: https://cdn.jsdelivr.net/x.js",

@@ -50,7 +50,12 @@ def rewrite(rendered: Path) -> None:
     for name in ("index.html", "notes"):
         (rendered / name).unlink()
     write(
-        rendered, {"_static/site.css": "p {}", "lessons/one.html": "two", "lessons/more.html": ""}
+        rendered,
+        {
+            "_static/site.css": "p {}",
+            "lessons/one.html": "two",
+            "lessons/more.html": "",
+        },
     )
     write(rendered, {"notes/a": "a folder", "figures": "a file"})
 
@@ -66,12 +71,16 @@ def test_a_draft_is_what_sphinx_leaves_whether_it_was_copied_before_or_not(
         assert (draft.html / "index.html").read_text() == "home"
     rewrite(rendered)
     draft.complete()
-    found = {name: text for name, text in content(rendered).items() if name != BUILD_INFO}
+    found = {
+        name: text for name, text in content(rendered).items() if name != BUILD_INFO
+    }
     assert content(draft.html) == found
     assert not (draft.html / "replay/model.glb").samefile(rendered / "replay/model.glb")
     assert found["lessons/one.html"] == "two"
     files = {name: text for name, text in found.items() if text is not None}
-    assert draft.digests == {n: hashlib.sha256(t.encode()).hexdigest() for n, t in files.items()}
+    assert draft.digests == {
+        n: hashlib.sha256(t.encode()).hexdigest() for n, t in files.items()
+    }
 
 
 def test_what_cannot_be_read_in_the_end_fails(tmp_path, rendered):

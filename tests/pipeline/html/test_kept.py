@@ -63,7 +63,9 @@ def edit_prose(book: Path) -> None:
 
 def edit_what_others_show(book: Path) -> None:
     """Change a title, a term, a target's heading, and the picture of another page."""
-    replace(book / "law.md", ("# Law", "# Hooke"), ("## The spring", "## The stiff spring"))
+    replace(
+        book / "law.md", ("# Law", "# Hooke"), ("## The spring", "## The stiff spring")
+    )
     replace(book / "glossary.md", ("A factor", "A measured factor"))
     replace(book / "text.md", ("\n\n![A drawing](a.svg)", ""))
 
@@ -83,7 +85,12 @@ def edit_contents(book: Path) -> None:
 
 
 def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
-    pages = {"glossary": GLOSSARY, "law": LAW, "text": TEXT, "run": notebook(cell("print(7)"))}
+    pages = {
+        "glossary": GLOSSARY,
+        "law": LAW,
+        "text": TEXT,
+        "run": notebook(cell("print(7)")),
+    }
     pages |= {"drawn": DRAWN, "citing": CITING}
     book = make_book(tmp_path, **pages, extra="# Extra\n\nMore.\n")
     (book / "a.svg").write_text(DRAWING)
@@ -140,13 +147,26 @@ def test_the_figures_of_each_page_are_numbered_from_one(tmp_path):
     for keep in (True, True, False):
         found = publish(tmp_path, BuiltPages(), keep)
         for name in pages:
-            assert re.findall(r"Fig. (\d)", found[f"{name}.html"].decode()) == ["1", "2"]
+            assert re.findall(r"Fig. (\d)", found[f"{name}.html"].decode()) == [
+                "1",
+                "2",
+            ]
 
 
-def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(tmp_path):
+def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(
+    tmp_path,
+):
     written = "../.cache/render/_build/jupyter_execute/71f4.svg"
-    files = {written, "a.svg", "text.md", str(tmp_path / "book/map.yml"), "../.cache/other.svg"}
-    env = SimpleNamespace(docname="text", dependencies={"text": set(files), "law": {written}})
+    files = {
+        written,
+        "a.svg",
+        "text.md",
+        str(tmp_path / "book/map.yml"),
+        "../.cache/other.svg",
+    }
+    env = SimpleNamespace(
+        docname="text", dependencies={"text": set(files), "law": {written}}
+    )
     html = str(tmp_path / ".cache/render/_build/html")
     app = SimpleNamespace(outdir=html, srcdir=str(tmp_path / "book"), env=env)
     forget_own_pictures(app, None)
@@ -166,7 +186,9 @@ def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
     assert "2 added, 0 changed" in (tmp_path / "log").read_text()
 
 
-def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complete(tmp_path):
+def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complete(
+    tmp_path,
+):
     def refuse(draft: Draft) -> None:
         raise ValueError("refused")
 
@@ -181,14 +203,18 @@ def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complet
 
 def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
     """Sphinx gives them numbers in the order of reading."""
-    book = make_book(tmp_path, one="# One\n\nWords.\n", two="# Two\n\n![Two](b/a.svg)\n")
+    book = make_book(
+        tmp_path, one="# One\n\nWords.\n", two="# Two\n\n![Two](b/a.svg)\n"
+    )
     for place in (book, book / "b"):
         place.mkdir(exist_ok=True)
         (place / "a.svg").write_text(DRAWING.replace("9", str(len(place.name))))
     publish(tmp_path, BuiltPages())
     assert (tmp_path / "kept" / kept.STATE).exists()
     replace(book / "one.md", ("Words.", "![One](a.svg)"))
-    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages(), keep=False)
+    assert publish(tmp_path, BuiltPages()) == publish(
+        tmp_path, BuiltPages(), keep=False
+    )
     assert not (tmp_path / "kept" / kept.STATE).exists()
 
 
@@ -200,7 +226,9 @@ def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
         (State("b", SOME.pages), False, set()),
     ],
 )
-def test_changed_pages_are_read_again_and_others_empty_the_folder(tmp_path, state, usable, left):
+def test_changed_pages_are_read_again_and_others_empty_the_folder(
+    tmp_path, state, usable, left
+):
     doctrees = tmp_path / DOCTREES
     doctrees.mkdir(parents=True)
     for name in SOME.pages:

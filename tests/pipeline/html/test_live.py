@@ -34,7 +34,10 @@ class Running:
     """A running `make live` on a folder's book; without EXECUTE=1, its executed page was run."""
 
     def __init__(self, folder: Path, code: str = "1", **settings: str):
-        self.book, self.folder = make_book(folder, text=TEXT, page=notebook(cell(code))), folder
+        self.book, self.folder = (
+            make_book(folder, text=TEXT, page=notebook(cell(code))),
+            folder,
+        )
         if "EXECUTE" not in settings:
             place = places(find_pages(self.book), folder / "cache" / STORE)["page"]
             run_of(folder / "other", place, code)
@@ -105,7 +108,9 @@ def test_a_changed_page_is_shown_and_nothing_is_published(live):
     ],
     ids=["link", "front matter", "broken contents", "code"],
 )
-def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, content, said):
+def test_a_bad_edit_is_reported_and_the_last_good_state_stays(
+    live, file, content, said
+):
     path, before = live.book / file, live.article()
     good, begin = path.read_text(), len(live.output())
     write_whole(path, content.encode())  # at once, so that no half of it is seen
@@ -123,15 +128,34 @@ def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, conten
     [
         ("live", "book/page.md", notebook(cell("1 / 0")), "EXECUTE=1 runs it"),
         ("executing", "book/page.md", notebook(cell("1 / 0")), "line 10: 1 / 0\n"),
-        ("executing", f"{MODULES}/core/printed.py", SYNTAX_ERROR, "(printed.py, line 1)"),
-        ("executing", f"{MODULES}/pipeline/html/sphinx_process.py", SYNTAX_ERROR, "Sphinx stopped"),
+        (
+            "executing",
+            f"{MODULES}/core/printed.py",
+            SYNTAX_ERROR,
+            "(printed.py, line 1)",
+        ),
+        (
+            "executing",
+            f"{MODULES}/pipeline/html/sphinx_process.py",
+            SYNTAX_ERROR,
+            "Sphinx stopped",
+        ),
     ],
     ids=["cell", "executed cell", "module of a page", "module of the site"],
 )
-def test_after_an_error_in_code_the_last_outputs_are_shown(request, where, file, content, said):
+def test_after_an_error_in_code_the_last_outputs_are_shown(
+    request, where, file, content, said
+):
     live = request.getfixturevalue(where)
-    path, before, begin = live.folder / file, live.article("page.html"), len(live.output())
-    good, last = path.read_text(), "Shown: " if "Sphinx" not in said else "keeps the last good"
+    path, before, begin = (
+        live.folder / file,
+        live.article("page.html"),
+        len(live.output()),
+    )
+    good, last = (
+        path.read_text(),
+        "Shown: " if "Sphinx" not in said else "keeps the last good",
+    )
     assert ("printed words" in before) == (where == "executing")
     write_whole(path, content.encode())
     live.wait(lambda: last in live.output()[begin:].partition(said)[2])
@@ -170,7 +194,11 @@ def test_sphinx_is_started_again_after_it_was_killed(live):
     for child in children:
         child.kill()
     # Until its child has ended, the process of make live would give it the next order.
-    live.wait(lambda: all(c.status() == psutil.STATUS_ZOMBIE for c in children if c.is_running()))
+    live.wait(
+        lambda: all(
+            c.status() == psutil.STATUS_ZOMBIE for c in children if c.is_running()
+        )
+    )
     (live.book / "text.md").write_text(TEXT + "\nWords after the kill.\n")
     live.wait(lambda: "Words after the kill." in live.shown())
 
@@ -191,11 +219,18 @@ def said(monkeypatch) -> list[str]:
 
 @pytest.mark.parametrize(
     ("stored", "shown"),
-    [({}, None), ({"a": "2"}, "a"), ({"a": "1", "b": "2"}, "a"), ({"a": "3", "b": "2"}, "b"),
-     ({"a": "1", "here": "1", "b": "1"}, "here")],
+    [
+        ({}, None),
+        ({"a": "2"}, "a"),
+        ({"a": "1", "b": "2"}, "a"),
+        ({"a": "3", "b": "2"}, "b"),
+        ({"a": "1", "here": "1", "b": "1"}, "here"),
+    ],
     ids=["nothing", "other code", "its code, older", "the newest", "nothing changed"],
-)  # fmt: skip
-def test_the_run_of_the_same_code_is_shown_and_else_the_newest(said, tmp_path, stored, shown):
+)
+def test_the_run_of_the_same_code_is_shown_and_else_the_newest(
+    said, tmp_path, stored, shown
+):
     book = make_book(tmp_path, page=notebook(cell("1")))
     pages = find_pages(book)
     place = places(pages, tmp_path / "cache" / STORE)["page"]
@@ -226,7 +261,9 @@ def test_what_starts_after_the_end_is_ended(tmp_path):
     live = Live(make_book(tmp_path), tmp_path)
     live.stop()
     with pytest.raises(LiveEndedError):
-        live.note(subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE))
+        live.note(
+            subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+        )
     assert live.started[0].returncode == -signal.SIGTERM
 
 
@@ -242,13 +279,17 @@ def test_a_file_that_cannot_be_read_after_a_render_ends_nothing(tmp_path):
 
 def test_shown_files_are_replaced_whole_whatever_their_size_and_time(tmp_path):
     live = Live(make_book(tmp_path), tmp_path)
-    new, shown = (folder / "a.html" for folder in (live.work / "_build/html", live.site))
+    new, shown = (
+        folder / "a.html" for folder in (live.work / "_build/html", live.site)
+    )
     new.parent.mkdir(parents=True)
     for text in ("one", "two"):
         new.write_text(text)
         os.utime(new, (0, 0))
         old = shown.open() if shown.is_file() else None
         live.show()
-        assert [(path.name, path.read_text()) for path in live.site.iterdir()] == [("a.html", text)]
+        assert [(path.name, path.read_text()) for path in live.site.iterdir()] == [
+            ("a.html", text)
+        ]
     with old:
         assert old.read() == "one"

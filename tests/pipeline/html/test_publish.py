@@ -23,20 +23,28 @@ def names(book: Path) -> set[str]:
     return {path.name for path in book.iterdir() if "_build" in path.name}
 
 
-def test_site_and_bundles_are_published_together_and_labs_apart_from_other_pages(tmp_path, draft):
+def test_site_and_bundles_are_published_together_and_labs_apart_from_other_pages(
+    tmp_path, draft
+):
     lecture = notebook(cell("2"), front=LAB_FRONT.replace("page: lab", "page: lecture"))
-    book = make_book(tmp_path, lab=notebook(cell("1"), front=LAB_FRONT), lecture=lecture)
+    book = make_book(
+        tmp_path, lab=notebook(cell("1"), front=LAB_FRONT), lecture=lecture
+    )
     bundle = tmp_path / "outputs" / "cpu"
     bundle.mkdir(parents=True)
     (bundle / "manifest.json").touch()
     old_site(book)
-    results = [PageResult(page, "executed", 1.0, "a", bundle) for page in find_pages(book)]
+    results = [
+        PageResult(page, "executed", 1.0, "a", bundle) for page in find_pages(book)
+    ]
     add_bundles(draft, results)
     site = publish(book, draft.folder)
     assert site == book / "_build" / "html"
     assert (site / "index.html").read_text() == "the new site"
     kept = (book / "_build").glob("*/**/manifest.json")
-    assert sorted(path.parent.relative_to(book / "_build").as_posix() for path in kept) == [
+    assert sorted(
+        path.parent.relative_to(book / "_build").as_posix() for path in kept
+    ) == [
         "evidence/l04/cpu",
         "pages/l04/lecture/cpu",
     ]

@@ -27,7 +27,10 @@ def html(tmp_path_factory):
     """
     folder = tmp_path_factory.mktemp("render")
     said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
-    page, lab = cell("print('measured ' + '7')"), notebook(cell(said), front=CLAIMS + LAB)
+    page, lab = (
+        cell("print('measured ' + '7')"),
+        notebook(cell(said), front=CLAIMS + LAB),
+    )
     book = make_book(folder, text=TEXT, page=notebook(page), lab=lab + BADGES)
     results = executed(find_pages(book), folder)
     text = (book / "page.md").read_text()
@@ -49,7 +52,9 @@ def test_metadata_come_from_the_page_and_outputs_from_the_store(html):
 
 @pytest.mark.parametrize("name", ["text", "lab"])
 def test_no_front_matter_or_bundle_s_word_can_set_a_badge(html, name):
-    badges = [badge.get_text() for badge in parsed(html, name).select(".evidence-badge")]
+    badges = [
+        badge.get_text() for badge in parsed(html, name).select(".evidence-badge")
+    ]
     assert badges == ["cpu-refused", "amdgpu-missing"]
 
 
@@ -62,8 +67,12 @@ def test_without_an_address_nothing_claims_one(html):
 def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
     """A page that the execution stage has not seen would leave a file behind if it were run."""
     trace, front = tmp_path / "was executed", "mystnb: {execution_mode: force}\n"
-    book = make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
-    with pytest.raises(ProjectError, match=r"page\.md is not executed, and Sphinx executes"):
+    book = make_book(
+        tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front)
+    )
+    with pytest.raises(
+        ProjectError, match=r"page\.md is not executed, and Sphinx executes"
+    ):
         draft_of(book, tmp_path, [])
     assert not trace.exists()
 
@@ -75,7 +84,9 @@ def test_a_child_of_sphinx_does_not_outlive_it(tmp_path):
     """A child keeps the pipe open, for which an interrupted build would wait."""
     sphinx = SphinxProcess.__new__(SphinxProcess)
     how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    sphinx.process = subprocess.Popen([sys.executable, "-c", FORKS], start_new_session=True, **how)
+    sphinx.process = subprocess.Popen(
+        [sys.executable, "-c", FORKS], start_new_session=True, **how
+    )
     with sphinx:
         while not (below := psutil.Process(sphinx.process.pid).children()):
             time.sleep(0.05)

@@ -29,7 +29,9 @@ def site(tmp_path, monkeypatch):
 
 def problems(site, body="", head="", name="index.html") -> list[str]:
     (site / name).write_text(PAGE.format(head=head, body=body))
-    (found,) = [check for check in run_checks(Site(site, "/course/")) if check.name == "scripts"]
+    (found,) = [
+        check for check in run_checks(Site(site, "/course/")) if check.name == "scripts"
+    ]
     return list(found.problems)
 
 
@@ -55,41 +57,73 @@ def test_scripts_of_the_theme_and_of_the_course_are_known(site, body):
 @pytest.mark.parametrize(
     ("body", "said"),
     [
-        ("<script>alert(1)</script>", "is not known: 'alert(1)'. If it is new in the theme"),
+        (
+            "<script>alert(1)</script>",
+            "is not known: 'alert(1)'. If it is new in the theme",
+        ),
         ("<script/x>alert(1)</script>", "is not known"),
-        ("<script>DOCUMENTATION_OPTIONS.pagename = 'index';alert(1);</script>", "is not known"),
+        (
+            "<script>DOCUMENTATION_OPTIONS.pagename = 'index';alert(1);</script>",
+            "is not known",
+        ),
         (f"<svg><g><svg:script>{KNOWN}</svg:script></g></svg>", "inside a drawing"),
-        ('<script type="text/javascript">alert(1)</script>', "has the type 'text/javascript'"),
+        (
+            '<script type="text/javascript">alert(1)</script>',
+            "has the type 'text/javascript'",
+        ),
         ('<script type="application/json">alert(1)</script>', "not plain JSON"),
         ('<script type="application/json">["<!--<script>"]</script>', "not plain JSON"),
-        ('<script type="application/json" src="_static/a.js"></script>', "has the type"),
+        (
+            '<script type="application/json" src="_static/a.js"></script>',
+            "has the type",
+        ),
         ('<script src="_static/../_downloads/a.js"></script>', "is not known"),
         ('<script src="//example.org/_static/a.js"></script>', "is not known"),
         ('<script src="/_static/a.js"></script>', "'/_static/a.js' is not known"),
         ('<script src="_static/a.js">alert(1)</script>', "is not known"),
         ('<img src="a.png" alt="<script>alert(1)</script>">', "has 1 times '<script'"),
         ("<!-- <script>alert(1)</script> -->", "has 1 times '<script'"),
-        ('<p title="</noscript><img src=x onerror=alert(1)>">x</p>', "a tag contains '<'"),
+        (
+            '<p title="</noscript><img src=x onerror=alert(1)>">x</p>',
+            "a tag contains '<'",
+        ),
         ("<!--> <img src=x onerror=alert(1)> -->", "a comment ends early"),
         ("<!-- a --!> <img src=x onerror=alert(1)> -->", "early"),
         ('<img src="a.png" alt="a" onerror="alert(1)">', "onerror='alert(1)'"),
-        ('<button onclick="window.print();alert(1)">x</button>', "<button> has onclick="),
+        (
+            '<button onclick="window.print();alert(1)">x</button>',
+            "<button> has onclick=",
+        ),
         ('<a onclick="window.print()">x</a>', "<a> has onclick="),
         ('<a href=" JaVa&#10;Script:alert(1)">x</a>', "can run script"),
         ('<svg><a xlink:href="javascript:alert(1)">x</a></svg>', "can run script"),
-        ('<svg><set attributeName="href" to="javascript:alert(1)"/></svg>', "can run script"),
+        (
+            '<svg><set attributeName="href" to="javascript:alert(1)"/></svg>',
+            "can run script",
+        ),
         ('<a href="data:image/svg+xml;base64,PHN2Zz4=">x</a>', "can run script"),
         ('<iframe src="sub/"></iframe>', "<iframe> is not allowed"),
         ('<iframe srcdoc="&lt;script&gt;alert(1)"></iframe>', "a document of its own"),
-        ("<svg><foreignObject></foreignObject></svg>", "<foreignobject> is not allowed"),
+        (
+            "<svg><foreignObject></foreignObject></svg>",
+            "<foreignobject> is not allowed",
+        ),
         ('<base href="https://example.org/">', "<base> is not allowed"),
-        ('<meta http-equiv="Refresh" content="0; url=a.html">', "<meta> leads to another page"),
-        ('<div class="replay" data-viewer="_downloads/a.js"></div>', "is not a script of replay/"),
+        (
+            '<meta http-equiv="Refresh" content="0; url=a.html">',
+            "<meta> leads to another page",
+        ),
+        (
+            '<div class="replay" data-viewer="_downloads/a.js"></div>',
+            "is not a script of replay/",
+        ),
     ],
 )
 def test_every_other_way_to_run_script_is_refused(site, body, said):
     found = problems(site, body)
-    assert [line for line in found if line.startswith("index.html: ") and said in line], found
+    assert [
+        line for line in found if line.startswith("index.html: ") and said in line
+    ], found
 
 
 def test_a_script_in_the_head_and_of_another_page_is_named_with_its_page(site):
@@ -107,18 +141,32 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:x="http://www.w3.org/1999/x
     [
         ("_downloads/a.js", "", "the build writes no such script"),
         ("replay/model-viewer.js", "alert(1)", "the build writes no such script"),
-        ("replay/b.js", '(globalThis.replayModels ??= {})["a"] = "YQ==";\nalert(1)\n', "no such"),
+        (
+            "replay/b.js",
+            '(globalThis.replayModels ??= {})["a"] = "YQ==";\nalert(1)\n',
+            "no such",
+        ),
         ("_downloads/a.xhtml", "", "may run script in it"),
         ("a.HTML", "", "may run script in it"),
         (
             "a.svg",
-            SVG.format('<s:script xmlns:s="http://www.w3.org/2000/svg">alert(1)</s:script>'),
+            SVG.format(
+                '<s:script xmlns:s="http://www.w3.org/2000/svg">alert(1)</s:script>'
+            ),
             "contains a script",
         ),
         ("a.svg", SVG.format('<g onload="alert(1)"/>'), "<g> has onload="),
         ("a.svg", SVG.format('<a x:href="javascript:alert(1)"/>'), "can run script"),
-        ("a.svg", '<!DOCTYPE svg [<!ENTITY a "b">]>' + SVG.format("&a;"), "declares entities"),
-        ("a.svg", '<?xml-stylesheet href="a.xsl"?>' + SVG.format(""), "declares entities"),
+        (
+            "a.svg",
+            '<!DOCTYPE svg [<!ENTITY a "b">]>' + SVG.format("&a;"),
+            "declares entities",
+        ),
+        (
+            "a.svg",
+            '<?xml-stylesheet href="a.xsl"?>' + SVG.format(""),
+            "declares entities",
+        ),
         ("a.svg", "<svg><p></svg>", "is not XML"),
     ],
 )

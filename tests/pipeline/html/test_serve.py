@@ -34,10 +34,20 @@ def ask(port: int, path: str) -> tuple[int, dict[str, str], str]:
 @pytest.mark.parametrize(
     ("path", "body"),
     [("/", "home"), ("/sub/", "page"), ("/index.html?v=1", "home")]
-    + [(path, None) for path in ("/file.txt", "/folder/secret.txt", "/folder/", "/linked/",
-                                 "/../outside/secret.txt", "/%2e%2e/outside/secret.txt", "/empty/",
-                                 "/gone.html")],
-)  # fmt: skip
+    + [
+        (path, None)
+        for path in (
+            "/file.txt",
+            "/folder/secret.txt",
+            "/folder/",
+            "/linked/",
+            "/../outside/secret.txt",
+            "/%2e%2e/outside/secret.txt",
+            "/empty/",
+            "/gone.html",
+        )
+    ],
+)
 def test_files_of_the_site_are_sent_and_nothing_else(site, path, body):
     async def answer():
         return await asyncio.to_thread(ask, listen(0, site), path)

@@ -4,7 +4,11 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
-from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages, executed_notebook
+from robo_genesis.pipeline.pages.built import (
+    LAST_OUTPUTS,
+    BuiltPages,
+    executed_notebook,
+)
 from robo_genesis.pipeline.pages.folder import NOTEBOOK
 
 
@@ -20,7 +24,9 @@ from robo_genesis.pipeline.pages.folder import NOTEBOOK
     ],
     ids=["the same", "added", "removed", "changed", "changed and added", "none"],
 )
-def test_a_cell_gets_the_outputs_of_the_cell_with_its_source(tmp_path, monkeypatch, now, counts):
+def test_a_cell_gets_the_outputs_of_the_cell_with_its_source(
+    tmp_path, monkeypatch, now, counts
+):
     ran = [new_code_cell(name, execution_count=k) for k, name in enumerate("abc", 1)]
     nbformat.write(new_notebook(cells=ran), tmp_path / NOTEBOOK)
     told = BuiltPages(folders={"page": tmp_path}).write(tmp_path / "told")

@@ -11,7 +11,11 @@ import psutil
 import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
-from robo_genesis.core.project import ROOT, engine_cache_environment, engine_cache_folder
+from robo_genesis.core.project import (
+    ROOT,
+    engine_cache_environment,
+    engine_cache_folder,
+)
 from robo_genesis.pipeline.pages import opened
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import Lines, execute_pages, in_order
@@ -44,9 +48,13 @@ MEMORY = "import os\nos.kill(os.getpid(), 9)"
 KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\nimport time; time.sleep(60)"
 BROKEN = {
     "good": notebook(cell(GREEN)),
-    "check": notebook(cell(CHECK), cell("# proof\nraise CheckFailed('[factor] kp,\\nkv too')")),
+    "check": notebook(
+        cell(CHECK), cell("# proof\nraise CheckFailed('[factor] kp,\\nkv too')")
+    ),
     "dead": notebook(cell(LAST_WORDS)),
-    "slow": notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"),
+    "slow": notebook(
+        cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"
+    ),
     "bundle": notebook(cell("5 + 1"), front=LAB_FRONT.replace("lab", "more")),
     "link": notebook(cell(LINKED), front=LAB_FRONT),
     "killed": notebook(cell(KILLS)),
@@ -67,7 +75,9 @@ def execute(folder: Path, **settings):
 def broken(tmp_path_factory):
     folder = tmp_path_factory.mktemp("broken")
     make_book(folder, **BROKEN)
-    with pytest.MonkeyPatch.context() as changed:  # a socket's path may have 107 characters
+    with (
+        pytest.MonkeyPatch.context() as changed
+    ):  # a socket's path may have 107 characters
         changed.setattr("tempfile.tempdir", str(tmp_path_factory.mktemp("long" * 30)))
         return folder, execute(folder, jobs=2, environment={"TMPDIR": "/tmp"})
 
@@ -75,12 +85,17 @@ def broken(tmp_path_factory):
 def test_all_pages_are_tried_and_only_good_ones_are_stored(broken):
     results = broken[1]
     assert list(results) == list(BROKEN)
-    assert {name for name in results if results[name].status == "executed"} == {"good", "twin"}
+    assert {name for name in results if results[name].status == "executed"} == {
+        "good",
+        "twin",
+    }
     assert {result.status for result in results.values()} == {"executed", "failed"}
     stored = {path.parts[-3]: path for path in (broken[0] / "store").rglob("*.ipynb")}
     assert sorted(stored) == ["good", "twin"]
     printed, warned = nbformat.read(stored["good"], 4).cells[0].outputs
-    assert printed.text == "two\n"  # without colour, and without what a terminal overwrites
+    assert (
+        printed.text == "two\n"
+    )  # without colour, and without what a terminal overwrites
     assert warned.text == 'cell:4: UserWarning: old\n  warnings.warn("old")\n'
 
 
@@ -89,7 +104,9 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     assert "8 of 10 pages failed." in report
     place = report.index("check, code cell 2, line ")
     part = report[place : report.index("\n\n", place)]
-    assert part.startswith("check, code cell 2, line 19: raise CheckFailed('[factor] kp,\\nkv")
+    assert part.startswith(
+        "check, code cell 2, line 19: raise CheckFailed('[factor] kp,\\nkv"
+    )
     assert "    CheckFailed: [factor] kp,\n    kv too\n" in part
     assert "    | engine line 5\n" in part
     assert part.endswith("    | engine line 19")
@@ -101,11 +118,26 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     [
         ("dead", "DeadKernelError", "last words", 1),
         ("slow", "CellTimeoutError", "2 seconds", 1),
-        ("bundle", "BundleMissing", "the run left no l04/more/<backend>/manifest.json", None),
+        (
+            "bundle",
+            "BundleMissing",
+            "the run left no l04/more/<backend>/manifest.json",
+            None,
+        ),
         ("link", "NotStored", "files: outputs/cpu/log.txt is a link or device", None),
         ("long", "OutputSize", "puts out 2 lines, 1,200,002 characters.", 1),
-        ("killed", "WorkerDied", "ended in cell 1 with SIGKILL (Killed). If nobody stopped", None),
-        ("memory", "DeadKernelError", "SIGKILL (Killed). If nobody stopped it, the memory", 1),
+        (
+            "killed",
+            "WorkerDied",
+            "ended in cell 1 with SIGKILL (Killed). If nobody stopped",
+            None,
+        ),
+        (
+            "memory",
+            "DeadKernelError",
+            "SIGKILL (Killed). If nobody stopped it, the memory",
+            1,
+        ),
     ],
 )
 def test_each_kind_of_failure_is_named(broken, name, error, said, cell):
@@ -130,14 +162,18 @@ def test_a_page_is_reused_unless_it_is_to_be_executed_again(lab):
     assert first.run_id == second.run_id
     assert first.bundle == first.folder / "outputs/cpu"
     said = []
-    again = execute(lab, reuse=False, report=Lines(lambda *words: said.append(words)))["lab"]
+    again = execute(lab, reuse=False, report=Lines(lambda *words: said.append(words)))[
+        "lab"
+    ]
     assert (again.status, again.folder) == ("executed", first.folder)
     assert re.match(r"started: 2 cells, about \d+ s$", said[0][1])
     assert execute(lab)["lab"].run_id == again.run_id != first.run_id
 
 
 def test_a_run_that_fails_with_the_same_code_keeps_the_page(tmp_path):
-    make_book(tmp_path, page=notebook(cell("import os\nassert 'FAIL' not in os.environ")))
+    make_book(
+        tmp_path, page=notebook(cell("import os\nassert 'FAIL' not in os.environ"))
+    )
     before = execute(tmp_path)["page"].run_id
     failed = execute(tmp_path, reuse=False, environment={"FAIL": "1"})["page"]
     assert failed.failure.error == "AssertionError"
@@ -148,14 +184,19 @@ def test_an_edit_of_prose_or_metadata_is_checked_without_a_run(lab):
     page = lab / "book/lab.md"
     text = page.read_text()
     places_now = places(find_pages(lab / "book"), lab / "store")
-    for old, new in (("# Page", "# Another title"), ("ValueError: no", "ValueError: no way")):
+    for old, new in (
+        ("# Page", "# Another title"),
+        ("ValueError: no", "ValueError: no way"),
+    ):
         assert old in text
         page.write_text(text.replace(old, new))
         [now] = find_pages(lab / "book")
         assert stored_result(now, places_now["lab"]).status == "reused"
     page.write_text(text.replace("ValueError: no", "ValueError: yes"))
     [now] = find_pages(lab / "book")
-    with pytest.raises(PageRefused, match=r"outcome: .* expected was 'ValueError: yes', but"):
+    with pytest.raises(
+        PageRefused, match=r"outcome: .* expected was 'ValueError: yes', but"
+    ):
         stored_result(now, places_now["lab"])
     page.write_text(text)
 
@@ -170,12 +211,13 @@ pathlib.Path({place!r}, "{mine}").touch()
 while not pathlib.Path({place!r}, "{theirs}").exists(): time.sleep(0.05)"""
 
 
-def test_pages_run_at_the_same_time_and_save_what_they_compiled_even_where_they_fail(tmp_path):
+def test_pages_run_at_the_same_time_and_save_what_they_compiled_even_where_they_fail(
+    tmp_path,
+):
     """Each page waits for a file of the other: one after the other, both would time out.
 
-    They save in an exit handler, as the engine does; six seconds are more than Jupyter's usual
-    wait.
-    """
+    They save in an exit handler, as the engine does; six seconds are more than
+    Jupyter's usual wait."""
     good = cell(MEET_AND_SAVE.format(mine="good", theirs="bad", place=str(tmp_path)))
     bad = cell(MEET_AND_SAVE.format(mine="bad", theirs="good", place=str(tmp_path)))
     make_book(tmp_path, good=notebook(good), bad=notebook(bad, cell("1 / 0")))
@@ -214,15 +256,21 @@ def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
     The fourth, for which there is no room at first, waits until both have measured.
     """
     meets, measures = (
-        {n: code.format(place=str(tmp_path), name=n) for n in "abc"} for code in (MEETS, MEASURES)
+        {n: code.format(place=str(tmp_path), name=n) for n in "abc"}
+        for code in (MEETS, MEASURES)
     )
     tag = ":tags: [alone]\n"
-    pages = {name: notebook(cell(meets[name]), cell(measures[name], tag)) for name in "ab"}
+    pages = {
+        name: notebook(cell(meets[name]), cell(measures[name], tag)) for name in "ab"
+    }
     later = notebook(cell(LATER.format(place=str(tmp_path))), cell("1", tag))
     make_book(tmp_path, **pages, c=notebook(cell(meets["c"] + ENDS)), d=later)
     results = execute(tmp_path, jobs=3, timeout=60)
     assert {result.status for result in results.values()} == {"executed"}, results
-    waited = [results[name].seconds - read_record(results[name].folder).seconds for name in "ab"]
+    waited = [
+        results[name].seconds - read_record(results[name].folder).seconds
+        for name in "ab"
+    ]
     assert max(waited) > 0.5  # the record has the time without waiting
 
 
@@ -249,17 +297,27 @@ def test_a_page_that_was_not_accepted_is_the_first_to_run_again(tmp_path):
     assert [name for name, event in said if event == "started"] == ["b", "a", "a", "b"]
 
 
-ENDS_AFTER_C = "\nimport time\nwhile not [*pathlib.Path({store!r}).glob('*/executed.ipynb')]:"
+ENDS_AFTER_C = (
+    "\nimport time\nwhile not [*pathlib.Path({store!r}).glob('*/executed.ipynb')]:"
+)
 ENDS_AFTER_C += " time.sleep(0.1)\ntime.sleep(1)"
 
 
 @pytest.mark.parametrize("saved", [False, True])
-def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(tmp_path, saved):
+def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
+    tmp_path, saved
+):
     """The page with kernels of its own ends before the lab; that starts no other page."""
     lab = cell(WRITE_BUNDLE + ENDS_AFTER_C.format(store=str(tmp_path / "store" / "c")))
     more, own = cell("1"), cell("1", ":tags: [own-kernels]\n")
-    own_first = notebook(own, more, more)  # more cells than the lab, which yet starts first
-    books = {"a": notebook(more, more), "b": notebook(lab, front=LAB_FRONT), "c": own_first}
+    own_first = notebook(
+        own, more, more
+    )  # more cells than the lab, which yet starts first
+    books = {
+        "a": notebook(more, more),
+        "b": notebook(lab, front=LAB_FRONT),
+        "c": own_first,
+    }
     books["d"] = notebook(own, cell("1", ":tags: [alone]\n"))  # never among the first
     make_book(tmp_path, **books)
     environment = engine_cache_environment(cache=tmp_path / "cache")
@@ -270,10 +328,22 @@ def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(t
     results = execute(tmp_path, jobs=2, environment=environment, report=noting(said))
     assert {result.status for result in results.values()} == {"executed"}
     if saved:
-        assert [name for name, event in said if event == "started"] == ["c", "a", "b", "d"]
+        assert [name for name, event in said if event == "started"] == [
+            "c",
+            "a",
+            "b",
+            "d",
+        ]
     else:
         start, end = "started", "execute"
-        order = [("b", start), ("c", start), ("c", end), ("b", end), ("a", start), ("d", start)]
+        order = [
+            ("b", start),
+            ("c", start),
+            ("c", end),
+            ("b", end),
+            ("a", start),
+            ("d", start),
+        ]
         assert said[:6] == order
 
 
@@ -287,11 +357,16 @@ def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
     assert said == []
 
 
-def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest(tmp_path):
+def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest(
+    tmp_path,
+):
     cells = {"a": 1, "b": 1, "c": 1, "d": 9, "e": 2}
     books = {name: notebook(*[cell("1")] * n) for name, n in cells.items()}
     make_book(tmp_path, **books, f=notebook(*[cell("1", ":tags: [alone]\n")] * 9))
-    last = {name: SimpleNamespace(seconds=s) for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))}
+    last = {
+        name: SimpleNamespace(seconds=s)
+        for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))
+    }
     pages = find_pages(tmp_path / "book")
     found = in_order(pages, {"b": None, "e": None, "f": None} | last, ["a"])
     assert [page.docname for page in found] == ["a", "e", "b", "c", "d", "f"]
@@ -301,7 +376,9 @@ def test_kernels_are_clean(tmp_path, monkeypatch):
     """A user's kernelspec, start-up file and search path do not reach the page; its imports do."""
     spec = tmp_path / "jupyter/kernels/python3"
     spec.mkdir(parents=True)
-    (spec / "kernel.json").write_text('{"argv": ["/bin/false"], "display_name": "python3"}')
+    (spec / "kernel.json").write_text(
+        '{"argv": ["/bin/false"], "display_name": "python3"}'
+    )
     startup = tmp_path / "ipython/profile_default/startup"
     startup.mkdir(parents=True)
     (startup / "leak.py").write_text("leaked = 1")
@@ -358,16 +435,23 @@ def test_a_page_that_reads_a_file_which_no_key_covers_is_refused_by_its_name(tmp
         (tmp_path / name).write_text(MODEL.get(name, ""))
     codes = {"refused": READS, "accepted": OWN}
     place = {"away": str(tmp_path), "root": str(ROOT)}
-    make_book(tmp_path, **{name: notebook(cell(of.format(**place))) for name, of in codes.items()})
+    make_book(
+        tmp_path,
+        **{name: notebook(cell(of.format(**place))) for name, of in codes.items()},
+    )
     results = execute(tmp_path, jobs=2)
     assert results["accepted"].status == "executed", results["accepted"].failure
     failure = results["refused"].failure
     names = failure.message.partition("): ")[2].partition(". It would not")[0]
     assert failure.error == "FileNotKeyed"
-    assert [n for n in READ if not any(p.endswith(f"/{n}") for p in names.split(", "))] == []
+    assert [
+        n for n in READ if not any(p.endswith(f"/{n}") for p in names.split(", "))
+    ] == []
 
 
-def test_of_the_files_in_folders_of_the_system_a_model_is_refused(tmp_path, monkeypatch):
+def test_of_the_files_in_folders_of_the_system_a_model_is_refused(
+    tmp_path, monkeypatch
+):
     share, runtime = tmp_path / "share", tmp_path / "runtime"
     monkeypatch.setattr(opened, "SYSTEM", (str(share),))
     monkeypatch.setenv(opened.RUNTIME, str(runtime))
@@ -377,7 +461,9 @@ def test_of_the_files_in_folders_of_the_system_a_model_is_refused(tmp_path, monk
             (folder / name).touch()
     noted = [*share.iterdir(), *runtime.iterdir()]
     (runtime / "opened").write_text("\0".join(map(str, noted)))
-    assert opened.unkeyed_files([]) == [str(share / name) for name in ("TOOL.STL", "arm.urdf")]
+    assert opened.unkeyed_files([]) == [
+        str(share / name) for name in ("TOOL.STL", "arm.urdf")
+    ]
 
 
 def test_ctrl_c_while_a_worker_starts_kills_it(tmp_path, monkeypatch):

@@ -1,7 +1,17 @@
 """`make execute` and `make pages`: one page at a time, and the list of pages."""
 
 import pytest
-from tiny_book import accept, cell, contents, fails, lab, make_book, notebook, refuse, start
+from tiny_book import (
+    accept,
+    cell,
+    contents,
+    fails,
+    lab,
+    make_book,
+    notebook,
+    refuse,
+    start,
+)
 
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.stages import Build, BuildError, export_one, run_build
@@ -21,7 +31,9 @@ def folder(tmp_path_factory):
 def export(folder, name, to, verify=accept):
     """Export a page; return the last lines, and the lines of progress."""
     said: list[str] = []
-    build = Build(book=folder / "book", cache=folder / "cache", say=said.append, verify=verify)
+    build = Build(
+        book=folder / "book", cache=folder / "cache", say=said.append, verify=verify
+    )
     return export_one(name, to, build), [line.split("] ")[1] for line in said]
 
 
@@ -34,7 +46,9 @@ def test_one_page_is_executed_once_and_exported_under_both_of_its_names(folder):
     _, said = export(folder, "l04/lab", folder / "again")
     assert said[-1] == "export   lab  reused"
     assert (folder / "again/lab/executed.ipynb").is_file()
-    with pytest.raises(BuildError, match=r"refused: metrics: .* The next build executes"):
+    with pytest.raises(
+        BuildError, match=r"refused: metrics: .* The next build executes"
+    ):
         export(folder, "lab", folder / "refused", refuse)
     assert not (folder / "refused").exists()
     _, said = export(folder, "lab", folder / "again")
@@ -88,13 +102,20 @@ def executed(folder):
 
 
 @pytest.mark.parametrize("release", [False, True])
-def test_pages_from_elsewhere_are_published_without_a_run(executed, tmp_path, monkeypatch, release):
+def test_pages_from_elsewhere_are_published_without_a_run(
+    executed, tmp_path, monkeypatch, release
+):
     stages = "robo_genesis.pipeline.stages"
     monkeypatch.setattr(f"{stages}.execute_pages", None)  # whoever calls it fails
     monkeypatch.setattr(f"{stages}.unclean", lambda root: [])
     monkeypatch.setattr(f"{stages}.missing_for_release", lambda *given: [])
-    monkeypatch.setattr(f"{stages}.agree", lambda *of: [f"Executed in {of[0].name}, {of[1].name}."])
-    book, store = make_book(tmp_path, **PAGES, page="# A\n\n[lost](nowhere.html)\n"), "cache/pages"
+    monkeypatch.setattr(
+        f"{stages}.agree", lambda *of: [f"Executed in {of[0].name}, {of[1].name}."]
+    )
+    book, store = (
+        make_book(tmp_path, **PAGES, page="# A\n\n[lost](nowhere.html)\n"),
+        "cache/pages",
+    )
 
     def build(verify=accept) -> list[str]:
         given = {"verify": verify, "say": [].append, "release": release}
@@ -104,11 +125,19 @@ def test_pages_from_elsewhere_are_published_without_a_run(executed, tmp_path, mo
     for verify, said in ((refuse, "refused: metrics: "), (accept, "nowhere")):
         with pytest.raises(ProjectError, match=said):
             build(verify)
-        assert not (tmp_path / store).exists()  # later builds would find the pages there
+        assert not (
+            tmp_path / store
+        ).exists()  # later builds would find the pages there
     (book / "page.md").write_text("# A\n\n```{course-processors}\n```\n")
-    assert {"Pages: 0 executed, 2 reused.", "Executed in executed, again."} <= {*build()}
-    assert "Executed in executed, again." in (book / "_build/html/page.html").read_text()
-    assert contents(book / "_build/evidence/l04/cpu") == contents(executed / "lab/outputs/cpu")
+    assert {"Pages: 0 executed, 2 reused.", "Executed in executed, again."} <= {
+        *build()
+    }
+    assert (
+        "Executed in executed, again." in (book / "_build/html/page.html").read_text()
+    )
+    assert contents(book / "_build/evidence/l04/cpu") == contents(
+        executed / "lab/outputs/cpu"
+    )
     assert "cpu make book" in (book / "_build/html/contract.html").read_text()
     for name in PAGES:
         [stored] = (tmp_path / store / name).iterdir()

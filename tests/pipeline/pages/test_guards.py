@@ -26,14 +26,25 @@ def test_a_guard_belongs_to_the_sentence_in_front_of_it():
 @pytest.mark.parametrize(
     ("page", "said"),
     [
-        ("l04/lecture", f"{WRITE}a/lecture.md, line 10, says “one item is lower” (order)."),
-        ("l04/lab", f"{WRITE}a/lecture.md, line 8, says “Another sentence follows.” (order)."),
+        (
+            "l04/lecture",
+            f"{WRITE}a/lecture.md, line 10, says “one item is lower” (order).",
+        ),
+        (
+            "l04/lab",
+            f"{WRITE}a/lecture.md, line 8, says “Another sentence follows.” (order).",
+        ),
         ("l05/lab", ""),
     ],
 )
-def test_a_failed_check_names_the_sentences_that_it_guards_on_all_pages(tmp_path, page, said):
+def test_a_failed_check_names_the_sentences_that_it_guards_on_all_pages(
+    tmp_path, page, said
+):
     file = tmp_path / "a" / "lecture.md"
     file.parent.mkdir()
     file.write_text(FRONT + PAGE)
-    assert contradicted(tmp_path, page, "L04 CHECK: FAILED [order] x is 1, expected 2") == said
+    assert (
+        contradicted(tmp_path, page, "L04 CHECK: FAILED [order] x is 1, expected 2")
+        == said
+    )
     assert contradicted(tmp_path, page, "L04 CHECK: FAILED [other] x is 1") == ""

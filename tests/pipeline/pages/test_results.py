@@ -30,27 +30,89 @@ def prints(text):
 FIGURE, SVG = {"tags": ["figure"]}, "image/svg+xml"
 WRONG = (
     (FIGURE, [picture("text/plain")], "FigureMissing", "tagged figure, but shows none"),
-    ({}, [picture(SVG)], "FigureUntagged", "shows a picture. Tag it figure, and describe"),
-    ({"tags": ["inputs"]}, [picture(f"{GLUED}{SVG}")], "FigureOfInputs", "for tables alone"),
-    (FIGURE, [picture(SVG, '<p fill="#1f77b4"/>')], "Colour", "draws in #1f77b4. A page draws in"),
-    (FIGURE, [picture("image/png", "A" * 2_000_001)], "OutputSize", "draw fewer points"),
-    ({}, [prints("x\n" * 1_001)], "OutputSize", "puts out 1,001 lines, 2,002 characters. A page"),
-    ({}, [picture("text/markdown", "x" * 100_001)], "OutputSize", "puts out 1 lines, 100,001 c"),
-    ({}, [picture("text/html")], "OutputKind", "puts out text/html. Show a table as `Markdown("),
+    (
+        {},
+        [picture(SVG)],
+        "FigureUntagged",
+        "shows a picture. Tag it figure, and describe",
+    ),
+    (
+        {"tags": ["inputs"]},
+        [picture(f"{GLUED}{SVG}")],
+        "FigureOfInputs",
+        "for tables alone",
+    ),
+    (
+        FIGURE,
+        [picture(SVG, '<p fill="#1f77b4"/>')],
+        "Colour",
+        "draws in #1f77b4. A page draws in",
+    ),
+    (
+        FIGURE,
+        [picture("image/png", "A" * 2_000_001)],
+        "OutputSize",
+        "draw fewer points",
+    ),
+    (
+        {},
+        [prints("x\n" * 1_001)],
+        "OutputSize",
+        "puts out 1,001 lines, 2,002 characters. A page",
+    ),
+    (
+        {},
+        [picture("text/markdown", "x" * 100_001)],
+        "OutputSize",
+        "puts out 1 lines, 100,001 c",
+    ),
+    (
+        {},
+        [picture("text/html")],
+        "OutputKind",
+        "puts out text/html. Show a table as `Markdown(",
+    ),
     ({}, [picture(f"{GLUED}text/html")], "OutputKind", "frames and arrays in a figure"),
     ({}, [picture("video/mp4")], "OutputKind", "a motion by the directive {replay}"),
-    ({}, [picture("text/plain", "<Line2D at 0x7f5a>")], "OutputChanges", "'at 0x7f5a'. It differs"),
-    ({}, [prints("140052334563712 0x7f2d9b7a7200")], "OutputChanges", "'0x7f2d9b7a7200'"),
+    (
+        {},
+        [picture("text/plain", "<Line2D at 0x7f5a>")],
+        "OutputChanges",
+        "'at 0x7f5a'. It differs",
+    ),
+    (
+        {},
+        [prints("140052334563712 0x7f2d9b7a7200")],
+        "OutputChanges",
+        "'0x7f2d9b7a7200'",
+    ),
     ({}, [prints("a /tmp/tmp8ykmu1dh/b")], "OutputChanges", "'/tmp8ykmu1dh'"),
     ({}, [prints("3\x08 4")], "OutputChanges", r"'\x08'"),
-    ({}, [raised("KeyError", "kp")], "ExpectedException", "raised KeyError: kp, but is not tagged"),
-    (RAISES, [], "ExpectedException", "was 'ValueError: no', but the cell raised no exception."),
-    (RAISES, [raised("ValueError", "hm")], "ExpectedException", "the cell raised ValueError: hm."),
-)  # fmt: skip
+    (
+        {},
+        [raised("KeyError", "kp")],
+        "ExpectedException",
+        "raised KeyError: kp, but is not tagged",
+    ),
+    (
+        RAISES,
+        [],
+        "ExpectedException",
+        "was 'ValueError: no', but the cell raised no exception.",
+    ),
+    (
+        RAISES,
+        [raised("ValueError", "hm")],
+        "ExpectedException",
+        "the cell raised ValueError: hm.",
+    ),
+)
 
 
 def outcome(metadata, outputs):
-    book = new_notebook(cells=[new_code_cell("draw()", metadata=metadata, outputs=outputs)])
+    book = new_notebook(
+        cells=[new_code_cell("draw()", metadata=metadata, outputs=outputs)]
+    )
     book.metadata.source_map = [3]
     return unexpected_outcome(Page("page", Path("deleted.md"), book), book)
 
@@ -83,7 +145,10 @@ FAILING = [  # the code of a cell, and how its failing line begins
     ("def own():\n    raise ValueError('here')\n\nown()", "raise ValueError"),
     ("one = 1\n\nhelper()", "helper()"),
     ("import json\njson.loads('{')\none = 1", "json.loads"),
-    ("try:\n    1 / 0\nexcept ArithmeticError as e:\n    raise KeyError from e", "raise KeyError"),
+    (
+        "try:\n    1 / 0\nexcept ArithmeticError as e:\n    raise KeyError from e",
+        "raise KeyError",
+    ),
     ("one = 1\ntwo = = 2", "two = = 2"),
     ("if True:\n    one = 1\n  two = 2", "two = 2"),
     ("\n\none = 1\n1 / 0", "1 / 0"),  # IPython counts from the first line with text
@@ -96,10 +161,20 @@ FAILING = [  # the code of a cell, and how its failing line begins
 def failing(tmp_path_factory):
     """The page whose cells fail, and the same as it was executed."""
     folder = tmp_path_factory.mktemp("failing")
-    names = ["ZeroDivision", "ZeroDivision", "Value", "Value", "JSONDecode", "Key", "Syntax"]
+    names = [
+        "ZeroDivision",
+        "ZeroDivision",
+        "Value",
+        "Value",
+        "JSONDecode",
+        "Key",
+        "Syntax",
+    ]
     expected = [f"{name}Error" for name in names] + ["IndentationError"]
     expected += ["ZeroDivisionError", "Exception", "SystemExit"]
-    cells = [raising(code, name) for (code, _), name in zip(FAILING, expected, strict=True)]
+    cells = [
+        raising(code, name) for (code, _), name in zip(FAILING, expected, strict=True)
+    ]
     [page] = find_pages(make_book(folder, page=notebook(cell(HELPER), *cells)))
     [result] = executed([page], folder)
     return page, stored_notebook(result)
@@ -109,14 +184,20 @@ def failing(tmp_path_factory):
 def test_a_failure_names_the_line_of_the_cell_that_failed(failing, number):
     page, executed = failing
     code = [n for n, part in enumerate(page.notebook.cells) if part.cell_type == "code"]
-    failure = at_cell(page, code[number + 1], "E", "message", executed.cells[number + 1])
+    failure = at_cell(
+        page, code[number + 1], "E", "message", executed.cells[number + 1]
+    )
     assert failure.cell == number + 2
     assert failure.source.startswith(FAILING[number][1])
-    assert page.path.read_text().splitlines()[failure.line - 1].strip() == failure.source
+    assert (
+        page.path.read_text().splitlines()[failure.line - 1].strip() == failure.source
+    )
 
 
 def test_a_line_of_a_run_of_other_text_is_not_named(failing):
     page, executed = failing
     last = len(page.notebook.cells) - 1
     ran = executed.cells[1].copy() | {"source": "1 / 0"}
-    assert at_cell(page, last, "E", "message", nbformat.from_dict(ran)).source == "one = 1"
+    assert (
+        at_cell(page, last, "E", "message", nbformat.from_dict(ran)).source == "one = 1"
+    )

@@ -12,7 +12,11 @@ from robo_genesis.core.project import BOOK, ROOT, ProjectError
 from robo_genesis.lessons import LESSONS, find_page
 from robo_genesis.pipeline.pages import sources
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.sources import Tree, measuring_modules, page_fingerprint
+from robo_genesis.pipeline.pages.sources import (
+    Tree,
+    measuring_modules,
+    page_fingerprint,
+)
 from robo_genesis.pipeline.pages.store import places
 from robo_genesis.pipeline.pages.syntax import read_code, syntax_digest
 
@@ -66,7 +70,9 @@ def test_imports_are_followed_through_functions_and_relative_names(root, page):
     ]
 
 
-@pytest.mark.parametrize("source", ["def (", "from . import used", "import numpy", "\0"])
+@pytest.mark.parametrize(
+    "source", ["def (", "from . import used", "import numpy", "\0"]
+)
 def test_a_cell_that_cannot_run_or_needs_no_module_imports_nothing(source):
     assert read_code([source]).imports == []
 
@@ -107,14 +113,32 @@ def write(root, name, text=""):
         opened.write(text)
 
 
-def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(root, monkeypatch):
+def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(
+    root, monkeypatch
+):
     """Of other lessons only with a module of theirs, and none of what measures nothing."""
     read = []
-    monkeypatch.setattr(sources, "sha256", lambda path: read.append(path.parent.name) or path.name)
-    data = ["core/a.bin", "sim/arm/a", "lessons/l04/a/b.xml", "lessons/l03/a.csv", "site/a.json"]
-    for name in (*data, "pipeline/a.csv", "lessons/l03/__init__.py", "lessons/l03/run.py"):
+    monkeypatch.setattr(
+        sources, "sha256", lambda path: read.append(path.parent.name) or path.name
+    )
+    data = [
+        "core/a.bin",
+        "sim/arm/a",
+        "lessons/l04/a/b.xml",
+        "lessons/l03/a.csv",
+        "site/a.json",
+    ]
+    for name in (
+        *data,
+        "pipeline/a.csv",
+        "lessons/l03/__init__.py",
+        "lessons/l03/run.py",
+    ):
         write(root, f"robo_genesis/{name}")
-    imports, other = ["robo_genesis.lessons.l03.run"], {"lessons.l03.run", "lessons/l03/a.csv"}
+    imports, other = (
+        ["robo_genesis.lessons.l03.run"],
+        {"lessons.l03.run", "lessons/l03/a.csv"},
+    )
     assert measuring_modules("l04", [], root).keys() == {*data[:3]}
     assert "l03" not in read  # a page that read it would be refused
     assert measuring_modules("l04", imports, root).keys() == {*data[:3]} | other
@@ -123,24 +147,42 @@ def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(
 @pytest.mark.parametrize(
     ("name", "refused"),
     [
-        *((f"{name}.py", name) for name in ("sitecustomize", "usercustomize", "trimesh", "a-b")),
+        *(
+            (f"{name}.py", name)
+            for name in ("sitecustomize", "usercustomize", "trimesh", "a-b")
+        ),
         ("numpy/__init__.py", "numpy"),
         ("torch/__init__.abi3.so", "torch"),
         ("fast.pyc", "fast"),
-        *((f"robo_genesis/{name}",) * 2 for name in ("used/__init__.py", "x.pyc", "lazy.abi3.so")),
-        *((f"robo_genesis/{name}", None) for name in ("used/a.csv", "__pycache__/used.pyc")),
+        *(
+            (f"robo_genesis/{name}",) * 2
+            for name in ("used/__init__.py", "x.pyc", "lazy.abi3.so")
+        ),
+        *(
+            (f"robo_genesis/{name}", None)
+            for name in ("used/a.csv", "__pycache__/used.pyc")
+        ),
         *((name, None) for name in (".hidden.py", "notes/a.py", "trimesh.txt")),
     ],
 )
-def test_what_python_would_import_in_place_of_a_keyed_module_is_refused(root, page, name, refused):
+def test_what_python_would_import_in_place_of_a_keyed_module_is_refused(
+    root, page, name, refused
+):
     write(root, name)
-    said = pytest.raises(ProjectError, match=f"would import {refused} in .* Move the others")
+    said = pytest.raises(
+        ProjectError, match=f"would import {refused} in .* Move the others"
+    )
     with said if refused else nullcontext():
         assert places([page], root / "store", root)
 
 
 def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):
-    names = ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "QD_FAST_MATH", "LD_LIBRARY_PATH")
+    names = (
+        "ROBO_GENESIS_RENDER",
+        "ROBO_GENESIS_BACKEND",
+        "QD_FAST_MATH",
+        "LD_LIBRARY_PATH",
+    )
     alone = deepcopy(page.notebook)
     alone.cells[1].metadata["tags"] = ["alone"]
     found = [key(page, root), key(replace(page, notebook=alone), root)]
@@ -183,15 +225,24 @@ def test_a_page_that_runs_alone_records_elapsed_times():
     assert timed <= {*alone}
     for name, page in alone.items():  # a tag at another cell is noticed
         code = page.code.sources[page.alone - 1]
-        assert any(word in code for word in (TIMES, "step_time", "perf_counter()")), name
+        assert any(word in code for word in (TIMES, "step_time", "perf_counter()")), (
+            name
+        )
     for name in timed:
         groups = find_page(alone[name].lesson, alone[name].page).groups(True).values()
         assert any(group.kind == "performance" for group in groups), name
 
 
 def test_a_page_with_kernels_of_its_own_compiles_them_before_it_needs_those_of_the_build():
-    after_set_up = {page.docname: page.code.sources[3:4] for page in PAGES if page.own_kernels}
-    starts = [code for page in PAGES for code in page.code.sources if "measure_starts(" in code]
+    after_set_up = {
+        page.docname: page.code.sources[3:4] for page in PAGES if page.own_kernels
+    }
+    starts = [
+        code
+        for page in PAGES
+        for code in page.code.sources
+        if "measure_starts(" in code
+    ]
     assert [*after_set_up.values()] == [starts] != [[]]
     assert starts[0].index("measure_starts(") < starts[0].index("examine(")
 
@@ -200,7 +251,10 @@ def keys(root, pages):
     """Return fingerprint and modules of the evidence key of some pages of the course."""
     tree = Tree(root)
     fingerprints = {(p.lesson, p.page): page_fingerprint(p, tree, {}) for p in pages}
-    modules = {(p.lesson, p.page): measuring_modules(p.lesson, p.code.imports, root) for p in pages}
+    modules = {
+        (p.lesson, p.page): measuring_modules(p.lesson, p.code.imports, root)
+        for p in pages
+    }
     return fingerprints, modules
 
 
@@ -208,7 +262,9 @@ def keys(root, pages):
 def copy(tmp_path_factory):
     """A copy of the package and the lock, to change and to restore, and its keys."""
     root = tmp_path_factory.mktemp("checkout")
-    shutil.copytree(PACKAGE, root / "robo_genesis", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        PACKAGE, root / "robo_genesis", ignore=shutil.ignore_patterns("__pycache__")
+    )
     shutil.copy(ROOT / "requirements.lock", root)
     return root, keys(root, PAGES)
 
@@ -224,7 +280,12 @@ CHANGES = [
     ("evidence/recorder", CONSTANT, ALL, NONE),
     ("pipeline/stages", CONSTANT, NONE, NONE),
     ("lessons/l04/theory", CONSTANT, ("l04",), ("l04",)),
-    ("lessons/l04/spec", ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'), ("l04",), NONE),
+    (
+        "lessons/l04/spec",
+        ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'),
+        ("l04",),
+        NONE,
+    ),
     ("lessons/l04/pages", ('filmed="the Franka"', 'filmed="the arm"'), ("l04",), NONE),
     ("lessons/l02/plots", CONSTANT, ("l02",), NONE),
     ("lessons/l02/checks", ('"""The engine\'s mass', '"""The mass'), ("l02",), NONE),
@@ -242,7 +303,9 @@ CHANGES += [  # a lesson can be removed with the folder of its tests alone
 
 
 @pytest.mark.parametrize(("file", "change", "run_again", "stale"), CHANGES)
-def test_a_change_reaches_the_pages_that_use_it_alone(copy, file, change, run_again, stale):
+def test_a_change_reaches_the_pages_that_use_it_alone(
+    copy, file, change, run_again, stale
+):
     root, before = copy
     path = root / "robo_genesis" / f"{file}.py"
     text = path.read_text("utf8")
@@ -325,7 +388,10 @@ def test_what_a_module_does_counts_and_not_how_it_is_written(one, other, same):
             'try:\n  pass\nexcept* E as e:\n  "text"\nelse:\n  pass\nfinally:\n  "text"',
             "e4d6fd8a65fa",
         ),
-        ('d = {**a, 1: 2, "é😀\U0001fae8": 1e-400, 1j: b"x", ...: None}', "fb74db9895a8"),
+        (
+            'd = {**a, 1: 2, "é😀\U0001fae8": 1e-400, 1j: b"x", ...: None}',
+            "fb74db9895a8",
+        ),
         (
             'x: int\ny: "str" = u"u"\nx = 1; del x; global_ = lambda *, k=None: (yield)',
             "610e481b8371",

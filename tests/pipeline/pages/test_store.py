@@ -9,7 +9,16 @@ import nbformat
 import pytest
 from nbformat.v4 import new_output
 from small_book import executed
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, accept, cell, contents, make_book, notebook, refuse
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    accept,
+    cell,
+    contents,
+    make_book,
+    notebook,
+    refuse,
+)
 from tiny_book import seal as seal_page
 
 from robo_genesis.core.files import put, replaced, settle_below
@@ -47,7 +56,9 @@ def here(elsewhere, tmp_path) -> Path:
 
 def take(here: Path) -> list[PageResult]:
     pages = find_pages(here / "book")
-    return store.handed_over(here / "executed", pages, store.places(pages, here / "store"))
+    return store.handed_over(
+        here / "executed", pages, store.places(pages, here / "store")
+    )
 
 
 def lab(here: Path, name: str) -> Path:
@@ -103,7 +114,12 @@ def test_a_page_is_one_folder_in_the_store_and_between_machines(elsewhere):
     assert (record["docname"], record["lesson"], record["page"]) == (LAB, "l04", "lab")
     assert record["fingerprint"] == kept.name
     assert len(record["cell_seconds"]) == 2
-    assert set(record["files"]) == {"executed.ipynb", BUNDLE, SHAPE, "outputs/cpu/printed.json"}
+    assert set(record["files"]) == {
+        "executed.ipynb",
+        BUNDLE,
+        SHAPE,
+        "outputs/cpu/printed.json",
+    }
     assert "measured" in (place / "executed.ipynb").read_text()
 
 
@@ -138,20 +154,56 @@ OTHERS = json.dumps({"predicate": {"run_id": RUN}})
 SPOILT = {
     "another fingerprint": (record(fingerprint="1" * 20), "fingerprint", "is 11111"),
     "an unknown page": (record(docname="gone"), "page", "its page is 'gone'. Pages of"),
-    "another lesson": (record(lesson="l02"), "page", "of lab (l02/lab), expected was lab (l04/la"),
+    "another lesson": (
+        record(lesson="l02"),
+        "page",
+        "of lab (l02/lab), expected was lab (l04/la",
+    ),
     "forged code": (first_cell(source="1"), "code", CODE),
-    "another kernel": (metadata(kernelspec={"name": "other", "display_name": ""}), "code", CODE),
+    "another kernel": (
+        metadata(kernelspec={"name": "other", "display_name": ""}),
+        "code",
+        CODE,
+    ),
     "a run that is none": (record(run_id="../x"), "record", "page.json is not what"),
-    "the notebook of another run": (metadata(robo_genesis={"run_id": RUN}), "run", "of run ffff"),
-    "the bundle of another run": (file(BUNDLE, OTHERS), "bundle", "has no evidence bundle of run"),
-    "a cell that failed": (first_cell(outputs=[ERROR]), "outcome", "ExpectedException: "),
+    "the notebook of another run": (
+        metadata(robo_genesis={"run_id": RUN}),
+        "run",
+        "of run ffff",
+    ),
+    "the bundle of another run": (
+        file(BUNDLE, OTHERS),
+        "bundle",
+        "has no evidence bundle of run",
+    ),
+    "a cell that failed": (
+        first_cell(outputs=[ERROR]),
+        "outcome",
+        "ExpectedException: ",
+    ),
     "no notebook": (remove("executed.ipynb"), "files", "absent are ['executed.ipynb']"),
-    "what is no notebook": (file("executed.ipynb", "[]"), "notebook", "ipynb is not a notebook"),
-    "a changed file": (lambda h: lab(h, SHAPE).write_text("new"), "digest", f"['{SHAPE}'] changed"),
+    "what is no notebook": (
+        file("executed.ipynb", "[]"),
+        "notebook",
+        "ipynb is not a notebook",
+    ),
+    "a changed file": (
+        lambda h: lab(h, SHAPE).write_text("new"),
+        "digest",
+        f"['{SHAPE}'] changed",
+    ),
     "a file of another page": (file("new", "new"), "files", "not of this page ['new']"),
-    "a path for a file": (record(files={"../../x": "0" * 64}), "files", "absent are ['../../x'"),
+    "a path for a file": (
+        record(files={"../../x": "0" * 64}),
+        "files",
+        "absent are ['../../x'",
+    ),
     "a link": (link, "files", "shape.npz is a link or device"),
-    "a pipe": (lambda h: os.mkfifo(lab(h, "pipe")), "files", "pipe is a link or device"),
+    "a pipe": (
+        lambda h: os.mkfifo(lab(h, "pipe")),
+        "files",
+        "pipe is a link or device",
+    ),
     "two of one page": (two, "twice", "lab is in "),
 }
 
@@ -193,11 +245,15 @@ def link_for_folder(here):
     lab(here, "").symlink_to(here / "aside")
 
 
-FORGED = {"robo_genesis": {"function": "robo_genesis.lessons.l04.tables.of", "arguments": []}}
+FORGED = {
+    "robo_genesis": {"function": "robo_genesis.lessons.l04.tables.of", "arguments": []}
+}
 FAILS = {
     **{name: spoil for name, (spoil, *_) in SPOILT.items() if spoil is not two},
     "a refused bundle": keep,
-    "a refused output": first_cell(outputs=[new_output("display_data", metadata=FORGED)]),
+    "a refused output": first_cell(
+        outputs=[new_output("display_data", metadata=FORGED)]
+    ),
     "JSON that is too deep": file("executed.ipynb", "[" * 100_000),
     "a manifest that is too deep": file(BUNDLE, "[" * 100_000),
     "a folder for the manifest": folder_for_manifest,
@@ -206,12 +262,17 @@ FAILS = {
     "a pipe for the record": pipe_for_record,
     "a file for the folder": file_for_folder,
     "a link": link_for_folder,
-    "a link to nothing": lambda here: (link_for_folder(here), shutil.rmtree(here / "aside")),
+    "a link to nothing": lambda here: (
+        link_for_folder(here),
+        shutil.rmtree(here / "aside"),
+    ),
 }
 
 
 @pytest.mark.parametrize("spoil", FAILS.values(), ids=FAILS)
-def test_a_stored_page_that_fails_is_run_again_by_this_build_or_the_next(here, monkeypatch, spoil):
+def test_a_stored_page_that_fails_is_run_again_by_this_build_or_the_next(
+    here, monkeypatch, spoil
+):
     """Whatever is wrong with it, no build fails for ever."""
     monkeypatch.setattr(of_build, "require_contract", lambda *given: None)
     spoil(here)
@@ -228,10 +289,15 @@ def test_a_stored_page_that_fails_is_run_again_by_this_build_or_the_next(here, m
         if result is None:
             return "executed again"
         judge = refuse if spoil is keep else accept
-        return "".join(of_build.verify_results(judge, [result], lambda *_: None)[1]) or "accepted"
+        return (
+            "".join(of_build.verify_results(judge, [result], lambda *_: None)[1])
+            or "accepted"
+        )
 
     first = build()
-    assert first == "executed again" or first.endswith("The next build executes the page again.")
+    assert first == "executed again" or first.endswith(
+        "The next build executes the page again."
+    )
     assert build() == "executed again"
     with replaced(place) as fresh:
         fresh.mkdir()
@@ -240,7 +306,9 @@ def test_a_stored_page_that_fails_is_run_again_by_this_build_or_the_next(here, m
 
 
 @pytest.mark.parametrize("newest", [1000, 10**10], ids=["past", "future"])
-def test_the_used_and_the_newest_folders_of_a_page_are_kept_and_other_pages_go(tmp_path, newest):
+def test_the_used_and_the_newest_folders_of_a_page_are_kept_and_other_pages_go(
+    tmp_path, newest
+):
     (page,) = find_pages(make_book(tmp_path, text=notebook(cell("1"))))
     kept = tmp_path / "store"
     for age, name in enumerate("abcde"):

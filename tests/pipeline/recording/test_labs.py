@@ -28,7 +28,9 @@ def finds(backend: str | None = None, *steps: StepResult):
 PROBED = finds()
 
 
-def run(folder: Path, page: str, expected: str | None = None, **settings) -> tuple[int, str]:
+def run(
+    folder: Path, page: str, expected: str | None = None, **settings
+) -> tuple[int, str]:
     """Record the tiny book's lab into `folder/kept`, and return exit status and what was said.
 
     Torch sees what the test says.
@@ -36,12 +38,19 @@ def run(folder: Path, page: str, expected: str | None = None, **settings) -> tup
     book, said = make_book(folder, lab=page), list[str]()
     values = {"lesson": "l04", "verify": accept, "probe": PROBED, "say": said.append}
     values |= {"to": folder / "kept"} | settings
-    status = record(Recording(book=book, cache=folder / "cache", expected=expected, **values))
+    status = record(
+        Recording(book=book, cache=folder / "cache", expected=expected, **values)
+    )
     return status, "\n".join(said)
 
 
-def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_path, monkeypatch):
-    for name, value in (("BACKEND", "cpu"), ("RENDER", "0")):  # a user's, which no recording heeds
+def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(
+    tmp_path, monkeypatch
+):
+    for name, value in (
+        ("BACKEND", "cpu"),
+        ("RENDER", "0"),
+    ):  # a user's, which no recording heeds
         monkeypatch.setenv(f"ROBO_GENESIS_{name}", value)
     old, run_ids = old_bundle(tmp_path, "cuda"), []
     place = tmp_path / "kept/l04/cuda"
@@ -51,11 +60,22 @@ def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_pa
         names = {path.name for path in place.iterdir()}
         assert names == {"log.txt", "manifest.json", "printed.json"}
         assert old.read_text() == "new"
-        run_ids.append(json.loads((place / "manifest.json").read_text())["predicate"]["run_id"])
+        run_ids.append(
+            json.loads((place / "manifest.json").read_text())["predicate"]["run_id"]
+        )
     assert run_ids[0] != run_ids[1]
     stages = re.findall(r"^\[.*\] (\w+)", said, re.MULTILINE)
-    assert list(dict.fromkeys(stages)) == ["probe", "lab", "execute", "verify", "record"]
-    assert "\nCheckout: changed since commit 0123456789ab, and the manifest says so; " in said
+    assert list(dict.fromkeys(stages)) == [
+        "probe",
+        "lab",
+        "execute",
+        "verify",
+        "record",
+    ]
+    assert (
+        "\nCheckout: changed since commit 0123456789ab, and the manifest says so; "
+        in said
+    )
     assert checkout(None).startswith("Checkout: no git here, so no commit is recorded")
 
 
@@ -68,7 +88,11 @@ def test_the_cpu_is_recorded_without_a_probe_and_by_default_in_the_book(tmp_path
     ("expected", "actual", "said"),
     [
         ("cpu", "cuda", "Expected backend: cpu; ROBO_GENESIS_BACKEND=cpu finds 'cuda'"),
-        (None, "cpu", "one of amdgpu, cuda; .* or record cpu on purpose with BACKEND=cpu"),
+        (
+            None,
+            "cpu",
+            "one of amdgpu, cuda; .* or record cpu on purpose with BACKEND=cpu",
+        ),
         (None, "metal", "finds 'metal'. .* Check driver, device and Torch build\\."),
     ],
 )
@@ -89,14 +113,28 @@ RELABELLED = lab("amdgpu", more='\nfolder.rename(folder.with_name("cuda"));')
         (lab("cuda", more="\n1 / 0"), {}, "ZeroDivisionError: division by zero"),
         (lab("amdgpu"), {}, "Expected backend: cuda; .* finds 'amdgpu'"),
         (RELABELLED, {}, "Expected backend: cuda; .* finds 'amdgpu'"),
-        (lab("cuda"), {"verify": refuse}, "bundle of this run is refused: metrics: metrics.json"),
+        (
+            lab("cuda"),
+            {"verify": refuse},
+            "bundle of this run is refused: metrics: metrics.json",
+        ),
         (NO_CAMERA, {}, "render.mode is skip, expected camera"),
         (BY_HAND, {}, "command: manifest.json: command is .*, expected make evidence"),
         (lab("cuda"), STOPPED, "interrupted .*the older bundle is unchanged"),
     ],
-    ids=["raises", "backend", "relabelled", "refused", "no camera", "command", "stopped"],
+    ids=[
+        "raises",
+        "backend",
+        "relabelled",
+        "refused",
+        "no camera",
+        "command",
+        "stopped",
+    ],
 )
-def test_a_run_that_is_not_accepted_leaves_the_old_bundle(tmp_path, page, settings, reason):
+def test_a_run_that_is_not_accepted_leaves_the_old_bundle(
+    tmp_path, page, settings, reason
+):
     old = old_bundle(tmp_path, "cuda")
     status, said = run(tmp_path, page, "cuda", **settings)
     assert status == (130 if settings is STOPPED else 1)
@@ -108,11 +146,21 @@ def test_a_run_that_is_not_accepted_leaves_the_old_bundle(tmp_path, page, settin
 
 
 def test_engine_switches_reach_the_probe_and_the_user_s_contract_does_not(monkeypatch):
-    switches = {"GS_ENABLE_ZEROCOPY": "0", "ROCM_PATH": "/opt/rocm", "LD_LIBRARY_PATH": "/opt/hip"}
-    own = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "0", "PYTORCH_CACHING": "1"}
+    switches = {
+        "GS_ENABLE_ZEROCOPY": "0",
+        "ROCM_PATH": "/opt/rocm",
+        "LD_LIBRARY_PATH": "/opt/hip",
+    }
+    own = {
+        "ROBO_GENESIS_BACKEND": "cpu",
+        "ROBO_GENESIS_RENDER": "0",
+        "PYTORCH_CACHING": "1",
+    }
     for name, value in (switches | own).items():
         monkeypatch.setenv(name, value)
-    monkeypatch.setattr(recording.accelerator, "probe", lambda machine, expected: machine)
+    monkeypatch.setattr(
+        recording.accelerator, "probe", lambda machine, expected: machine
+    )
     probed = recording.probe_here(None).environ
     assert probed.items() >= switches.items()
     assert not probed.keys() & own.keys()
@@ -125,27 +173,44 @@ FOUND += [StepResult("torch", "warning", "c")]
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({"lesson": "l05"}, r"^LESSON='l05' is not valid\. Lessons with a lab: l04; unset, all\."),
-        ({"expected": "rocm"}, r"^BACKEND='rocm' is not valid\. Choices: amdgpu, cuda, cpu;"),
+        (
+            {"lesson": "l05"},
+            r"^LESSON='l05' is not valid\. Lessons with a lab: l04; unset, all\.",
+        ),
+        (
+            {"expected": "rocm"},
+            r"^BACKEND='rocm' is not valid\. Choices: amdgpu, cuda, cpu;",
+        ),
         ({"to": Path("file", "below")}, r"file is not a folder .* TO=folder"),
         ({"root": Path()}, r"Installed is genesis-world \S+, the course needs 0\.0\.1"),
         ({"probe": finds("cuda", *FOUND)}, r"^Broken: devices, kernel\. The lines"),
     ],
 )
-def test_what_cannot_be_recorded_is_refused_before_the_run(tmp_path, monkeypatch, settings, said):
+def test_what_cannot_be_recorded_is_refused_before_the_run(
+    tmp_path, monkeypatch, settings, said
+):
     monkeypatch.chdir(tmp_path)
     Path("file").touch()
-    Path("pyproject.toml").write_text('[project]\ndependencies = ["genesis-world==0.0.1"]\n')
+    Path("pyproject.toml").write_text(
+        '[project]\ndependencies = ["genesis-world==0.0.1"]\n'
+    )
     lines: list[str] = []
     with pytest.raises(ProjectError, match=said):
         run(tmp_path, lab("cuda"), say=lines.append, **settings)
-    probed = [r"probe devices broken a\nb", r"probe kernel broken a\nb", "probe torch warning c"]
+    probed = [
+        r"probe devices broken a\nb",
+        r"probe kernel broken a\nb",
+        "probe torch warning c",
+    ]
     found = [" ".join(line.split("] ")[1].split()) for line in lines]
     assert found == (probed if "probe" in settings else [])
 
 
 def test_a_recording_beside_a_build_is_refused(tmp_path):
-    with build_lock(tmp_path / "cache"), pytest.raises(ProjectError, match="Another build"):
+    with (
+        build_lock(tmp_path / "cache"),
+        pytest.raises(ProjectError, match="Another build"),
+    ):
         run(tmp_path, lab("cuda"))
 
 
@@ -171,8 +236,14 @@ def labs(tmp_path, courses_pages, monkeypatch):
     Returns the exit status, the lessons that ran, and what was said.
     """
     front = "robo_genesis: {{lesson: {}, page: lab}}\n"
-    pages = {name: notebook(cell("1"), front=front.format(name)) for name in ("l02", "l03", "l04")}
-    book, kept = make_book(tmp_path, plain=notebook(cell("1")), **pages), tmp_path / "kept"
+    pages = {
+        name: notebook(cell("1"), front=front.format(name))
+        for name in ("l02", "l03", "l04")
+    }
+    book, kept = (
+        make_book(tmp_path, plain=notebook(cell("1")), **pages),
+        tmp_path / "kept",
+    )
 
     def run_labs(expected: str | None = "amdgpu", lesson: str = "", **fails):
         ran, said = list[str](), list[str]()
@@ -228,7 +299,9 @@ def test_all_labs_are_recorded_in_the_order_of_the_book(labs, tmp_path):
         (KeyboardInterrupt(), 130, "interrupted – 0 the older bundle is unchanged"),
     ],
 )
-def test_a_failure_is_reported_at_once_and_only_ctrl_c_ends_the_command(labs, error, status, row):
+def test_a_failure_is_reported_at_once_and_only_ctrl_c_ends_the_command(
+    labs, error, status, row
+):
     found, ran, said = labs(l03=error)
     assert (found, ran) == (status, ["l02", "l03", *["l04"] * (status == 1)])
     assert last(said)[2] == f"l03 amdgpu – {row}"
@@ -236,13 +309,20 @@ def test_a_failure_is_reported_at_once_and_only_ctrl_c_ends_the_command(labs, er
         assert said.index(line) < len(said) - len(last(said))
 
 
-def test_an_accepted_bundle_is_kept_and_named_unless_its_lesson_is_given(labs, recorded):
+def test_an_accepted_bundle_is_kept_and_named_unless_its_lesson_is_given(
+    labs, recorded
+):
     place = recorded()
     run_id = json.loads((place / "manifest.json").read_text())["predicate"]["run_id"]
     status, ran, said = labs()
     assert (status, ran) == (0, ["l02", "l03"])
-    (line,) = (" ".join(line.split("] ")[1].split()) for line in said if "] keep" in line)
-    assert line == f"keep l04 amdgpu-verified, run {run_id[:8]}; LESSON=l04 records it again"
+    (line,) = (
+        " ".join(line.split("] ")[1].split()) for line in said if "] keep" in line
+    )
+    assert (
+        line
+        == f"keep l04 amdgpu-verified, run {run_id[:8]}; LESSON=l04 records it again"
+    )
     row = last(said)[3]
     assert row.startswith("l04 amdgpu a GPU kept ")
     assert row.endswith(f" – {place}")
@@ -256,15 +336,27 @@ CLEAN, DIRTY = both(predicate(git=None), seal), both(part("git", dirty=True), se
     ("spoil", "left_by", "asked", "changed_now", "again"),
     [
         (both(older_compiler, CLEAN), "amdgpu", "amdgpu", False, True),
-        (both(CLEAN, lambda place: (place / "log.txt").unlink()), "amdgpu", "amdgpu", False, True),
+        (
+            both(CLEAN, lambda place: (place / "log.txt").unlink()),
+            "amdgpu",
+            "amdgpu",
+            False,
+            True,
+        ),
         (CLEAN, "cuda", "amdgpu", False, True),
         (CLEAN, "cuda", None, False, False),
         (DIRTY, "amdgpu", "amdgpu", False, True),
         (DIRTY, "amdgpu", "amdgpu", True, False),
     ],
-    ids=["engine", "damaged", "another backend", "backend of the probe",
-         "changed tree", "still changed tree"],
-)  # fmt: skip
+    ids=[
+        "engine",
+        "damaged",
+        "another backend",
+        "backend of the probe",
+        "changed tree",
+        "still changed tree",
+    ],
+)
 def test_a_bundle_that_is_not_accepted_for_this_backend_is_recorded_again(
     labs, recorded, monkeypatch, spoil, left_by, asked, changed_now, again
 ):
@@ -280,7 +372,9 @@ def test_a_copy_of_the_cpu_s_run_is_recorded_again(labs, recorded, folder, tmp_p
     assert labs()[1] == ["l02", "l03", "l04"]
 
 
-def test_an_accepted_run_that_does_not_show_the_claims_is_kept(labs, recorded, undecided):
+def test_an_accepted_run_that_does_not_show_the_claims_is_kept(
+    labs, recorded, undecided
+):
     recorded()
     _, ran, said = labs()
     assert ran == ["l02", "l03"]

@@ -27,15 +27,27 @@ def options(command: list[str], name: str) -> list[str]:
 
 @pytest.mark.parametrize("engine", ["docker", "podman"])
 def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(engine):
-    build, run = commands(host(engine, HIP_VISIBLE_DEVICES="0", SECRET="s", ROCM_PATH="/here"))
-    assert build == [engine, "build", "--tag", run[-5], "--file", ".rocm/Dockerfile", "."]
+    build, run = commands(
+        host(engine, HIP_VISIBLE_DEVICES="0", SECRET="s", ROCM_PATH="/here")
+    )
+    assert build == [
+        engine,
+        "build",
+        "--tag",
+        run[-5],
+        "--file",
+        ".rocm/Dockerfile",
+        ".",
+    ]
     assert run[-4:] == ["make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]
     assert f"--device={NULL}" in run
     assert options(run, "--security-opt") == ["seccomp=unconfined"]
     assert options(run, "--volume") == ["/a checkout:/course"]
     given = ["HOME=/tmp", "USER=course", "HIP_VISIBLE_DEVICES", "LESSON"]
     assert options(run, "--env") == given
-    of_user = {name: options(run, name) for name in ("--group-add", "--user", "--userns")}
+    of_user = {
+        name: options(run, name) for name in ("--group-add", "--user", "--userns")
+    }
     user = [f"{os.getuid()}:{os.getgid()}"]
     docker = {"--group-add": [str(NULL.stat().st_gid)], "--user": user, "--userns": []}
     podman = {"--group-add": ["keep-groups"], "--user": [], "--userns": ["keep-id"]}
@@ -43,7 +55,9 @@ def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(e
 
 
 def test_a_missing_device_is_named_with_the_remedy():
-    with pytest.raises(ProjectError, match=r"/dev/no-gpu is missing here\. A recording "):
+    with pytest.raises(
+        ProjectError, match=r"/dev/no-gpu is missing here\. A recording "
+    ):
         commands(host(devices=(NULL, Path("/dev/no-gpu"))))
 
 

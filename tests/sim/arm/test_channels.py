@@ -14,16 +14,26 @@ def test_channels_are_the_record_with_the_start_before_the_first_step(traces, jo
     k, trace = joints.entry(STEPPED_JOINT), traces["G2"]
     found = channels(traces, joints, STEPPED_JOINT)
     assert [(c.name, c.head, c.unit) for c in found] == [
-        ("position", "q", "rad"), ("velocity", "q̇", "rad/s"), ("control force", "force", "N·m"),
-    ]  # fmt: skip
+        ("position", "q", "rad"),
+        ("velocity", "q̇", "rad/s"),
+        ("control force", "force", "N·m"),
+    ]
     position, velocity, force = (channel.values["G2"] for channel in found)
     assert np.array_equal(position, trace.q[:, k])
     assert np.array_equal(velocity, [trace.start_qd[k], *trace.qd[:, k]])
-    assert np.array_equal(force, [trace.start_control_force[k], *trace.control_force[:, k]])
-    assert [c.unit for c in channels(traces, joints, "finger_joint1")] == ["m", "m/s", "N"]
+    assert np.array_equal(
+        force, [trace.start_control_force[k], *trace.control_force[:, k]]
+    )
+    assert [c.unit for c in channels(traces, joints, "finger_joint1")] == [
+        "m",
+        "m/s",
+        "N",
+    ]
 
 
-def test_levels_are_the_targets_one_after_the_other_and_the_limit_read_back(traces, joints):
+def test_levels_are_the_targets_one_after_the_other_and_the_limit_read_back(
+    traces, joints
+):
     k, trace = joints.entry(STEPPED_JOINT), traces["G2"]
     command = np.array(trace.target)
     command[60:, k] = -1.5

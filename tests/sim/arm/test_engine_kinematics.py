@@ -27,28 +27,42 @@ class Robot:
         return question["init_qpos"], np.zeros(6, np.float32)
 
 
-def ask(joints, environments=0, rows=None, envs=None, n_dofs=9, of_robot=FRANKA, **given):
+def ask(
+    joints, environments=0, rows=None, envs=None, n_dofs=9, of_robot=FRANKA, **given
+):
     """Ask for one pose, or for `rows` equal ones; return answer and question."""
     robot, arrays = Robot(environments, n_dofs), POSE | {"q_start": Q_START} | given
     if rows is not None:
         arrays = {name: np.tile(values, (rows, 1)) for name, values in arrays.items()}
     settings = of.IkSettings(samples=1, iterations=7)
-    found = of.solve_ik(robot, joints, **arrays, settings=settings, envs=envs, of=of_robot)
+    found = of.solve_ik(
+        robot, joints, **arrays, settings=settings, envs=envs, of=of_robot
+    )
     return found, robot.question
 
 
 def test_every_setting_is_given_to_the_engine_and_its_order_is_that_of_the_map(joints):
-    places = {name: getattr(joints, name)[::-1] for name in ("dofs_idx_local", "qs_idx_local")}
+    places = {
+        name: getattr(joints, name)[::-1] for name in ("dofs_idx_local", "qs_idx_local")
+    }
     backwards = replace(joints, names=joints.names[::-1], **places)
     found, question = ask(backwards, q_start=Q_START[::-1])
     assert question.pop("link").name == "hand"
     assert question.pop("init_qpos") == pytest.approx(Q_START)
     assert found.q == pytest.approx(Q_START[::-1])
     assert question | {"pos": None, "quat": None} == {
-        "pos": None, "quat": None, "respect_joint_limit": True, "max_samples": 1,
-        "max_solver_iters": 7, "damping": 0.01, "pos_tol": 5e-4, "rot_tol": 5e-3,
-        "max_step_size": 0.5, "dofs_idx_local": list(range(7)), "return_error": True,
-    }  # fmt: skip
+        "pos": None,
+        "quat": None,
+        "respect_joint_limit": True,
+        "max_samples": 1,
+        "max_solver_iters": 7,
+        "damping": 0.01,
+        "pos_tol": 5e-4,
+        "rot_tol": 5e-3,
+        "max_step_size": 0.5,
+        "dofs_idx_local": list(range(7)),
+        "return_error": True,
+    }
 
 
 @pytest.mark.parametrize(("rows", "envs"), [(4, None), (2, [3, 1])])
@@ -64,16 +78,34 @@ def test_rows_belong_to_all_environments_or_to_those_that_are_named(joints, rows
         ({"position": np.zeros(2)}, r"position has shape \(2,\), expected \(3,\)"),
         ({"quat": np.zeros(3)}, r"quat has shape \(3,\), expected \(4,\)"),
         ({"q_start": np.zeros(7)}, r"q_start has shape \(7,\), expected \(9,\)"),
-        ({"position": np.array([0, np.nan, 0])}, "position is .*nan.*, expected finite numbers"),
+        (
+            {"position": np.array([0, np.nan, 0])},
+            "position is .*nan.*, expected finite numbers",
+        ),
         # the engine would broadcast these
         ({"environments": 4}, r"position has shape \(3,\), expected \(4, 3\)"),
-        ({"environments": 4, "rows": 3}, r"position has shape \(3, 3\), expected \(4, 3\)"),
-        ({"environments": 4, "rows": 1, "envs": [1, 3]}, r"shape \(1, 3\), expected \(2, 3\)"),
-        ({"environments": 4, "rows": 4, "envs": [1, 3]}, r"shape \(4, 3\), expected \(2, 3\)"),
+        (
+            {"environments": 4, "rows": 3},
+            r"position has shape \(3, 3\), expected \(4, 3\)",
+        ),
+        (
+            {"environments": 4, "rows": 1, "envs": [1, 3]},
+            r"shape \(1, 3\), expected \(2, 3\)",
+        ),
+        (
+            {"environments": 4, "rows": 4, "envs": [1, 3]},
+            r"shape \(4, 3\), expected \(2, 3\)",
+        ),
         # another robot
-        ({"n_dofs": 15}, "The robot has 15 DOFs, the map 9, .* a fixed base and all of its joints"),
+        (
+            {"n_dofs": 15},
+            "The robot has 15 DOFs, the map 9, .* a fixed base and all of its joints",
+        ),
         ({"of_robot": replace(FRANKA, hand="")}, "has hand '' and joint1"),
-        ({"of_robot": replace(FRANKA, joints=("a",))}, "The map has the joints joint1.* and a"),
+        (
+            {"of_robot": replace(FRANKA, joints=("a",))},
+            "The map has the joints joint1.* and a",
+        ),
     ],
 )
 def test_a_question_of_the_wrong_form_is_refused(joints, given, message):

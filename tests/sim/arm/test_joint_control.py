@@ -64,7 +64,9 @@ class FakeRobot:
     def get_dofs_position(self, dofs):
         return self.kept["position"] + self.t
 
-    get_dofs_velocity, get_dofs_control_force, get_dofs_force = map(counter, (1, 10, 100))
+    get_dofs_velocity, get_dofs_control_force, get_dofs_force = map(
+        counter, (1, 10, 100)
+    )
     get_links_pos, get_links_quat = counter(1, (2, 3)), counter(1, (2, 4))
 
 
@@ -75,18 +77,36 @@ def robot():
 
 def test_a_limit_of_float32_and_gains_of_zero_are_valid(joints):
     validate(replace(BASELINE, **value("q_start", 0, 2.8973 + 5e-7)), joints)
-    validate(replace(BASELINE, kp=np.zeros(N), kv=np.zeros(N), effort_limit=np.zeros(N)), joints)
+    validate(
+        replace(BASELINE, kp=np.zeros(N), kv=np.zeros(N), effort_limit=np.zeros(N)),
+        joints,
+    )
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        *(({name: np.ones(7)}, f"{name} has shape (7,), expected (9,)") for name in ARRAYS),
+        *(
+            ({name: np.ones(7)}, f"{name} has shape (7,), expected (9,)")
+            for name in ARRAYS
+        ),
         ({"kp": 1.0}, "kp has shape (), expected (9,)"),
-        *((value(name, 2, np.nan), f"{name}[joint3] is nan, expected a fin") for name in ARRAYS),
-        *((value(name, 0, -1.0), f"{name}[joint1] is -1.0, expected zero") for name in ARRAYS[2:]),
-        (value("q_start", 3, -3.1), "joint4] is -3.1 rad, outside its range [-3.0718, -0.0698]"),
-        (value("q_target", 8, 0.05), "finger_joint2] is 0.05 m, outside its range [0, 0.04]"),
+        *(
+            (value(name, 2, np.nan), f"{name}[joint3] is nan, expected a fin")
+            for name in ARRAYS
+        ),
+        *(
+            (value(name, 0, -1.0), f"{name}[joint1] is -1.0, expected zero")
+            for name in ARRAYS[2:]
+        ),
+        (
+            value("q_start", 3, -3.1),
+            "joint4] is -3.1 rad, outside its range [-3.0718, -0.0698]",
+        ),
+        (
+            value("q_target", 8, 0.05),
+            "finger_joint2] is 0.05 m, outside its range [0, 0.04]",
+        ),
         (value("q_target", 0, 2.8973 + 5e-6), "none is clipped"),
         *((change, "must be positive") for change in NOT_POSITIVE),
     ],
@@ -102,7 +122,13 @@ def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints
     other = replace(G2, kv=G2.kv + np.isin(np.arange(N), (3, 7)), steps=3)
     named = ["kp[joint4]", "kv[joint4]", "kv[finger_joint1]", "steps"]
     assert differences(G1, other, joints) == named
-    settings = {"steps": 1, "dt": 1, "substeps": 1, "seed": 1, "model": RobotModel("", ())}
+    settings = {
+        "steps": 1,
+        "dt": 1,
+        "substeps": 1,
+        "seed": 1,
+        "model": RobotModel("", ()),
+    }
     other = replace(BASELINE, **dict.fromkeys(ARRAYS, np.full(N, -1.0)), **settings)
     named = {entry.split("[")[0] for entry in differences(BASELINE, other, joints)}
     assert named == {field.name for field in fields(BASELINE)}
@@ -117,17 +143,26 @@ def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints
         ({}, value("q_target", 3, 0.0), "none is clipped"),
     ],
 )
-def test_what_does_not_fit_is_refused_before_the_engine_moves(robot, joints, scene, case, message):
+def test_what_does_not_fit_is_refused_before_the_engine_moves(
+    robot, joints, scene, case, message
+):
     vars(robot).update(scene)
     with pytest.raises(CaseError, match=message):
         run_case(robot, robot, joints, replace(BASELINE, **case))
     assert robot.calls == []
 
 
-def test_reset_clears_first_assigns_the_start_last_and_leaves_the_case_alone(robot, joints):
+def test_reset_clears_first_assigns_the_start_last_and_leaves_the_case_alone(
+    robot, joints
+):
     reset(robot, robot, joints, BASELINE)
     assert robot.calls == ["reset", "kp", "kv", "range", "position"]
-    given = (robot.kept["position"], *robot.kept["range"], robot.kept["kp"], robot.kept["kv"])
+    given = (
+        robot.kept["position"],
+        *robot.kept["range"],
+        robot.kept["kp"],
+        robot.kept["kv"],
+    )
     own = [getattr(BASELINE, name) for name in ARRAYS]
     assert not any(np.shares_memory(a, b) for a in given for b in own)
 
@@ -149,14 +184,20 @@ def test_what_reads_back_differently_is_named(robot, joints, getter, found, name
         reset(robot, robot, joints, BASELINE)
 
 
-def test_a_run_commands_before_every_step_and_records_each_state_at_its_time(robot, joints):
+def test_a_run_commands_before_every_step_and_records_each_state_at_its_time(
+    robot, joints
+):
     trace = run_case(robot, robot, joints, replace(BASELINE, steps=3))
     assert robot.calls[5:] == ["target", *["target", "step"] * 3]
     assert trace.t.tolist() == [0, 0.01, 0.02, 0.03]
     positions = trace.q[:, 0] - trace.q[0, 0]
     for states in (positions, trace.link_pos[:, 0, 0], trace.link_quat[:, 0, 0]):
         assert states.tolist() == [0, 1, 2, 3]
-    for factor, array in ((1, trace.qd), (10, trace.control_force), (100, trace.internal_force)):
+    for factor, array in (
+        (1, trace.qd),
+        (10, trace.control_force),
+        (100, trace.internal_force),
+    ):
         assert array[:, 0].tolist() == [factor, 2 * factor, 3 * factor]
     assert (trace.start_qd == 0).all()
     assert (trace.start_control_force == 0).all()

@@ -21,9 +21,13 @@ JOINTS = {
 def joint(name):
     kind, dofs, qs = JOINTS[name]
     return SimpleNamespace(
-        name=name, type=SimpleNamespace(name=kind), n_dofs=len(dofs), n_qs=len(qs),
-        dofs_idx_local=dofs, qs_idx_local=qs,
-    )  # fmt: skip
+        name=name,
+        type=SimpleNamespace(name=kind),
+        n_dofs=len(dofs),
+        n_qs=len(qs),
+        dofs_idx_local=dofs,
+        qs_idx_local=qs,
+    )
 
 
 # A robot whose limits are ± (10 + local DOF).
@@ -40,14 +44,22 @@ def test_the_map_follows_the_names_and_not_the_model():
     assert joints.position_units == ("m", "rad")
     assert joints.effort_units == ("N", "N·m")
     for name, values in {
-        "dofs_idx_local": [10, 6], "qs_idx_local": [12, 7], "upper": [20, 16], "lower": [-20, -16],
-    }.items():  # fmt: skip
+        "dofs_idx_local": [10, 6],
+        "qs_idx_local": [12, 7],
+        "upper": [20, 16],
+        "lower": [-20, -16],
+    }.items():
         array = getattr(joints, name)
         assert (array.tolist(), array.flags.writeable) == (values, False)
     assert joints.rows()[0] == {
-        "name": "slider", "type": "prismatic", "local DOF": 10, "local qpos": 12, "lower": -20.0,
-        "upper": 20.0, "unit": "m",
-    }  # fmt: skip
+        "name": "slider",
+        "type": "prismatic",
+        "local DOF": 10,
+        "local qpos": 12,
+        "lower": -20.0,
+        "upper": 20.0,
+        "unit": "m",
+    }
     assert joints.entry("shoulder") == 1
     with pytest.raises(JointError, match=r"'wrist'.*slider, shoulder"):
         joints.entry("wrist")
@@ -56,7 +68,10 @@ def test_the_map_follows_the_names_and_not_the_model():
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        (("shoulder", "elbw"), r"'elbw'.*base, shoulder, slider, weld, disc, screw, twin"),
+        (
+            ("shoulder", "elbw"),
+            r"'elbw'.*base, shoulder, slider, weld, disc, screw, twin",
+        ),
         (("base",), "'base' has 6 DOFs and 7 qpos"),
         (("weld",), "'weld' has 0 DOFs and 0 qpos"),
         (("disc",), "'disc' has 1 DOFs and 2 qpos"),

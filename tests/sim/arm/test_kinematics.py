@@ -20,7 +20,9 @@ def test_a_rotation_vector_has_the_shorter_angle(angle):
 
 
 def test_poses_and_jacobian_of_many_postures_agree_with_mujoco_and_with_differences():
-    poses = of.Pose(*mujoco_kinematics.link_poses(POSTURES, [name for name, *_ in of.CHAIN]))
+    poses = of.Pose(
+        *mujoco_kinematics.link_poses(POSTURES, [name for name, *_ in of.CHAIN])
+    )
     # The model file gives the hand's orientation with seven digits.
     assert np.abs(of.pose_error(poses, of.link_poses(POSTURES))).max() < 1e-7
     many, h = of.jacobian(POSTURES), 1e-6
@@ -31,13 +33,17 @@ def test_poses_and_jacobian_of_many_postures_agree_with_mujoco_and_with_differen
 
 
 def test_joint_positions_of_another_arm_are_refused():
-    with pytest.raises(ValueError, match="6 joint positions given, expected 7 of the Franka"):
+    with pytest.raises(
+        ValueError, match="6 joint positions given, expected 7 of the Franka"
+    ):
         of.hand_pose(np.zeros(6))
 
 
 def test_manipulability_is_the_root_of_the_determinant_and_vanishes_at_a_singularity():
     rows = of.jacobian(Q_START)
-    assert of.manipulability(rows) == pytest.approx(np.sqrt(np.linalg.det(rows @ rows.T)))
+    assert of.manipulability(rows) == pytest.approx(
+        np.sqrt(np.linalg.det(rows @ rows.T))
+    )
     rows[2] = rows[1]
     assert of.manipulability(rows) == pytest.approx(0, abs=1e-12)
 
@@ -52,9 +58,12 @@ def test_a_pose_error_leads_to_the_target():
 
 
 @pytest.mark.parametrize(
-    ("position", "damping", "reached"), [(spec.TARGET, 0.01, True), (spec.BEYOND_REACH, 0.1, False)]
+    ("position", "damping", "reached"),
+    [(spec.TARGET, 0.01, True), (spec.BEYOND_REACH, 0.1, False)],
 )
-def test_the_solver_reaches_a_target_within_the_limits_if_there_is_one(position, damping, reached):
+def test_the_solver_reaches_a_target_within_the_limits_if_there_is_one(
+    position, damping, reached
+):
     target, start = of.Pose(position, spec.DOWN), Q_START[:7]
     q = of.solve(target, start, *spec.ARM_LIMITS, iterations=100, damping=damping)
     error = of.pose_error(target, of.hand_pose(q))

@@ -28,7 +28,12 @@ def test_a_run_that_amplifies_rounding_is_sound():
     assert codes(RUN) == codes(other) == []
 
 
-CODES = [("q", "start"), ("qd", "law"), ("internal_force", "motion"), ("target", "start")]
+CODES = [
+    ("q", "start"),
+    ("qd", "law"),
+    ("internal_force", "motion"),
+    ("target", "start"),
+]
 
 
 @pytest.mark.parametrize(("array", "code"), CODES)

@@ -55,23 +55,38 @@ URDF = """<robot name="arm">
   <joint name="weld" type="fixed"><parent link="rod"/><child link="plate"/></joint>
   <link name="plate"/>
 </robot>"""
-FILES = {"arm.xml": MJCF, "arm.urdf": URDF, "parts/tool.xml": TOOL, "parts/tool.obj": MESH}
+FILES = {
+    "arm.xml": MJCF,
+    "arm.urdf": URDF,
+    "parts/tool.xml": TOOL,
+    "parts/tool.obj": MESH,
+}
 
-LEGS = [f"{at}_{of}_joint" for at in ("FL", "FR", "RL", "RR") for of in ("hip", "thigh", "calf")]
+LEGS = [
+    f"{at}_{of}_joint"
+    for at in ("FL", "FR", "RL", "RR")
+    for of in ("hip", "thigh", "calf")
+]
 
 
 def case_of(model, *q_start):
     """Return a case in which each joint moves by 0.1 rad or m; `effort_limit` bounds some."""
     start, gain = np.array(q_start), np.full(len(q_start), 400.0)
     gains = {"kp": gain, "kv": gain / 10, "effort_limit": gain / 12}
-    return ControlCase(model=model, q_start=start, q_target=start + 0.1, steps=20, **gains)
+    return ControlCase(
+        model=model, q_start=start, q_target=start + 0.1, steps=20, **gains
+    )
 
 
-SLIDER = case_of(RobotModel("arm.xml", ("turn", "lift", "push"), hand="tool"), 0.2, -0.4, 0.05)
+SLIDER = case_of(
+    RobotModel("arm.xml", ("turn", "lift", "push"), hand="tool"), 0.2, -0.4, 0.05
+)
 CRANE = case_of(RobotModel("arm.urdf", ("swing", "reach"), hand="rod"), 0.5, 0.1)
 GO2 = RobotModel("urdf/go2/urdf/go2.urdf", tuple(LEGS), free_base=True)
 DOG = case_of(GO2, *(0.0, 0.8, -1.5) * 4)
-MOTORS = {name: getattr(CRANE, name) * [0.0, 1.0] for name in ("kp", "kv", "effort_limit")}
+MOTORS = {
+    name: getattr(CRANE, name) * [0.0, 1.0] for name in ("kp", "kv", "effort_limit")
+}
 PASSIVE = replace(CRANE, **MOTORS)  # its first joint has no motor
 ARMS = pytest.mark.parametrize("case", [SLIDER, CRANE], ids=["MJCF", "URDF"])
 
@@ -99,20 +114,30 @@ def folder(tmp_path_factory):
 )
 def test_a_model_lies_in_a_lesson_or_among_the_assets_of_the_engine(name, owner):
     assert Path(model_file("lessons/l01/spec.py")) == Path(spec.__file__)
-    with pytest.raises(ModelError, match=f"{owner}.* has no model '{name}'. .*models .*/lNN"):
+    with pytest.raises(
+        ModelError, match=f"{owner}.* has no model '{name}'. .*models .*/lNN"
+    ):
         model_file(name)
 
 
-@pytest.mark.parametrize("case", [SLIDER, CRANE, PASSIVE], ids=["MJCF", "URDF", "passive"])
+@pytest.mark.parametrize(
+    "case", [SLIDER, CRANE, PASSIVE], ids=["MJCF", "URDF", "passive"]
+)
 def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
     links = sorted(mujoco_kinematics.link_names(case.model))
     run, how = driven(case, links), (0.005, "implicitfast")
     again = mujoco_joints.run_case(case, links, *how)
     assert [*laws.driven_run(run, case, links)] == []
     assert [*laws.driven_in_mujoco(again, case, links, *how)] == []
-    stiff = replace(case, kp=5e3 * case.kp, kv=5e3 * case.kv, effort_limit=1e5 * case.effort_limit)
+    stiff = replace(
+        case, kp=5e3 * case.kp, kv=5e3 * case.kv, effort_limit=1e5 * case.effort_limit
+    )
     assert [*laws.driven_run(driven(stiff, links), stiff, links)] == []
-    text = FILES[case.model.file].replace('size="0.04"', 'size="0.05"').replace('"3"', '"6"')
+    text = (
+        FILES[case.model.file]
+        .replace('size="0.04"', 'size="0.05"')
+        .replace('"3"', '"6"')
+    )
     (folder / f"heavy-{case.model.file}").write_text(text)
     heavy = replace(case, model=replace(case.model, file=f"heavy-{case.model.file}"))
     assert {found.code for found in laws.driven_run(run, heavy, links)} == {"motion"}
@@ -123,14 +148,39 @@ def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
 @pytest.mark.parametrize(
     ("file", "old", "new", "message"),
     [
-        ("arm.xml", 'name="push"', "", r"arm.xml has the joints turn \(hinge\).* without a name"),
-        ("arm.xml", 'type="slide"', 'type="ball"', r"push \(ball\); .*Valid kinds are hinge and"),
-        ("arm.xml", '"lift"', '"elbow"', r"elbow \(hinge\).* names turn, lift, push. Name each"),
+        (
+            "arm.xml",
+            'name="push"',
+            "",
+            r"arm.xml has the joints turn \(hinge\).* without a name",
+        ),
+        (
+            "arm.xml",
+            'type="slide"',
+            'type="ball"',
+            r"push \(ball\); .*Valid kinds are hinge and",
+        ),
+        (
+            "arm.xml",
+            '"lift"',
+            '"elbow"',
+            r"elbow \(hinge\).* names turn, lift, push. Name each",
+        ),
         ("arm.xml", 'name="fore"', "<", "MuJoCo cannot read .*arm.xml: .*XML"),
         ("arm.xml", "tool.xml", "none.xml", "MuJoCo cannot read .*arm.xml: .*none.xml"),
         ("arm.urdf", '<mass value="1"/>', "", "MuJoCo cannot read .*arm.urdf"),
-        ("arm.xml", 'name="lift"', 'name="lift" stiffness="3"', "forces .* is stiffness of joints"),
-        ("arm.xml", 'name="lift"', 'name="lift" frictionloss="3"', "forces .* is frictionloss"),
+        (
+            "arm.xml",
+            'name="lift"',
+            'name="lift" stiffness="3"',
+            "forces .* is stiffness of joints",
+        ),
+        (
+            "arm.xml",
+            'name="lift"',
+            'name="lift" frictionloss="3"',
+            "forces .* is frictionloss",
+        ),
         ("arm.xml", 'name="fore"', 'name="fore" gravcomp="1"', "forces .* is gravcomp"),
     ],
 )
@@ -152,7 +202,9 @@ def test_a_model_that_no_law_knows_is_refused_by_name(folder, file, old, new, me
 def robots(real_engine, folder):
     """Scene and robots in it, far from one another: both arms, one of them twice, and the dog."""
     gs = real_engine.gs
-    scene = gs.Scene(sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False)
+    scene = gs.Scene(
+        sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False
+    )
     scene.add_entity(gs.morphs.Plane())
     mjcf, urdf = str(folder / "arm.xml"), str(folder / "arm.urdf")
     morphs = {
@@ -173,10 +225,15 @@ def test_any_arm_is_the_same_in_both_engines(robots, case):
     page = SimpleNamespace(readings={})
     joints = describe(page, robot, of)
     trace = run_case(robots.scene, robot, joints, case)
-    assert [*laws.driven_run(trace, case, page.links), *laws.model_joints(joints, of)] == []
+    assert [
+        *laws.driven_run(trace, case, page.links),
+        *laws.model_joints(joints, of),
+    ] == []
     dofs, hand = joints.dofs_idx_local.tolist(), robot.get_link(of.hand)
     robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)
-    position, quat = (value.cpu().numpy() for value in (hand.get_pos(), hand.get_quat()))
+    position, quat = (
+        value.cpu().numpy() for value in (hand.get_pos(), hand.get_quat())
+    )
     expected = mujoco_kinematics.link_poses(case.q_start[None], [of.hand], of)
     assert position == pytest.approx(expected.position[0, 0], abs=1e-6)
     one = engine.IkSettings(samples=1)
@@ -186,8 +243,12 @@ def test_any_arm_is_the_same_in_both_engines(robots, case):
     assert engine.tip_height(answer.q, of) == pytest.approx(position[2], abs=1e-4)
     inertia, gravity, _ = mujoco_kinematics.at_rest(case.q_start, of=of)
     scene = robots.scene, robot, joints
-    assert dynamics.gravity_effort(*scene, case.q_start) == pytest.approx(gravity, abs=1e-2)
-    assert dynamics.effective_inertia(*scene, case.q_start) == pytest.approx(inertia, rel=1e-3)
+    assert dynamics.gravity_effort(*scene, case.q_start) == pytest.approx(
+        gravity, abs=1e-2
+    )
+    assert dynamics.effective_inertia(*scene, case.q_start) == pytest.approx(
+        inertia, rel=1e-3
+    )
     robot.set_dofs_position(case.q_start.copy(), dofs)
     robots.scene.step()
     q = robot.get_dofs_position(dofs).cpu().numpy().astype(float)
@@ -204,9 +265,18 @@ def test_a_quadruped_drives_its_legs_and_what_needs_a_fixed_base_says_so(robots)
     assert [*laws.commanded(trace, DOG, page.links)] == []
     hand, at = replace(of, hand="base"), (robots.scene, robot, joints, DOG.q_start)
     for refused, message in (
-        (lambda: [*laws.driven_run(trace, DOG, page.links)], "a base that moves freely"),
-        (lambda: mujoco_kinematics.jacobian(DOG.q_start, hand), "a base that moves freely"),
-        (lambda: describe(page, robot, replace(of, free_base=False)), "moves by .*'FREE'"),
+        (
+            lambda: [*laws.driven_run(trace, DOG, page.links)],
+            "a base that moves freely",
+        ),
+        (
+            lambda: mujoco_kinematics.jacobian(DOG.q_start, hand),
+            "a base that moves freely",
+        ),
+        (
+            lambda: describe(page, robot, replace(of, free_base=False)),
+            "moves by .*'FREE'",
+        ),
         (lambda: dynamics.gravity_effort(*at), "The robot has 18 DOFs, the map 12"),
     ):
         with pytest.raises(ModelError, match=message):
@@ -216,7 +286,9 @@ def test_a_quadruped_drives_its_legs_and_what_needs_a_fixed_base_says_so(robots)
 @pytest.mark.engine
 def test_what_the_engine_adds_to_a_model_is_named(robots):
     robot, page = robots.of["heavier joints"], SimpleNamespace(readings={})
-    with pytest.raises(ModelError, match=r"armature of swing, reach is \[0.1 0.1\] in the engine"):
+    with pytest.raises(
+        ModelError, match=r"armature of swing, reach is \[0.1 0.1\] in the engine"
+    ):
         describe(page, robot, CRANE.model)
     with pytest.raises(ModelError, match="declare a free base with free_base=True"):
         describe(page, robot, replace(CRANE.model, free_base=True))

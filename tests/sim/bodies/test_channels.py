@@ -18,9 +18,11 @@ def runs(link="box", thing="box", axes=("z",), **traces):
 def test_channels_are_position_and_velocity_of_the_record_along_each_axis():
     found = runs(axes=("x", "z"))
     assert [(c.name, c.head, c.unit) for c in found.channels] == [
-        ("x", "x", "m"), ("velocity along x", "ẋ", "m/s"),
-        ("height", "z", "m"), ("vertical velocity", "ż", "m/s"),
-    ]  # fmt: skip
+        ("x", "x", "m"),
+        ("velocity along x", "ẋ", "m/s"),
+        ("height", "z", "m"),
+        ("vertical velocity", "ż", "m/s"),
+    ]
     *_, height, velocity = found.channels
     for case, trace in found.traces.items():
         assert np.array_equal(height.values[case], trace.link_pos[:, 1, 2])
@@ -33,7 +35,10 @@ def test_channels_are_position_and_velocity_of_the_record_along_each_axis():
     [
         ({"link": "ball"}, "'ball' cannot be followed. Available: stand, box"),
         ({"axes": ("up",)}, "'up' cannot be followed. Available: x, y, z"),
-        ({"high": HIGH, "low": falling(1.0, dt=0.02)}, r"low 30 × 0\.02 s; .* take one grid"),
+        (
+            {"high": HIGH, "low": falling(1.0, dt=0.02)},
+            r"low 30 × 0\.02 s; .* take one grid",
+        ),
     ],
 )
 def test_what_the_record_does_not_have_and_other_times_are_refused(given, message):

@@ -25,7 +25,10 @@ def test_a_case_knows_its_step_mass_and_place():
     [
         ({"dt": 0.4}, r"duration is 1\.5 s, no whole number .* 0\.4 s"),
         ({"settle": 0.005}, r"settle is 0\.005 s"),
-        ({"resolution": "convexx"}, "'convexx' is not valid. Choices: None, 'convex', 'signorini'"),
+        (
+            {"resolution": "convexx"},
+            "'convexx' is not valid. Choices: None, 'convex', 'signorini'",
+        ),
     ],
 )
 def test_a_case_that_cannot_be_run_is_refused(changes, message):
@@ -43,7 +46,12 @@ def test_cases_of_one_scene_share_what_a_scene_has_once():
 
 @pytest.mark.parametrize(
     ("h", "asked", "in_force"),
-    [(0.02, None, 0.04), (0.001, None, 0.01), (0.0001, 0.002, 0.002), (0.005, 0.002, 0.01)],
+    [
+        (0.02, None, 0.04),
+        (0.001, None, 0.01),
+        (0.0001, 0.002, 0.002),
+        (0.005, 0.002, 0.01),
+    ],
 )
 def test_the_shortest_time_constant_is_two_steps(h, asked, in_force):
     case = replace(CASE, dt=h, substeps=1, duration=h, time_constant=asked)

@@ -11,7 +11,12 @@ from robo_genesis.sim.bodies.contacts import ContactCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 CASE = ContactCase(
-    start=(0.0, 0.0, 1.0), duration=0.01, friction=0.5, surface_friction=0.2, dt=0.005, substeps=1
+    start=(0.0, 0.0, 1.0),
+    duration=0.01,
+    friction=0.5,
+    surface_friction=0.2,
+    dt=0.005,
+    substeps=1,
 )
 LANDED = ContactCase(start=(0.0, 0.0, 0.765), duration=0.1)
 AT_REST = mujoco_contacts.run_case(LANDED)
@@ -29,7 +34,9 @@ def run(velocity=(0.0, 0.0, 0.0), spin=(0.0, 0.0, 0.0)) -> ContactTrace:
     pos = np.full((3, 1, 3), 1.0)
     quat = np.tile([1.0, 0, 0, 0], (3, 1, 1))
     counts, depths = np.zeros((3, 1), np.int32), np.zeros((3, 1))
-    return ContactTrace(np.arange(3) * CASE.dt, pos, quat, link_vel, link_ang, counts, depths)
+    return ContactTrace(
+        np.arange(3) * CASE.dt, pos, quat, link_vel, link_ang, counts, depths
+    )
 
 
 @pytest.mark.parametrize(
@@ -44,28 +51,37 @@ def run(velocity=(0.0, 0.0, 0.0), spin=(0.0, 0.0, 0.0)) -> ContactTrace:
         ((0, 0, 0), (0, 0.1, 0), 1),
     ],
 )
-def test_an_impulse_of_the_surface_is_upward_in_the_cone_and_at_the_cube(velocity, spin, breaches):
+def test_an_impulse_of_the_surface_is_upward_in_the_cone_and_at_the_cube(
+    velocity, spin, breaches
+):
     trace = run(velocity, spin)
     assert len(list(bodies.impulses(trace, CASE, ALL))) == breaches
     assert list(bodies.impulses(trace, CASE, np.array([True, False]))) == []
 
 
 @pytest.mark.parametrize(
-    ("depth", "tilt", "breaches"), [(3e-5, 0.1, 0), (5e-6, 0.0, 2), (5e-5, 0.1, 2), (3e-7, 0.0, 0)]
+    ("depth", "tilt", "breaches"),
+    [(3e-5, 0.1, 0), (5e-6, 0.0, 2), (5e-5, 0.1, 2), (3e-7, 0.0, 0)],
 )
-def test_only_a_corner_of_a_tilted_cube_that_is_hardly_deep_may_be_missed(depth, tilt, breaches):
+def test_only_a_corner_of_a_tilted_cube_that_is_hardly_deep_may_be_missed(
+    depth, tilt, breaches
+):
     turned = [np.cos(tilt / 2), np.sin(tilt / 2) * 0.6, np.sin(tilt / 2) * 0.8, 0]
     quat = np.tile(turned, (3, 1, 1))
     trace = replace(run(), link_vel=np.zeros((3, 1, 3)), link_quat=quat)
     lowest = bodies.depths_before_last_step(trace, CASE)[:, 0]
     lifted = trace.link_pos + [0, 0, 1] * (lowest - depth)[:, None, None]
     trace = replace(trace, link_pos=lifted)
-    assert bodies.depths_before_last_step(trace, CASE)[1, 0] == pytest.approx(depth, abs=1e-9)
+    assert bodies.depths_before_last_step(trace, CASE)[1, 0] == pytest.approx(
+        depth, abs=1e-9
+    )
     assert len(list(bodies.reported_contacts(trace, CASE))) == breaches
 
 
 PUSHED = replace(LANDED, duration=0.4, settle=0.3, speed=2.0)
-BALL = replace(LANDED, start=(0.0, 0.0, 0.865), shape="ball", spring=(1.0, 0.01), duration=0.6)
+BALL = replace(
+    LANDED, start=(0.0, 0.0, 0.865), shape="ball", spring=(1.0, 0.01), duration=0.6
+)
 
 
 @pytest.mark.parametrize("case", [PUSHED, BALL, replace(BALL, dt=0.02, substeps=10)])
@@ -83,16 +99,25 @@ def test_each_state_follows_from_the_state_before_it_and_no_other_does(case):
         ("link_quat", 1e-5, False, 1),  # in flight, the tolerances are narrower
         ("link_vel", 1e-4, False, 1),
         ("link_ang", 1e-3, False, 1),
-        ("link_pos", 1e-2, True, 1),  # a mean velocity that is not between those at both ends
+        (
+            "link_pos",
+            1e-2,
+            True,
+            1,
+        ),  # a mean velocity that is not between those at both ends
     ],
 )
-def test_an_altered_sample_of_a_fall_breaks_a_law(monkeypatch, array, by, edge, breaches):
+def test_an_altered_sample_of_a_fall_breaks_a_law(
+    monkeypatch, array, by, edge, breaches
+):
     case = replace(LANDED, start=(0.0, 0.0, 1.2))
     trace = mujoco_contacts.run_case(case)
     altered = np.array(getattr(trace, array))
     altered[5, 0, 2] += by
     if edge:
-        monkeypatch.setattr(bodies, "on_edge", lambda depths, size: np.ones(len(depths), bool))
+        monkeypatch.setattr(
+            bodies, "on_edge", lambda depths, size: np.ones(len(depths), bool)
+        )
         monkeypatch.setattr(bodies, "impulses", lambda *_: ())
     found = list(bodies.next_states(replace(trace, **{array: altered}), case))
     assert [breach.code for breach in found] == ["motion"] * breaches
@@ -101,13 +126,16 @@ def test_an_altered_sample_of_a_fall_breaks_a_law(monkeypatch, array, by, edge, 
 @pytest.mark.parametrize(("turning", "faster"), [(1e-4, 1e-4), (1e-3, 0), (0, 1e-3)])
 def test_a_ball_does_not_turn_and_falls_by_gravity_until_its_contact(turning, faster):
     trace = mujoco_contacts.run_case(BALL)
-    spin = np.where(np.cumsum(trace.contacts)[:, None, None] > 0, turning, 0) * np.ones(3)
+    spin = np.where(np.cumsum(trace.contacts)[:, None, None] > 0, turning, 0) * np.ones(
+        3
+    )
     altered = replace(trace, link_ang=spin, link_vel=trace.link_vel * (1 + faster))
     assert len(list(bodies.bounded(altered, BALL))) == (max(turning, faster) == 1e-3)
 
 
 @pytest.mark.parametrize(
-    ("shape", "turning", "codes"), [("cube", 0, ["motion"]), ("cube", 1e-9, []), ("ball", 0, [])]
+    ("shape", "turning", "codes"),
+    [("cube", 0, ["motion"]), ("cube", 1e-9, []), ("ball", 0, [])],
 )
 def test_a_cube_in_contact_has_an_angular_velocity_of_rounding(shape, turning, codes):
     trace = replace(AT_REST, link_ang=np.full_like(AT_REST.link_ang, turning))
@@ -130,7 +158,9 @@ def test_a_cube_in_contact_has_an_angular_velocity_of_rounding(shape, turning, c
         (0.3, 0.0025, 3, ["contact"]),
     ],
 )
-def test_a_tilted_cube_may_report_corners_just_above_the_surface(tilt, about_x, reported, codes):
+def test_a_tilted_cube_may_report_corners_just_above_the_surface(
+    tilt, about_x, reported, codes
+):
     posed = lying([np.cos(tilt / 2), about_x, np.sin(tilt / 2), 0], reported)
     assert [breach.code for breach in bodies.reported_contacts(posed, LANDED)] == codes
 

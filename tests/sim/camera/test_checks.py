@@ -24,19 +24,30 @@ def moved(view):
     return replace(view, transform=TRANSFORM + np.outer([1, 0, 0, 0], [0, 0, 0, 0.01]))
 
 
-GIVEN = {"fov": FOV, "near": 0.1, "far": FAR, "pos": TRANSFORM[:3, 3],
-         "lookat": (TRANSFORM @ (0, 0, -1, 1))[:3]}  # fmt: skip
+GIVEN = {
+    "fov": FOV,
+    "near": 0.1,
+    "far": FAR,
+    "pos": TRANSFORM[:3, 3],
+    "lookat": (TRANSFORM @ (0, 0, -1, 1))[:3],
+}
 SMALL = replace(MARKER, radius=0.04)
 SPOILED = {
     "another number": (checks.projection, closed_view(), replace(MARKER, number=7)),
-    "another radius": (checks.sphere_surface, closed_view(), replace(MARKER, radius=0.11)),
+    "another radius": (
+        checks.sphere_surface,
+        closed_view(),
+        replace(MARKER, radius=0.11),
+    ),
     "too few pixels": (checks.projection, closed_view(SMALL), SMALL),
     "moved pose": (checks.projection, moved(closed_view()), MARKER),
     "depth along the ray": (checks.sphere_surface, along(closed_view()), MARKER),
     "another height": (checks.plane_surface, closed_view(), PLANE, 0.01),
 }
 OTHER = {"fov": 43.0, "near": 0.2, "far": 21.0, "lookat": (0, 0, 0)}
-SPOILED |= {n: (checks.camera_matrix, closed_view(), GIVEN | {n: of}) for n, of in OTHER.items()}
+SPOILED |= {
+    n: (checks.camera_matrix, closed_view(), GIVEN | {n: of}) for n, of in OTHER.items()
+}
 
 
 @pytest.mark.parametrize("how", SPOILED)
@@ -49,7 +60,9 @@ def test_a_check_fails_if_its_input_is_wrong(how):
 def test_a_camera_on_a_link_is_at_the_pose_of_the_link_times_the_offset():
     quat, offset = np.array([np.sqrt(0.5), 0, 0, np.sqrt(0.5)]), np.eye(4)
     offset[:3, 3] = (0.1, 0, 0.05)
-    expected = np.array([[0, -1, 0, 0.5], [1, 0, 0, 0.1], [0, 0, 1, 0.35], [0, 0, 0, 1]])
+    expected = np.array(
+        [[0, -1, 0, 0.5], [1, 0, 0, 0.1], [0, 0, 1, 0.35], [0, 0, 0, 1]]
+    )
     view = View(K, expected, SIZE, (0.1, 20.0))
     position = np.array([0.5, 0.0, 0.3])
     assert not problems(checks.mounted_camera("v", view, position, quat, offset))

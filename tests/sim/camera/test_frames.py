@@ -9,7 +9,9 @@ from robo_genesis.core.scene import FRAME_SHAPE
 from robo_genesis.sim.camera.frames import FrameError, Renderer, capture
 
 
-@pytest.mark.parametrize(("name", "software"), [("llvmpipe (LLVM)", True), ("AMD Instinct", False)])
+@pytest.mark.parametrize(
+    ("name", "software"), [("llvmpipe (LLVM)", True), ("AMD Instinct", False)]
+)
 def test_software_renderers_are_known_by_name(name, software):
     assert Renderer("vendor", name).software is software
 

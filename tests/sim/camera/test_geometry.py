@@ -15,9 +15,13 @@ def test_a_field_of_view_of_90_degrees_spans_the_rows():
 def test_points_on_the_axes_of_the_camera_are_where_they_should_be():
     x, y, z = TRANSFORM[:3, :3].T
     ahead = TRANSFORM[:3, 3] - 2 * z
-    found = cameras.project(np.array([ahead, ahead + 0.1 * x, ahead + 0.1 * y]), K, TRANSFORM)
+    found = cameras.project(
+        np.array([ahead, ahead + 0.1 * x, ahead + 0.1 * y]), K, TRANSFORM
+    )
     f = K[0, 0]
-    assert found == pytest.approx(np.array([[80, 60], [80 + f / 20, 60], [80, 60 - f / 20]]))
+    assert found == pytest.approx(
+        np.array([[80, 60], [80 + f / 20, 60], [80, 60 - f / 20]])
+    )
 
 
 def test_a_point_behind_the_camera_has_no_pixel():
@@ -39,11 +43,15 @@ def test_projection_of_back_projected_pixels_gives_their_centres():
 def test_the_centre_of_a_silhouette_is_farther_out_than_the_picture_of_the_centre():
     large, size = cameras.intrinsics(60.0, (640, 480)), (640, 480)
     centre, radius = (TRANSFORM @ (0.5, 0.3, -1.2, 1.0))[:3], 0.2
-    hit = np.isfinite(sphere_depth(*cameras.rays(large, TRANSFORM, size), centre, radius))
+    hit = np.isfinite(
+        sphere_depth(*cameras.rays(large, TRANSFORM, size), centre, radius)
+    )
     found = cameras.silhouette_centre(centre, radius, large, TRANSFORM)
     assert found == pytest.approx(cameras.centroid(hit), abs=0.05)
     picture = cameras.project(centre, large, TRANSFORM)
-    assert found - large[:2, 2] == pytest.approx((picture - large[:2, 2]) / (1 - 0.2**2 / 1.2**2))
+    assert found - large[:2, 2] == pytest.approx(
+        (picture - large[:2, 2]) / (1 - 0.2**2 / 1.2**2)
+    )
     assert np.isnan(cameras.silhouette_centre(centre, 1.21, large, TRANSFORM)).all()
 
 
@@ -59,4 +67,8 @@ def test_residuals_keep_the_sign_of_their_mean():
     assert (found.count, found.mean, found.largest) == (2, -0.25, 1.0)
     assert np.isnan(cameras.residuals(np.empty(0)).largest)
     unknown = cameras.residuals(np.array([0.5, np.nan]))
-    assert (unknown.count, np.isnan(unknown.mean), np.isnan(unknown.largest)) == (2, True, True)
+    assert (unknown.count, np.isnan(unknown.mean), np.isnan(unknown.largest)) == (
+        2,
+        True,
+        True,
+    )

@@ -20,7 +20,9 @@ def view():
     depth = rng.uniform(0.1, 20.0, FRAME_SHAPE[:2]).astype(np.float32)
     rgb = rng.integers(0, 256, FRAME_SHAPE, np.uint8)
     numbers = rng.integers(0, 17, FRAME_SHAPE[:2], np.int32)
-    return View(K, np.diag([1.0, -1, -1, 1]), CAMERA_RES, (0.1, 20.0), rgb, depth, numbers)
+    return View(
+        K, np.diag([1.0, -1, -1, 1]), CAMERA_RES, (0.1, 20.0), rgb, depth, numbers
+    )
 
 
 def recorded(view, rendered=True):
@@ -43,7 +45,14 @@ def test_a_recorded_view_differs_in_the_rounding_of_its_depth_alone(tmp_path, vi
 
 
 def test_a_depth_that_does_not_fit_is_refused(view):
-    far = View(K, view.transform, CAMERA_RES, (0.1, 500.0), view.rgb, view.depth * 20,
-               view.segmentation)  # fmt: skip
+    far = View(
+        K,
+        view.transform,
+        CAMERA_RES,
+        (0.1, 500.0),
+        view.rgb,
+        view.depth * 20,
+        view.segmentation,
+    )
     with pytest.raises(ValueError, match="Choose a nearer far limit"):
         view_record.frames("world", far)

@@ -34,5 +34,7 @@ OTHERS = [(0.005, "RK4"), (0.003, "Euler"), (0.02, "implicitfast")]
 
 @pytest.mark.parametrize(("timestep", "integrator"), OTHERS)
 def test_what_would_be_another_experiment_is_refused(timestep, integrator):
-    with pytest.raises(CaseError, match=r"expected one of implicitfast, Euler, and a time step"):
+    with pytest.raises(
+        CaseError, match=r"expected one of implicitfast, Euler, and a time step"
+    ):
         mujoco_joints.run_case(l04.G2, LINKS, timestep, integrator)

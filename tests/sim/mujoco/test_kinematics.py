@@ -23,5 +23,7 @@ def test_gravity_inertia_and_damping_have_no_term_of_the_integrator():
 def test_a_load_adds_its_weight_times_the_lever():
     bare, one, two = (of.gravity_effort(Q_START, load) for load in (0.0, 1.0, 2.0))
     assert two - one == pytest.approx(one - bare)
-    assert (one - bare)[0] == pytest.approx(0, abs=1e-9)  # joint1 turns about the vertical
+    assert (one - bare)[0] == pytest.approx(
+        0, abs=1e-9
+    )  # joint1 turns about the vertical
     assert (one - bare)[1] < -3

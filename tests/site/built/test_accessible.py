@@ -29,7 +29,9 @@ def test_a_lecture_has_few_tab_stops(page, address, name):
     page.goto(f"{address}/{name}.html")
     stops = call(page, "tab_stops")
     assert 0 < stops <= MOST
-    page.evaluate("document.querySelector('article').innerHTML += '<a href=#x>a</a>'.repeat(151)")
+    page.evaluate(
+        "document.querySelector('article').innerHTML += '<a href=#x>a</a>'.repeat(151)"
+    )
     assert call(page, "tab_stops") > MOST
 
 
@@ -50,7 +52,9 @@ def wide(locator) -> bool:
     return locator.bounding_box()["width"] > 100
 
 
-def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(page, address):
+def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(
+    page, address
+):
     page.goto(f"{address}/{MEASURED}")
     measured = page.locator("article .provenance.as-icon:visible").first
     words, icon = measured.locator(".provenance-text"), measured.locator("a")

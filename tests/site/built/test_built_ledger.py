@@ -26,7 +26,9 @@ BEGINNINGS = UNMEASURED | {"printed": "Printed by this run on "}
 def place(link: str) -> tuple[str, str]:
     """Return (page, anchor) that a link of the ledger leads to."""
     address, _, anchor = link.partition("#")
-    return posixpath.normpath(posixpath.join(posixpath.dirname(LEDGER), address)), anchor
+    return posixpath.normpath(
+        posixpath.join(posixpath.dirname(LEDGER), address)
+    ), anchor
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +42,9 @@ def test_each_figure_table_and_printed_text_has_one_row_and_each_row_its_place(p
     rows = [place(row.select_one("td a")["href"]) for row in table]
     shown = set()
     for name, page in pages.items():
-        for tag in page.select(f":is({SHOWN}):not(.course-map img)"):  # a card repeats a picture
+        for tag in page.select(
+            f":is({SHOWN}):not(.course-map img)"
+        ):  # a card repeats a picture
             holder = tag.find_parent("figure") or tag
             shown.add((name, holder.get("id", f"no anchor: {str(tag)[:80]}")))
     assert {*rows} == shown
@@ -67,10 +71,15 @@ def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
 def test_digests_are_those_of_the_files(site, pages):
     for row in pages[LEDGER].select("#figures-and-tables tbody tr"):
         file = (site / LEDGER).parent / row.select("td")[-1].a["href"]
-        assert hashlib.sha256(file.read_bytes()).hexdigest() == row.select_one(".digest").text
+        assert (
+            hashlib.sha256(file.read_bytes()).hexdigest()
+            == row.select_one(".digest").text
+        )
 
 
-def test_a_downloaded_bundle_is_accepted_and_has_the_digest_that_is_given(site, pages, tmp_path):
+def test_a_downloaded_bundle_is_accepted_and_has_the_digest_that_is_given(
+    site, pages, tmp_path
+):
     blocks = [b for b in pages[LEDGER].select(".run-block") if b.select("a")]
     assert len(blocks) == sum(len(find_lesson(name).pages) for name in LESSONS)
     for block in blocks:

@@ -29,7 +29,11 @@ NUMBERED = re.compile(r"id\d+$")
 
 @pytest.mark.parametrize(
     ("lesson", "name"),
-    [(le, name) for (le, page), name in LESSON_PAGES.items() if page in ("lecture", "lab")],
+    [
+        (le, name)
+        for (le, page), name in LESSON_PAGES.items()
+        if page in ("lecture", "lab")
+    ],
 )
 def test_status_is_computed_and_says_what_is_missing(parsed_pages, lesson, name):
     page = parsed_pages[name]
@@ -39,7 +43,9 @@ def test_status_is_computed_and_says_what_is_missing(parsed_pages, lesson, name)
     count = len(find_page(lesson, "lab").checks)
     assert f"cpu-verified Lab in a clean notebook kernel, Genesis {PIN}" in status
     assert f"{count} of {count} checks passed" in status
-    assert f"amdgpu-missing No run on this backend is recorded for Genesis {PIN}" in status
+    assert (
+        f"amdgpu-missing No run on this backend is recorded for Genesis {PIN}" in status
+    )
 
 
 def test_every_page_is_valid_html(site, tmp_path):
@@ -51,25 +57,43 @@ def test_every_page_is_valid_html(site, tmp_path):
     pages = sorted(site.parent.rglob("*.html"))
 
     def found(*files):
-        done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [*command, *files], capture_output=True, text=True, check=False
+        )
         reports = json.loads(done.stdout)
-        return {r["filePath"]: [(m["line"], m["message"]) for m in r["messages"]] for r in reports}
+        return {
+            r["filePath"]: [(m["line"], m["message"]) for m in r["messages"]]
+            for r in reports
+        }
 
     spoiled = tmp_path / "spoiled.html"
-    spoiled.write_text(pages[0].read_text("utf8").replace("</body>", "<ul><p>a</p></ul></body>"))
+    spoiled.write_text(
+        pages[0].read_text("utf8").replace("</body>", "<ul><p>a</p></ul></body>")
+    )
     assert "<p>" in found(spoiled)[str(spoiled)][0][1]
     assert found(*pages) == {}
 
 
 def test_nothing_published_names_a_path_of_the_builder(site):
-    texts = [p for p in site.parent.rglob("*") if p.suffix in {".html", ".json", ".txt", ".md"}]
+    texts = [
+        p
+        for p in site.parent.rglob("*")
+        if p.suffix in {".html", ".json", ".txt", ".md"}
+    ]
     assert texts
-    assert [p.name for p in texts if str(project.ROOT) in p.read_text(errors="ignore")] == []
+    assert [
+        p.name for p in texts if str(project.ROOT) in p.read_text(errors="ignore")
+    ] == []
 
 
 def test_build_ends_with_what_it_was_made_of(build_output):
     tail = "\n".join(build_output.splitlines()[-6 - len(LESSONS) :])
-    expected = ["Site: ", "Solutions: shown.", "Address: none.", "Engine: genesis-world"]
+    expected = [
+        "Site: ",
+        "Solutions: shown.",
+        "Address: none.",
+        "Engine: genesis-world",
+    ]
     expected += ["requested cpu, actual cpu", "render camera"]
     expected += ["executed", "reused", "Checks passed: "]
     assert [words for words in expected if words not in tail] == []
@@ -78,22 +102,29 @@ def test_build_ends_with_what_it_was_made_of(build_output):
 def test_published_anchors_stay_and_new_ones_are_kept_from_now_on(parsed_pages):
     """An anchor is that of a heading, figure or term, to which a reader may link.
 
-    Recorded runs come and go with the machines that made them, so what is in their panels is none.
-    """
+    Recorded runs come and go with the machines that made them, so what is in their
+    panels is none."""
     anchors = {
         f"{name}#{tag['id']}"
         for name, page in parsed_pages.items()
         if not name.startswith("evidence/")
         for tag in page.select(PLACES)
-        if not NUMBERED.match(tag["id"]) and not tag.find_parent(class_="evidence-panel")
+        if not NUMBERED.match(tag["id"])
+        and not tag.find_parent(class_="evidence-panel")
     }
     published = {anchor for file in ANCHORS for anchor in file.read_text().split()}
     assert len(published) > 100
     gone = sorted(published - anchors)
-    assert gone == [], "Links elsewhere lead there: keep the old name as a target `(name)=` above."
-    title = parsed_pages["index"].select_one("article section[id]")["id"]  # each course has its own
+    assert gone == [], (
+        "Links elsewhere lead there: keep the old name as a target `(name)=` above."
+    )
+    title = parsed_pages["index"].select_one("article section[id]")[
+        "id"
+    ]  # each course has its own
     new = sorted(anchors - published - {f"index#{title}"})
-    assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
+    assert new == [], (
+        "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
+    )
 
 
 def test_every_value_and_array_has_a_tolerance(site):
@@ -106,15 +137,25 @@ def test_every_value_and_array_has_a_tolerance(site):
 
 def without_tolerance(side: Side) -> list[str]:
     declared = find_lesson(side.manifest.predicate.lesson).spec.TOLERANCES.keys()
-    units = {name: {metric.unit} for name, metric in side.numbers.items() if metric.kind == "value"}
+    units = {
+        name: {metric.unit}
+        for name, metric in side.numbers.items()
+        if metric.kind == "value"
+    }
     for case in side.arrays.cases.values():
         for name, array in case.variables.items():
             if array.dtype.startswith("float"):
-                units[name] = {array.unit} if isinstance(array.unit, str) else {*array.unit}
-    return [n for n, of in units.items() if not (declared & n.split(".") or of <= declared)]
+                units[name] = (
+                    {array.unit} if isinstance(array.unit, str) else {*array.unit}
+                )
+    return [
+        n for n, of in units.items() if not (declared & n.split(".") or of <= declared)
+    ]
 
 
-def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(parsed_pages):
+def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(
+    parsed_pages,
+):
     page = parsed_pages["evidence/index"]
     assert page.select(".measured")
     assert "Each page was executed once, on " in page.article.get_text()

@@ -20,7 +20,9 @@ def results(page) -> list[str]:
     page.wait_for_function(
         "/Search finished|did not match/.test(document.querySelector('#search-results').innerText)"
     )
-    return page.eval_on_selector_all("#search-results li > a", "links => links.map(a => a.href)")
+    return page.eval_on_selector_all(
+        "#search-results li > a", "links => links.map(a => a.href)"
+    )
 
 
 class WithNotFound(QuietHandler):
@@ -45,7 +47,9 @@ def host(site):
 def test_who_is_lost_at_any_depth_can_search_and_go_on(page, host, lost):
     assert page.goto(f"{host}/{lost}").status == 404
     assert page.locator("article h1").inner_text() == "There is no such page"
-    family = page.evaluate("getComputedStyle(document.querySelector('article h1')).fontFamily")
+    family = page.evaluate(
+        "getComputedStyle(document.querySelector('article h1')).fontFamily"
+    )
     assert family.startswith("system-ui")  # the style sheets were found
     for link in page.locator("article li a").all():
         assert page.request.get(host + link.get_attribute("href")).ok

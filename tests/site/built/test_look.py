@@ -15,7 +15,9 @@ from robo_genesis.lessons.l04 import spec
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-CASES = {"baseline": "baseline"} | spec.CASE_MARKS  # The mark of each case on the lecture
+CASES = {
+    "baseline": "baseline"
+} | spec.CASE_MARKS  # The mark of each case on the lecture
 
 LECTURE = "lessons/l04-joint-control/lecture.html"
 TEXT = 4.5
@@ -47,7 +49,9 @@ def page(browser, address, theme) -> Iterator[Page]:
 
 
 def style(page: Page, selector: str, name: str) -> str:
-    script = "([selector, name]) => getComputedStyle(document.querySelector(selector))[name]"
+    script = (
+        "([selector, name]) => getComputedStyle(document.querySelector(selector))[name]"
+    )
     return page.evaluate(script, [selector, name])
 
 
@@ -63,8 +67,13 @@ def test_the_page_s_ground_is_one_that_the_palette_was_held_against(page, theme)
 def test_the_word_of_each_badge_can_be_read(page):
     for state in ("verified", "inconclusive", "missing", "stale", "failed", "refused"):
         badge = f"evidence-badge state-{state}"
-        page.evaluate(f"document.querySelector('.evidence-badge').className = '{badge}'")
-        pair = (style(page, ".evidence-badge", name) for name in ("color", "backgroundColor"))
+        page.evaluate(
+            f"document.querySelector('.evidence-badge').className = '{badge}'"
+        )
+        pair = (
+            style(page, ".evidence-badge", name)
+            for name in ("color", "backgroundColor")
+        )
         assert contrast(*map(hexadecimal, pair)) >= TEXT, state
 
 
@@ -129,7 +138,9 @@ def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
     for css_class, ink, dashes in lines:
         mark = MARKS[names[css_class]]
         assert hexadecimal(ink) == getattr(mark, theme), css_class
-        assert [float(dash) for dash in dashes] == [2 * length for length in mark.dashes], css_class
+        assert [float(dash) for dash in dashes] == [
+            2 * length for length in mark.dashes
+        ], css_class
     beside = page.locator("[data-name=replay-l04-lecture-cpu] .plot:first-child .name")
     assert {"G2", "G3"} <= {*beside.all_text_contents()} <= {"G1", "G2", "G3"}
     count = Counter(names[css_class] for css_class, *_ in lines)

@@ -20,16 +20,22 @@ def base(request, address, unpacked) -> str:
 def test_search_finds_what_a_student_types_into_the_field(page, base):
     problems = watch(page)
     page.goto(f"{base}/{LAB}")
-    page.wait_for_load_state("networkidle")  # leaving stops requests, which would be noted
+    page.wait_for_load_state(
+        "networkidle"
+    )  # leaving stops requests, which would be noted
     page.keyboard.press("Control+k")
     page.keyboard.type("get_dofs_control_force")
     page.keyboard.press("Enter")
     page.wait_for_url("**/search.html?q=get_dofs_control_force*")
     page.get_by_text("Search finished").first.wait_for()
     page.wait_for_load_state("networkidle")
-    links = page.locator("#search-results li > a").evaluate_all("all => all.map(a => a.href)")
+    links = page.locator("#search-results li > a").evaluate_all(
+        "all => all.map(a => a.href)"
+    )
     lecture, *_ = (link for link in links if LECTURE in link)
-    assert [name for name in (LAB, "glossary.html") if name not in " ".join(links)] == []
+    assert [
+        name for name in (LAB, "glossary.html") if name not in " ".join(links)
+    ] == []
     page.goto(lecture)
     assert page.locator("article h1").is_visible()
     assert problems == []
@@ -57,7 +63,9 @@ def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
 def test_links_inside_the_site_name_files_so_that_they_work_from_disk(site):
     wrong = []
     pages = Site(site).pages.items()
-    for path, address in ((path, url) for path, page in pages for url in page.addresses):
+    for path, address in (
+        (path, url) for path, page in pages for url in page.addresses
+    ):
         url = address.partition("#")[0].partition("?")[0]
         leads = not url.startswith("/") and path.parent.joinpath(url).is_file()
         if url and ":" not in url and path.name not in SERVED_ONLY and not leads:

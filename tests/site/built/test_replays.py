@@ -21,7 +21,10 @@ pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture"
 REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
-FIRST_SCREEN = (LECTURE, "lessons/l01-ready/lecture")  # Pages that begin with their replay
+FIRST_SCREEN = (
+    LECTURE,
+    "lessons/l01-ready/lecture",
+)  # Pages that begin with their replay
 
 # The links that joint4 turns.
 BELOW = ("link4", "link5", "link6", "link7", "hand", "left_finger", "right_finger")
@@ -37,7 +40,9 @@ POSED = """([name, time]) => {
 @pytest.fixture(scope="module")
 def lecture(browser_3d, site) -> Iterator[Page]:
     """The lecture from disk with the robot loaded."""
-    page = browser_3d.new_page(viewport={"width": 480, "height": 700}, color_scheme="dark")
+    page = browser_3d.new_page(
+        viewport={"width": 480, "height": 700}, color_scheme="dark"
+    )
     problems = errors(page)
     page.goto((site / f"{LECTURE}.html").as_uri())
     show_model(page, REPLAY)
@@ -58,18 +63,30 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
             lecture.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
             found = call(lecture, "poses")
             added = [f"target_{link}" for link in BELOW]
-            assert sorted(found) == sorted([*links, *added, "still", "target", "shadows"])
-            poses = [[found[link][part] for link in links] for part in ("position", "rotation")]
+            assert sorted(found) == sorted(
+                [*links, *added, "still", "target", "shadows"]
+            )
+            poses = [
+                [found[link][part] for link in links]
+                for part in ("position", "rotation")
+            ]
             places, turns = map(np.array, poses)
             recorded = rotations(trace.link_quat[sample])
-            turns *= np.sign((turns * recorded).sum(axis=1))[:, None]  # q and −q turn alike
-            assert places == pytest.approx(trace.link_pos[sample], abs=1e-6), (case, sample)
+            turns *= np.sign((turns * recorded).sum(axis=1))[
+                :, None
+            ]  # q and −q turn alike
+            assert places == pytest.approx(trace.link_pos[sample], abs=1e-6), (
+                case,
+                sample,
+            )
             assert turns == pytest.approx(recorded, abs=1e-6), (case, sample)
         assert np.abs(trace.link_pos[9] - trace.link_pos[0]).max() > 1e-3
     assigned = read_any_trace(folder, arrays, ASSIGNED)
     for link in BELOW:
         copy, k = found[f"target_{link}"], links.index(link)
-        assert copy["position"] == pytest.approx(assigned.link_pos[-1, k], abs=2e-6), link
+        assert copy["position"] == pytest.approx(assigned.link_pos[-1, k], abs=2e-6), (
+            link
+        )
         turned = abs(np.dot(copy["rotation"], rotations(assigned.link_quat[-1:, k])[0]))
         assert turned == pytest.approx(1, abs=1e-6), link
 
@@ -82,7 +99,9 @@ def test_the_picture_is_that_of_the_model(lecture):
     model = lightness(lecture, stage, "model-viewer")
     picture = lightness(lecture, stage, ".still")
     above = np.s_[: int(0.7 * len(model))]  # the floor is below; its light differs
-    robot, drawn = (np.abs(image - image[20, -20])[above] > 15 for image in (model, picture))
+    robot, drawn = (
+        np.abs(image - image[20, -20])[above] > 15 for image in (model, picture)
+    )
     assert 0.15 < robot.mean() < 0.5
     assert (robot & drawn).sum() / (robot | drawn).sum() > 0.8
 
@@ -113,14 +132,21 @@ STEPS = ".replay[data-name=replay-l04-lecture-cpu-steps]"
 CURVES = f"{STEPS} polyline"
 
 
-def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(browser_3d, address):
+def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(
+    browser_3d, address
+):
     """By keyboard; the answer and what was shown are remembered until the reader forgets them."""
     context = browser_3d.new_context()
     page = context.new_page()
     page.goto(f"{address}/{LECTURE}.html")
     hidden = [f"{STEPS} .play", f"{STEPS} dl", CURVES, ".explorer:has(.plots)"]
-    feedback, table = page.locator(".feedback:visible"), page.locator(f"{STEPS} + details")
-    assert not any(page.locator(one).first.is_visible() for one in [*hidden, f"{STEPS} + details"])
+    feedback, table = (
+        page.locator(".feedback:visible"),
+        page.locator(f"{STEPS} + details"),
+    )
+    assert not any(
+        page.locator(one).first.is_visible() for one in [*hidden, f"{STEPS} + details"]
+    )
     page.get_by_label("about the same").first.press("Space")
     assert page.get_by_text("Noted. Play the run").count() == 1
     assert feedback.count() == 0
@@ -160,7 +186,9 @@ def test_without_javascript_the_samples_are_in_a_fold(browser_3d, address, name)
 def lightness(page, stage, part) -> np.ndarray:
     """Return a screenshot of one part of the stage alone, 0 to 255."""
     only = f".stage > :not({part}) {{ visibility: hidden; }} .stage > {part} {{ display: block; }}"
-    style = page.add_style_tag(content=only.replace("}", " }").replace(";", " !important;"))
+    style = page.add_style_tag(
+        content=only.replace("}", " }").replace(";", " !important;")
+    )
     with Image.open(BytesIO(stage.screenshot())) as image:
         found = np.asarray(image.convert("L")).astype(int)
     style.evaluate("style => style.remove()")
@@ -168,17 +196,23 @@ def lightness(page, stage, part) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", PLAYING)
-def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser_3d, address, name):
+def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(
+    browser_3d, address, name
+):
     """At each sample of each run of each replay of a page."""
     page = browser_3d.new_page(viewport={"width": 390, "height": 844})
     page.goto(f"{address}/{name}.html")
     for width, height in ((390, 844), (1280, 900)) if name in FIRST_SCREEN else ():
         page.set_viewport_size({"width": width, "height": height})
-        page.evaluate("document.fonts.ready.then(() => new Promise(requestAnimationFrame))")
+        page.evaluate(
+            "document.fonts.ready.then(() => new Promise(requestAnimationFrame))"
+        )
         play = page.locator(".replay .play").first.bounding_box()
         assert play["y"] + play["height"] < height
     show_all(page)
-    page.emulate_media(reduced_motion="reduce")  # the theme's menu would slide in after a change
+    page.emulate_media(
+        reduced_motion="reduce"
+    )  # the theme's menu would slide in after a change
     for width in (1280, 320):
         page.set_viewport_size({"width": width, "height": 800})
         assert call(page, "too_wide") == []

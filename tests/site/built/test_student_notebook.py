@@ -61,17 +61,23 @@ def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
     lines = {lesson: taken(site, lab, home) for lesson, lab in LABS.items()}
     (install,), *others = {tuple(of[:1]) for of in lines.values()}
     assert others == []  # one environment serves both
-    given = {name: value for name, value in os.environ.items() if not name.startswith(OURS)}
+    given = {
+        name: value for name, value in os.environ.items() if not name.startswith(OURS)
+    }
     environment = given | project.engine_cache_environment()
     assert "step 5 of 5" in run(install, home, environment)
     folder = ENVIRONMENT
     where = "import robo_genesis; print(robo_genesis.__file__)"
-    assert run(f"{folder}/bin/python -c '{where}'", home, environment).startswith(str(home))
+    assert run(f"{folder}/bin/python -c '{where}'", home, environment).startswith(
+        str(home)
+    )
     with stages.build_lock(project.CACHE):
         doctor = run(f"{folder}/bin/python -m robo_genesis.doctor", home, environment)
     assert "DOCTOR: all" in doctor
     for lesson, (*_, start) in lines.items():
-        execute = start.replace("jupyter lab", f"jupyter execute --output={lesson}-done.ipynb")
+        execute = start.replace(
+            "jupyter lab", f"jupyter execute --output={lesson}-done.ipynb"
+        )
         for verdict in ("INCOMPLETE, not passed: ", "PASSED"):
             command = execute.replace("execute", "execute --allow-errors")
             if verdict == "PASSED":

@@ -16,7 +16,8 @@ from watching import SERVED_ONLY, page_names
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 
-# Its results come one after the other, so they move the page and weigh what all pages weigh.
+# Its results come one after the other, so they move the page and weigh what all pages
+# weigh.
 FOUND = "search.html?q=joint"
 
 
@@ -37,7 +38,9 @@ def visits(browser, site, unpacked):
             found, last = {}, browser
             for name in names:
                 base = address if name in SERVED_ONLY else disk
-                visit = functools.partial(Visit, base=base, name=name, kind=of(KINDS[way], name))
+                visit = functools.partial(
+                    Visit, base=base, name=name, kind=of(KINDS[way], name)
+                )
                 last, found[name] = answered(last, visit)
             return found
 

@@ -22,18 +22,43 @@ def on_load(code: str) -> str:
     return f"<script>addEventListener('load', () => {code})</script>"
 
 
-# Rule, what it complains of, and the markup that breaks it, at the end of the head or article.
+# Rule, what it complains of, and the markup that breaks it, at the end of the head or
+# article.
 SPOILS = [
-    ("axe", "image-alt", f"<details><summary>fold</summary><img src='{PIXEL}'></details>"),
+    (
+        "axe",
+        "image-alt",
+        f"<details><summary>fold</summary><img src='{PIXEL}'></details>",
+    ),
     ("axe", "color-contrast", "<p style='color: #aaa; background: #fff'>pale</p>"),
-    ("axe", "target-size", f"<a href='#1' style='{SMALL}'>1</a><a href='#2' style='{SMALL}'>2</a>"),
-    ("blocking scripts", "plot.js", "<script src='_static/plot.js?early'></script></head>"),
-    ("focus", "unseen", "<button id='unseen' style='outline: none !important'>unseen</button>"),
+    (
+        "axe",
+        "target-size",
+        f"<a href='#1' style='{SMALL}'>1</a><a href='#2' style='{SMALL}'>2</a>",
+    ),
+    (
+        "blocking scripts",
+        "plot.js",
+        "<script src='_static/plot.js?early'></script></head>",
+    ),
+    (
+        "focus",
+        "unseen",
+        "<button id='unseen' style='outline: none !important'>unseen</button>",
+    ),
     ("foreign hosts", ELSEWHERE, f"<img src='{ELSEWHERE}' alt=''>"),
     ("images", "without a size", f"<img src='{PIXEL}' alt='' loading='lazy'>"),
     ("images", "loaded at once", f"<img src='{PIXEL}' alt='' width='1' height='1'>"),
-    ("images", "empty", "<img src='missing.png' alt='' width='9' height='9' loading='lazy'>"),
-    ("images", "another shape", f"<img src='{PIXEL}' alt='' width='90' height='9' loading='lazy'>"),
+    (
+        "images",
+        "empty",
+        "<img src='missing.png' alt='' width='9' height='9' loading='lazy'>",
+    ),
+    (
+        "images",
+        "another shape",
+        f"<img src='{PIXEL}' alt='' width='90' height='9' loading='lazy'>",
+    ),
     (
         "layout shift",
         "<",  # the first of what moves; the browser decides which that is
@@ -44,13 +69,29 @@ SPOILS = [
     ),
     ("lines", "long", "<p id='long' style='width: 900px; max-width: none'>long</p>"),
     ("messages", "404: ", "<script src='missing.js' defer></script>"),
-    ("messages", "an uncaught error", "<script>throw new Error('an uncaught error')</script>"),
-    ("motion", "moves", "<p id='moves' style='transition: color 1s !important'>moves</p>"),
-    ("scroll boxes", "unreached", f"<div id='unreached' style='{SCROLLS}'>{WIDE}</div>"),
+    (
+        "messages",
+        "an uncaught error",
+        "<script>throw new Error('an uncaught error')</script>",
+    ),
+    (
+        "motion",
+        "moves",
+        "<p id='moves' style='transition: color 1s !important'>moves</p>",
+    ),
+    (
+        "scroll boxes",
+        "unreached",
+        f"<div id='unreached' style='{SCROLLS}'>{WIDE}</div>",
+    ),
     ("tab order", "tabindex", "<a href='#' tabindex='3'>first</a>"),
     ("theme", "grey", on_load("{ document.documentElement.dataset.theme = 'grey'; }")),
     ("weight", "index.html", f"<!-- {random.Random(0).randbytes(BUDGET).hex()} -->"),
-    ("width", "sticks-out", "<p id='sticks-out' style='width: 5000px; max-width: none'>wide</p>"),
+    (
+        "width",
+        "sticks-out",
+        "<p id='sticks-out' style='width: 5000px; max-width: none'>wide</p>",
+    ),
     # The last, because it ends the article.
     ("axe", "region", "</article></main><p>outside of all landmarks</p>"),
 ]
@@ -62,7 +103,11 @@ class SpoilingHandler(CompressingHandler):
         if path.name != "index.html":
             return data
         for end in (b"</head>", b"</article>"):
-            texts = [text for *_, text in SPOILS if (end == b"</head>") == ("</head>" in text)]
+            texts = [
+                text
+                for *_, text in SPOILS
+                if (end == b"</head>") == ("</head>" in text)
+            ]
             data = data.replace(end, "".join(texts).encode(), 1)
         return data
 
@@ -82,7 +127,9 @@ def test_every_rule_is_broken():
     assert {rule for rule, *_ in SPOILS} == {*RULES}
 
 
-@pytest.mark.parametrize(("rule", "complaint"), [(rule, text) for rule, text, _ in SPOILS])
+@pytest.mark.parametrize(
+    ("rule", "complaint"), [(rule, text) for rule, text, _ in SPOILS]
+)
 def test_a_page_that_breaks_a_rule_is_noticed(spoiled, rule, complaint):
     assert [text for text in spoiled[rule] if complaint in text], spoiled[rule]
 
@@ -91,7 +138,9 @@ def test_a_pale_text_is_noticed_in_the_dark(browser, address):
     phone = replace(KINDS["phone"], rules=("axe", "theme"))
     assert phone.scheme == "dark"
     found = Visit(browser, address, "index.html", phone).wrong["axe"]
-    assert [text for text in found if text.startswith("1280 px: color-contrast: ")], found
+    assert [text for text in found if text.startswith("1280 px: color-contrast: ")], (
+        found
+    )
 
 
 def test_a_box_of_its_own_may_hold_what_is_wide(spoiled):

@@ -33,7 +33,11 @@ def test_a_published_lesson_is_in_each_list_that_is_kept_by_hand(document, form)
     for lesson in read_map(BOOK):
         if lesson.page:
             text = (ROOT / document.format(page=lesson.page)).read_text()
-            words = {"id": lesson.id, "title": lesson.title, "folder": lesson.id.lower()}
+            words = {
+                "id": lesson.id,
+                "title": lesson.title,
+                "folder": lesson.id.lower(),
+            }
             titles = {lesson.title, re.split(r"(?<=[?.]) ", lesson.title)[0]}
             if not any(form.format(heading=title, **words) in text for title in titles):
                 missing.append(lesson.id)
@@ -42,8 +46,12 @@ def test_a_published_lesson_is_in_each_list_that_is_kept_by_hand(document, form)
 
 def test_the_list_of_decision_records_has_each_of_them():
     folder = BOOK / "_decisions"
-    titles = {p.name: p.read_text().splitlines()[0] for p in sorted(folder.glob("0*.md"))}
-    rows = re.findall(r"\[(\d+)\]\((.+?)\) \| (.+?) \|", (folder / "README.md").read_text())
+    titles = {
+        p.name: p.read_text().splitlines()[0] for p in sorted(folder.glob("0*.md"))
+    }
+    rows = re.findall(
+        r"\[(\d+)\]\((.+?)\) \| (.+?) \|", (folder / "README.md").read_text()
+    )
     assert {name: f"# {number}: {title}" for number, name, title in rows} == titles
 
 
@@ -51,13 +59,19 @@ def test_the_list_of_decision_records_has_each_of_them():
     ("rows", "said"),
     [
         ([{"id": "L01"}], "title\n *Field required"),
-        ([{"id": "L01", "title": "One", "state": "verified"}], "state\n *Unexpected keyword"),
+        (
+            [{"id": "L01", "title": "One", "state": "verified"}],
+            "state\n *Unexpected keyword",
+        ),
         (["L01"], f"^{FILE}: .*\n.*\n *Input should be a dictionary"),
         ([MAP[0] | {"outcomes": "walk"}], "outcomes\n *Input should be a valid tuple"),
         ([MAP[0] | {"page": "page"}], "L01 is published and has no outcomes"),
         ([MAP[0], MAP[0]], "names L01 twice"),
         ([MAP[0], MAP[2]], "L04 needs L02; before it come L01"),
-        ([{"id": "L01", "title": "One", "needs": ["L01"]}], "L01 needs L01; before it come none"),
+        (
+            [{"id": "L01", "title": "One", "needs": ["L01"]}],
+            "L01 needs L01; before it come none",
+        ),
     ],
 )
 def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
@@ -66,16 +80,27 @@ def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
         read_map(tmp_path)
 
 
-def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(small_site):
+def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(
+    small_site,
+):
     page = parsed(small_site, "cards")
     cards = page.select("ul.course-map > li")
     assert [[p.get_text() for p in card.select("p")] for card in cards] == [
-        ["L04 Four", "read a qpos", "stop", "Builds on L01 and L02.", "Lecture: 1 min to read"],
         [
-            "L06 Six", "walk", "Lecture: 4 min to read", "Lab: 15 min with the work sheet",
+            "L04 Four",
+            "read a qpos",
+            "stop",
+            "Builds on L01 and L02.",
+            "Lecture: 1 min to read",
+        ],
+        [
+            "L06 Six",
+            "walk",
+            "Lecture: 4 min to read",
+            "Lab: 15 min with the work sheet",
             "2 more pages: 8 min to read",
         ],
-    ]  # fmt: skip
+    ]
     pages = ("lecture", "lecture", "lab")
     links = [a["href"] for a in cards[1].select("a")]
     assert links == [f"lessons/l06-six/{name}.html" for name in pages]
@@ -92,9 +117,16 @@ def test_lessons_that_are_absent_leave_words_and_no_content(small_site):
     assert first.get_text() == "The second and the third."
     assert [a["href"] for a in first.select("a")] == ["lessons/l02-two/lecture.html"]
     assert second.get_text() == "Four was measured."
-    assert [b.get_text() for b in article.select("section > p > strong")] == ["L04 ", "L06 "]
+    assert [b.get_text() for b in article.select("section > p > strong")] == [
+        "L04 ",
+        "L06 ",
+    ]
     lines = article.select("ul.lesson-status > li")
     assert [line.select_one(".evidence-badge").get_text() for line in lines] == 2 * [
-        "cpu-missing", "amdgpu-missing"
-    ]  # fmt: skip
-    assert article.select_one(".course-measured").get_text() == "No run of this build was accepted."
+        "cpu-missing",
+        "amdgpu-missing",
+    ]
+    assert (
+        article.select_one(".course-measured").get_text()
+        == "No run of this build was accepted."
+    )

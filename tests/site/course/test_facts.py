@@ -33,7 +33,11 @@ def test_a_page_has_both_and_the_home_page_no_time(small_site):
     assert len(tag["content"]) <= facts.DESCRIPTION
 
 
-REPOSITORIES = [("", 0), ("https://gitlab.com/a/course", 0), ("https://github.com/a/course", 1)]
+REPOSITORIES = [
+    ("", 0),
+    ("https://gitlab.com/a/course", 0),
+    ("https://github.com/a/course", 1),
+]
 
 
 @pytest.mark.parametrize(("repository", "offered"), REPOSITORIES)
@@ -45,14 +49,18 @@ def test_feedback_goes_to_the_form_of_a_repository_on_github(repository, offered
     facts.add_facts(SimpleNamespace(config=config, env=env), document, "l04/lab")
     links = [node.astext() for node in document.findall(nodes.raw)]
     assert len(links) == offered
-    form = f"issues/new?template={facts.FORM}&amp;page=l04%2Flab%2C+Genesis+{engine_pin()}"
+    form = (
+        f"issues/new?template={facts.FORM}&amp;page=l04%2Flab%2C+Genesis+{engine_pin()}"
+    )
     assert all(f"{repository}/{form}" in link for link in links)
     assert (ROOT / ".github/ISSUE_TEMPLATE" / facts.FORM).is_file()
 
 
 def test_a_row_shows_rounded_times_and_the_slowest_cell(small_site):
     table = parsed(small_site, "times").select_one("tbody")
-    assert [[c.get_text(strip=True) for c in row.select("td")] for row in table.select("tr")] == [
+    assert [
+        [c.get_text(strip=True) for c in row.select("td")] for row in table.select("tr")
+    ] == [
         ["Page", "3", "15.6", "2", "12.3"],
         ["Other", "1", "2.0", "1", "2.0"],
     ]

@@ -28,35 +28,56 @@ EXCERPT = "```{literalinclude} code.py\n:language: python\n:pyobject: f\n```"
 
 
 def test_a_page_s_size(tmp_path):
-    (tmp_path / "code.py").write_text(f'def f():\n    """{"x" * 90}"""\n    return {"1" * 70}\n')
+    (tmp_path / "code.py").write_text(
+        f'def f():\n    """{"x" * 90}"""\n    return {"1" * 70}\n'
+    )
     asked = "```{choice} l04/lab a b c\nWhen?\n```\n\n:::{dropdown} Answer\nSo.\n:::"
     asked += "\n\n:::{dropdown} Details\nMore.\n:::"
     cells = [
         new_markdown_cell(f"{'word ' * 400}\n\n{EXCERPT}\n\n{asked}"),
         new_code_cell("a = 1\n\nb = 2\npage.show(l04.plots.baseline)"),
-        new_code_cell("page.show(l04.plots.step_size)", metadata={"tags": ["hide-input"]}),
+        new_code_cell(
+            "page.show(l04.plots.step_size)", metadata={"tags": ["hide-input"]}
+        ),
         new_code_cell("c = 3"),
     ]
     found = sizes.size(new_notebook(cells=cells), tmp_path / "lecture.md")
     assert found == {
-        "words": 400, "cells": 2, "longest": 3, "plots": 2, "minutes": 6, "widest": 81,
-    }  # fmt: skip
+        "words": 400,
+        "cells": 2,
+        "longest": 3,
+        "plots": 2,
+        "minutes": 6,
+        "widest": 81,
+    }
 
 
 def test_the_minutes_of_a_lab_contain_its_functions_a_run_and_the_work_sheet(tmp_path):
-    stubs = [new_code_cell(f"def f{k}(x):\n    raise NotImplementedError") for k in range(3)]
-    solution = new_code_cell("def f0(x):\n    return x", metadata={"tags": ["hide-cell"]})
+    stubs = [
+        new_code_cell(f"def f{k}(x):\n    raise NotImplementedError") for k in range(3)
+    ]
+    solution = new_code_cell(
+        "def f0(x):\n    return x", metadata={"tags": ["hide-cell"]}
+    )
     lab = new_notebook(cells=[new_markdown_cell("word " * 400), *stubs, solution])
-    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(0.6 + 3 * 10 + 5)
+    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(
+        0.6 + 3 * 10 + 5
+    )
     (tmp_path / "worksheet.md").touch()
-    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(0.6 + 3 * 10 + 5 + 10)
+    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(
+        0.6 + 3 * 10 + 5 + 10
+    )
 
 
 @pytest.mark.parametrize(
     ("kind", "name", "limit"),
     [
         ("index", "widest", sizes.COLUMN),
-        *((kind, *item) for kind, limits in sizes.LIMITS.items() for item in limits.items()),
+        *(
+            (kind, *item)
+            for kind, limits in sizes.LIMITS.items()
+            for item in limits.items()
+        ),
     ],
 )
 def test_each_limit_is_kept_exactly(kind, name, limit):
@@ -68,8 +89,13 @@ def test_each_limit_is_kept_exactly(kind, name, limit):
 
 def test_a_large_page_is_named(tmp_path):
     large = new_notebook(cells=[new_markdown_cell("word " * 3400)])
-    pages = [Page(name, tmp_path / f"{name}.md", large, None, None) for name in ("lecture", "lab")]
+    pages = [
+        Page(name, tmp_path / f"{name}.md", large, None, None)
+        for name in ("lecture", "lab")
+    ]
     lines, (problem,) = sizes.report(pages)
     assert [line.partition(":")[0] for line in lines] == ["lecture", "lab"]
-    assert problem.startswith("lecture is over its size: 3,400 words of prose (at most 3,300)")
+    assert problem.startswith(
+        "lecture is over its size: 3,400 words of prose (at most 3,300)"
+    )
     assert problem.endswith("Shorten it, or move a part to a deeper page.")

@@ -20,7 +20,9 @@ def there(folder, tmp_path):
 
 def moved(folder, case, metric, by):
     """Move one metric, as another machine might have measured it."""
-    metrics(lambda m: m[case][metric].update(value=m[case][metric]["value"] + by))(folder)
+    metrics(lambda m: m[case][metric].update(value=m[case][metric]["value"] + by))(
+        folder
+    )
     seal(folder)
 
 

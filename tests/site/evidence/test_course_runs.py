@@ -17,12 +17,16 @@ def accepted(outputs):
     """Return a run as the build accepted it, with another version, start or backend."""
     manifest = read_manifest(page_outputs("l04/lab") / "cpu")
 
-    def run(version="1.4.5", started="2026-11-22T10:00", backend="cpu", recorded=False) -> PageRun:
+    def run(
+        version="1.4.5", started="2026-11-22T10:00", backend="cpu", recorded=False
+    ) -> PageRun:
         engine = manifest.predicate.engine.model_copy(update={"version": version})
         changed = {"engine": engine, "started": started}
         predicate = manifest.predicate.model_copy(update=changed)
         shown = manifest.model_copy(update={"predicate": predicate})
-        return PageRun("l04/lab", Path(), Status("verified", backend, "", shown), recorded)
+        return PageRun(
+            "l04/lab", Path(), Status("verified", backend, "", shown), recorded
+        )
 
     return run
 
@@ -35,7 +39,9 @@ def test_the_line_names_versions_and_dates_of_the_accepted_runs_of_this_build(ac
     assert measured_line([one, one, elsewhere]) == line
     assert measured_line([one, missing]) == f"{line} 1 of 2 runs were not accepted."
     assert measured_line([missing]) == "No run of this build was accepted."
-    assert executed_once([one, missing, one]) == "Each page was executed once, on a CPU."
+    assert (
+        executed_once([one, missing, one]) == "Each page was executed once, on a CPU."
+    )
     assert executed_once([elsewhere, missing]) == "No run of this build was accepted."
     line = "Measured on CPU with Genesis 1.3.3 and 1.4.5 from 2026-11-22 to 2026-11-24."
     assert measured_line([later, one]) == line

@@ -19,7 +19,10 @@ def test_the_same_bundle_gives_the_same_bytes_whenever_it_was_written(tmp_path):
     log.touch()
     log.chmod(0o600)
     assert ledger_data.archive(tmp_path) == before
-    assert zipfile.ZipFile(io.BytesIO(before)).namelist() == ["arrays/G1.npz", "log.txt"]
+    assert zipfile.ZipFile(io.BytesIO(before)).namelist() == [
+        "arrays/G1.npz",
+        "log.txt",
+    ]
     log.write_text("another log")
     assert ledger_data.archive(tmp_path) != before
 

@@ -22,10 +22,13 @@ ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
         ("model.links", "11", "from "),
         ("model.links episodes", "11 episodes", "from "),
         ("engine", project.engine_pin(), ""),
-        ("control_law:G1.distance_to_control_law N·m", r"\S+ N·m",
-         "found by the check control_law"),
+        (
+            "control_law:G1.distance_to_control_law N·m",
+            r"\S+ N·m",
+            "found by the check control_law",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_value_comes_with_unit_and_origin(outputs, experiment, name, text, source):
     found, origin = insert("l04/lab", name)
     assert re.fullmatch(text.format(experiment.metrics["G2"].overshoot), found)
@@ -38,7 +41,10 @@ def test_a_value_comes_with_unit_and_origin(outputs, experiment, name, text, sou
     [
         ("G2.overshot", r"no metric 'G2.overshot'. Known: .*G2\.overshoot"),
         ("overshoot", "no metric 'overshoot'. Known: "),
-        ("G2.overshoot episodes", "is in rad, so it does not count episodes. Valid: rad"),
+        (
+            "G2.overshoot episodes",
+            "is in rad, so it does not count episodes. Valid: rad",
+        ),
         ("control_law:x", "no finding 'control_law:x'. Known: .*control_law:G1"),
     ],
 )
@@ -49,7 +55,9 @@ def test_an_unknown_value_names_those_there_are(outputs, name, said):
 
 @pytest.mark.parametrize("spoiled", [None, b"", b"no pickle"])
 def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoiled):
-    monkeypatch.setattr(measured, "built_pages", lambda: BuiltPages(states=tmp_path / "states"))
+    monkeypatch.setattr(
+        measured, "built_pages", lambda: BuiltPages(states=tmp_path / "states")
+    )
     calls = []
     first = measured.stored("../l04/lab", lambda: calls.append(1) or "verified")
     (file,) = (path for path in tmp_path.rglob("*") if path.is_file())
@@ -68,15 +76,22 @@ def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoil
         ("stale", "x<y", "x&lt;y run: stale"),
     ],
 )
-def test_the_line_of_an_accepted_run_alone_has_its_engine_and_no_markup(state, backend, words):
+def test_the_line_of_an_accepted_run_alone_has_its_engine_and_no_markup(
+    state, backend, words
+):
     predicate = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
     status = Status(state, backend, "", SimpleNamespace(predicate=predicate))
-    assert status_line([status]) == f'<span class="status-word state-{state}">{words}</span>'
+    assert (
+        status_line([status])
+        == f'<span class="status-word state-{state}">{words}</span>'
+    )
 
 
 def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
     require_passed("l04/lab", "control_law")
-    with pytest.raises(LookupError, match=r"no check 'control_lav'\. Choices: .*control_law"):
+    with pytest.raises(
+        LookupError, match=r"no check 'control_lav'\. Choices: .*control_law"
+    ):
         require_passed("l04/lab", "control_lav")
     with pytest.raises(ValueError, match=r"manifest\.json is not in"):
         require_passed("l04/elsewhere", "control_law")

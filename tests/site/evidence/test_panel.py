@@ -28,16 +28,34 @@ from robo_genesis.site.evidence.ledger_data import PageRun
 
 FILMED = Replay(("G1",), "box", "box")
 SCRIPT = "<script>alert(1)</script>"
-ATTACKS = (SCRIPT, "![a](//a.org/x)", ":::{raw} html", "| a | **b** |", "&lt;b&gt; $x$ \\(x\\) `y`")
+ATTACKS = (
+    SCRIPT,
+    "![a](//a.org/x)",
+    ":::{raw} html",
+    "| a | **b** |",
+    "&lt;b&gt; $x$ \\(x\\) `y`",
+)
 PLAIN = {
-    "container", "paragraph", "strong", "literal", "literal_block", "table", "tgroup", "colspec",
-    "thead", "tbody", "row", "entry",
-}  # fmt: skip
+    "container",
+    "paragraph",
+    "strong",
+    "literal",
+    "literal_block",
+    "table",
+    "tgroup",
+    "colspec",
+    "thead",
+    "tbody",
+    "row",
+    "entry",
+}
 """The nodes of text that no parser read."""
 
 
 @pytest.mark.parametrize("attack", ATTACKS)
-def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(folder, tmp_path, attack):
+def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
+    folder, tmp_path, attack
+):
     fields = ("device_name", "torch_version", "hip_version", "cuda_version", "driver")
     part("backend", **dict.fromkeys(fields, attack))(folder)
     part("render", renderer=attack)(folder)
@@ -60,7 +78,9 @@ def write_shape(folder, tmp_path):
 def test_what_a_run_says_reaches_no_parser(tmp_path, record, monkeypatch):
     said, parse = [], Panel.parse_text_to_nodes
     monkeypatch.setattr(
-        Panel, "parse_text_to_nodes", lambda self, text: said.append(text) or parse(self, text)
+        Panel,
+        "parse_text_to_nodes",
+        lambda self, text: said.append(text) or parse(self, text),
     )
     folder = record().folder
     edit(folder, "arrays.json", lambda a: a["coords"].update(link=[SCRIPT, "b", "c"]))
@@ -109,10 +129,14 @@ def record(folder, tmp_path, built, courses_pages):
     return run
 
 
-def test_the_comparison_names_both_runs_and_all_else_one(folder, tmp_path, record, monkeypatch):
+def test_the_comparison_names_both_runs_and_all_else_one(
+    folder, tmp_path, record, monkeypatch
+):
     runs = accepted("l04/lab", folder), record("cuda")
     monkeypatch.setattr(provenance, "measured_pages", lambda book: {})
-    monkeypatch.setattr(provenance, "all_runs", lambda book: {run.key: run for run in runs})
+    monkeypatch.setattr(
+        provenance, "all_runs", lambda book: {run.key: run for run in runs}
+    )
     facts = {"docname": "page", "metadata": defaultdict(dict), "found_docs": ()}
     env = SimpleNamespace(srcdir=tmp_path / "book", **facts)
     document = new_document("page")
@@ -121,7 +145,9 @@ def test_the_comparison_names_both_runs_and_all_else_one(folder, tmp_path, recor
         image["uri"] = image["uri"].removeprefix("/")
     provenance.read_page(SimpleNamespace(env=env), document)
 
-    ours, theirs = (ledger_data.provenance("table", [of]).removeprefix("Measured ") for of in runs)
+    ours, theirs = (
+        ledger_data.provenance("table", [of]).removeprefix("Measured ") for of in runs
+    )
     lines = [n.astext() for n in document.findall(lambda n: "provenance" in classes(n))]
     alone, compared = f"Measured {theirs}", f"Measured {ours} and {theirs}"
     assert (ours[:9], theirs[:10]) == ("on cpu · ", "on cuda · ")
@@ -130,20 +156,29 @@ def test_the_comparison_names_both_runs_and_all_else_one(folder, tmp_path, recor
     found = [item.runs for item in env.metadata["page"][provenance.ITEMS]]
     assert found == [both[1:]] * 6 + [both] * 2
     run, badge, *_ = sphinx_ledger._of_runs(runs)
-    assert [link["refuri"] for link in run] == ["#run-l04-lab-cpu", "#run-l04-lab-cuda-recorded"]
+    assert [link["refuri"] for link in run] == [
+        "#run-l04-lab-cpu",
+        "#run-l04-lab-cuda-recorded",
+    ]
     assert [node.astext() for node in badge] == ["cpu-verified", "cuda-verified"]
 
 
 @pytest.mark.parametrize(
     ("actual", "facts", "axis"),
     [
-        ("amdgpu", {"HIP, CUDA": "7.1.25424, –", "renderer": "AMD Instinct (radeonsi)"},
-         "backend cpu → amdgpu"),
-        ("cuda", {"HIP, CUDA": "–, 13.0", "renderer": "NVIDIA H100/PCIe/SSE2"},
-         "backend cpu → cuda"),
+        (
+            "amdgpu",
+            {"HIP, CUDA": "7.1.25424, –", "renderer": "AMD Instinct (radeonsi)"},
+            "backend cpu → amdgpu",
+        ),
+        (
+            "cuda",
+            {"HIP, CUDA": "–, 13.0", "renderer": "NVIDIA H100/PCIe/SSE2"},
+            "backend cpu → cuda",
+        ),
         ("cpu", {"HIP, CUDA": "–, –", "renderer": "llvmpipe"}, "repeat"),
     ],
-)  # fmt: skip
+)
 def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared(
     folder, tmp_path, record, engine, experiment, monkeypatch, actual, facts, axis
 ):
@@ -155,7 +190,9 @@ def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared
     put(left, place)
     status = recorded_status(tmp_path / "book", "l04", actual)
     assert (status.badge, place.name) == (f"{actual}-verified", actual)
-    panel = Panel(tmp_path / "book").panel(PageRun("l04/lab", place, status, recorded=True))
+    panel = Panel(tmp_path / "book").panel(
+        PageRun("l04/lab", place, status, recorded=True)
+    )
     shown = dict(row for row in rows_of([panel]) if len(row) == 2)
     facts |= {"device": there.backend.device_name, "driver": drivers.get(actual, "–")}
     facts["backend requested, actual"] = f"{there.backend.requested}, {actual}"
@@ -166,7 +203,9 @@ def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared
 
 def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):
     panel = Panel(tmp_path / "book").panel(record())
-    (block,) = [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
+    (block,) = [
+        n for n in panel.findall(nodes.container) if "replay-block" in classes(n)
+    ]
     assert block["evidence_runs"] == ("l04/lab/amdgpu/recorded",)
     name = "replay-l04-lab-amdgpu-recorded"
     assert f'data-model="../replay/{name}.js"' in block[0].astext()

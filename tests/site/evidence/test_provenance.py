@@ -6,7 +6,15 @@ from docutils import nodes
 from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
 from small_book import draft_of, executed
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, paragraphs, raising
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    cell,
+    make_book,
+    notebook,
+    paragraphs,
+    raising,
+)
 
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.book import find_pages
@@ -37,15 +45,21 @@ def show_drawn(name):
     data = {"image/svg+xml": drawn(name).data}
     display(data, metadata={"robo_genesis": of}, raw=True)"""
 AS_MEASURED = (
-    cell(SHOW), cell("table('chosen')", INPUTS), cell("show('measured')"), cell("table('printed')"),
-    cell("show('one')\ntable('of both')"), cell("drawn('printed, too')", FIGURE),
+    cell(SHOW),
+    cell("table('chosen')", INPUTS),
+    cell("show('measured')"),
+    cell("table('printed')"),
+    cell("show('one')\ntable('of both')"),
+    cell("drawn('printed, too')", FIGURE),
     raising("print('2.5 mm')\n1 / 0", "ZeroDivisionError: division"),
     cell("show_drawn('measured, too')", FIGURE),
-)  # fmt: skip
+)
 AS_PRINTED = (
-    cell("table('chosen')", INPUTS), cell("table('read')"), cell("drawn('alone')", FIGURE),
+    cell("table('chosen')", INPUTS),
+    cell("table('read')"),
+    cell("drawn('alone')", FIGURE),
     paragraphs("| typed |\n| --- |\n| 7 |"),
-)  # fmt: skip
+)
 
 
 @pytest.fixture(scope="module")
@@ -55,12 +69,20 @@ def html(tmp_path_factory):
     (folder / "book" / "evidence").mkdir(parents=True)
     pages = {
         name: notebook(
-            cell(WRITE_BUNDLE.replace("lab", name)), cell(IMPORTS), *cells,
-            front=LAB_FRONT.replace("lab", name), title=title,
+            cell(WRITE_BUNDLE.replace("lab", name)),
+            cell(IMPORTS),
+            *cells,
+            front=LAB_FRONT.replace("lab", name),
+            title=title,
         )
-        for name, title, cells in (("lab", "A", AS_MEASURED), ("lecture", "B", AS_PRINTED))
-    }  # fmt: skip
-    book = make_book(folder, **pages, **{"evidence/ledger": "# Ledger\n\n```{ledger} items\n```\n"})
+        for name, title, cells in (
+            ("lab", "A", AS_MEASURED),
+            ("lecture", "B", AS_PRINTED),
+        )
+    }
+    book = make_book(
+        folder, **pages, **{"evidence/ledger": "# Ledger\n\n```{ledger} items\n```\n"}
+    )
     return draft_of(book, folder, executed(find_pages(book), folder)).html
 
 
@@ -81,7 +103,9 @@ def test_an_output_without_the_name_of_its_function_is_not_called_measured(html)
     assert lines == [OF_RUN, CHOSEN, *[OF_RUN] * 7]
     assert kinds(rows) == ["printed", "settings", "table", *["printed"] * 5, "figure"]
     text = page.select_one("[id^=printed]:has(.traceback)")
-    assert [line.get_text() for line in text.select(".stream ~ .provenance")] == [OF_RUN]
+    assert [line.get_text() for line in text.select(".stream ~ .provenance")] == [
+        OF_RUN
+    ]
     (row,) = (row for row in rows if row.a["href"].endswith(f"#{text['id']}"))
     assert "2.5 mm" in (html / "evidence" / row.select("td")[-1].a["href"]).read_text()
 
@@ -92,7 +116,12 @@ def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
     assert kinds(rows) == ["printed", "settings", "printed", "printed"]
     assert [row.select("td")[3].get_text() for row in rows][:2] == ["–", "no run"]
     anchors = [row.a["href"].split("#")[1] for row in rows]
-    assert [page.find(id=anchor).name for anchor in anchors] == ["div", "table", "table", "svg"]
+    assert [page.find(id=anchor).name for anchor in anchors] == [
+        "div",
+        "table",
+        "table",
+        "svg",
+    ]
 
 
 def read(text):
@@ -107,14 +136,26 @@ def found(document, book):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("<div\n  class='x evidence&#45;badge'>cpu-verified</div>", "the class evidence-badge"),
+        (
+            "<div\n  class='x evidence&#45;badge'>cpu-verified</div>",
+            "the class evidence-badge",
+        ),
         ("[amdgpu-verified]{.evidence-badge}", "the class evidence-badge"),
-        ("```{container} evidence-badge\namdgpu-verified\n```", "the class evidence-badge"),
-        ("```{raw} html\n<b class='evidence-badge'>x</b>\n```", "the class evidence-badge"),
+        (
+            "```{container} evidence-badge\namdgpu-verified\n```",
+            "the class evidence-badge",
+        ),
+        (
+            "```{raw} html\n<b class='evidence-badge'>x</b>\n```",
+            "the class evidence-badge",
+        ),
         ("[7 rad]{.measured}", "the class measured"),
         ("[7 rad]{.provenance}", "the class provenance"),
         ('<img src="a.svg">', "the page has <img> as raw HTML"),
-        ("![x](lessons/../evidence/l04/cpu/a.png) ![y](b.svg)", "Use the {evidence} directive"),
+        (
+            "![x](lessons/../evidence/l04/cpu/a.png) ![y](b.svg)",
+            "Use the {evidence} directive",
+        ),
     ],
 )
 def test_an_imitated_result_is_refused_however_it_is_written(text, said, tmp_path):

@@ -21,7 +21,9 @@ def runs() -> Runs:
         traces=dict.fromkeys(CASES, trace),
         links=("body",),
         channels=(Channel("height", "z", "m", 4, by_case),),
-        levels=(Level("target", "height", next(iter(palette.MARKS)), "", by_case, by_case),),
+        levels=(
+            Level("target", "height", next(iter(palette.MARKS)), "", by_case, by_case),
+        ),
         moves={case: f"**{case}**: the cube falls." for case in CASES},
     )
 
@@ -29,7 +31,13 @@ def runs() -> Runs:
 def test_runs_are_shown_by_their_words_everywhere():
     shown = labelled(runs(), "l03")
     (channel,), (level,) = shown.channels, shown.levels
-    for by_case in (shown.traces, channel.values, level.values, level.texts, shown.moves):
+    for by_case in (
+        shown.traces,
+        channel.values,
+        level.values,
+        level.texts,
+        shown.moves,
+    ):
         assert list(by_case) == WORDS
     assert shown.moves[WORDS[0]] == "**one step of 10 ms**: the cube falls."
 

@@ -14,7 +14,9 @@ transform="translate(12.345678 0.5) scale(0.015625)"/></svg>"""
 
 
 def inlined(folder, *names: str) -> BeautifulSoup:
-    images = (f'<img src="{name}" alt="Two &amp; more" id="i{name[0]}"/>' for name in names)
+    images = (
+        f'<img src="{name}" alt="Two &amp; more" id="i{name[0]}"/>' for name in names
+    )
     links = (f'<a class="image-reference" href="a.svg">{image}</a>' for image in images)
     page = BeautifulSoup(f"<article>{''.join(links)}</article>", "html.parser")
     inline_drawings(page, folder)
@@ -25,11 +27,22 @@ def test_a_drawing_is_an_element_with_variables_and_names_of_its_own(tmp_path):
     for name in ("a.svg", "b.svg"):
         (tmp_path / name).write_text(SVG)
     first, second = inlined(tmp_path, "a.svg", "b.svg").select("article > svg")
-    assert (first["aria-label"], first["role"], first["id"]) == ("Two & more", "img", "ia")
-    assert (first["width"], first["height"], first["data-file"]) == ("120", "80", "a.svg")
+    assert (first["aria-label"], first["role"], first["id"]) == (
+        "Two & more",
+        "img",
+        "ia",
+    )
+    assert (first["width"], first["height"], first["data-file"]) == (
+        "120",
+        "80",
+        "a.svg",
+    )
     assert first.path["style"] == "fill: var(--case-g1, #0072b2)"
     assert first.select_one("[stroke]")["stroke"] == "var(--figure-line, #7a7a7a)"
-    assert first.select_one("[stroke]")["transform"] == "translate(12.34 0.5) scale(0.015625)"
+    assert (
+        first.select_one("[stroke]")["transform"]
+        == "translate(12.34 0.5) scale(0.015625)"
+    )
     for number, drawn in enumerate((first, second)):
         own = f"drawing-{number}-m1"
         assert [tag["id"] for tag in drawn.select("[id]")] == [own]
@@ -53,7 +66,11 @@ WORD, LONG = "twelve chars", "unbreakable_" * 3
     [
         (["a", "b", "c"], 1, False),
         ([WORD * 9, WORD * 9, WORD], 2, False),  # its words break into lines
-        (["<code>a b c d e f g h i j k l m n o p q r s t u v w x</code>", LONG], 1, True),
+        (
+            ["<code>a b c d e f g h i j k l m n o p q r s t u v w x</code>", LONG],
+            1,
+            True,
+        ),
         (["a"] * 13, 3, True),
         (["a"] * 13, 41, False),  # a list of samples
         (['<p class="case-mark">G1</p>', WORD * 2, WORD], 2, False),

@@ -34,10 +34,14 @@ PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
 
 def block_of(tmp_path, folder, data, *name, **experiment) -> nodes.Node:
     recorded = SimpleNamespace(
-        lesson="l99", folder=folder, experiment=SimpleNamespace(**experiment),
+        lesson="l99",
+        folder=folder,
+        experiment=SimpleNamespace(**experiment),
         explored=lambda *_: data,
-    )  # fmt: skip
-    return explorer.explorer_block(Panel(tmp_path / "book"), "l99/answers/cpu", recorded, *name)
+    )
+    return explorer.explorer_block(
+        Panel(tmp_path / "book"), "l99/answers/cpu", recorded, *name
+    )
 
 
 def texts(page, selector: str) -> list[str]:
@@ -47,28 +51,44 @@ def texts(page, selector: str) -> list[str]:
 def cell(k: int, place: str) -> dict:
     state = "refused" if k == 1 else "accepted"
     return {
-        "answer": k, "name": f"{place}, {state}", "state": state, "tag": "×" * (k == 1),
-        "opens": k != 1, "sentence": f"Answer {k}, {state}.", "numbers": [10.0 * k, 1 / k],
-        "values": [f"{10 * k}", f"{1 / k:.3f}"], "texts": [f"{10 * k}", f"{1 / k:.2f}"],
-    }  # fmt: skip
+        "answer": k,
+        "name": f"{place}, {state}",
+        "state": state,
+        "tag": "×" * (k == 1),
+        "opens": k != 1,
+        "sentence": f"Answer {k}, {state}.",
+        "numbers": [10.0 * k, 1 / k],
+        "values": [f"{10 * k}", f"{1 / k:.3f}"],
+        "texts": [f"{10 * k}", f"{1 / k:.2f}"],
+    }
 
 
 def map_of(run: str, answers: list[list[int]]) -> dict:
     rows = [
-        {"label": f"{z}", "cells": [cell(k, f"z {z}, x 0.{x + 1}") for x, k in enumerate(row)]}
+        {
+            "label": f"{z}",
+            "cells": [cell(k, f"z {z}, x 0.{x + 1}") for x, k in enumerate(row)],
+        }
         for z, row in enumerate(answers)
     ]
-    return {"run": run, "label": f"Plane {run}", "caption": f"Plane {run}. x to the right.",
-            "rows": rows, "columns": ["0.1", "0.2", "0.3"]}  # fmt: skip
+    return {
+        "run": run,
+        "label": f"Plane {run}",
+        "caption": f"Plane {run}. x to the right.",
+        "rows": rows,
+        "columns": ["0.1", "0.2", "0.3"],
+    }
 
 
 def maps() -> dict:
     return {
-        "choices": ("Map", "Cells show"), "columns": ["left [mm]", "margin [rad]"], "dt": 0.01,
+        "choices": ("Map", "Cells show"),
+        "columns": ["left [mm]", "margin [rad]"],
+        "dt": 0.01,
         "maps": [map_of("upright", [[1, 2, 3], [4, 5]]), map_of("level", [[7, 8, 9]])],
         "measures": [{"label": "left [mm]"}, {"label": "margin [rad]"}],
         "notes": {"×": "×: refused."},
-    }  # fmt: skip
+    }
 
 
 def assigned(height: float) -> Trace:
@@ -77,22 +97,32 @@ def assigned(height: float) -> Trace:
     q, one, step = np.zeros((41, 1)), np.zeros(1), np.zeros((40, 1))
     rest = dict.fromkeys(("qd", "target", "control_force", "internal_force"), step)
     start = dict.fromkeys(("start_control_force", "start_qd", "effort_limit"), one)
-    return Trace(t=body.t, q=q, link_pos=body.link_pos, link_quat=body.link_quat, **rest, **start)
+    return Trace(
+        t=body.t, q=q, link_pos=body.link_pos, link_quat=body.link_quat, **rest, **start
+    )
 
 
 @pytest.fixture
 def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
     visual_shape.write_shape(tmp_path, [box("box")])
-    monkeypatch.setattr(explorer, "find_replay", lambda lesson: Replay((), "box", "box"))
-    monkeypatch.setattr(explorer.replays, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
-    rows = {run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
-            for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))}  # fmt: skip
+    monkeypatch.setattr(
+        explorer, "find_replay", lambda lesson: Replay((), "box", "box")
+    )
+    monkeypatch.setattr(
+        explorer.replays, "shape_file", lambda *_: tmp_path / visual_shape.FILE
+    )
+    rows = {
+        run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
+        for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))
+    }
     data = maps() | {"postures": {"upright": TARGETS, "level": TARGETS}, "tables": rows}
     traces = {"upright": assigned(2.0), "level": assigned(1.0)}
     return block_of(tmp_path, folder, data, "reach", traces=traces, links=LINKS)
 
 
-def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(postures, tmp_path):
+def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(
+    postures, tmp_path
+):
     assert postures["evidence_runs"] == ("l99/answers/cpu",)
     rows = rows_of([postures])
     assert (rows[2], len(rows)) == (["2", "20"], 2 + 5 + 3)
@@ -100,17 +130,32 @@ def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(postures, t
     model = pygltflib.GLTF2.load_binary(file)
     assert [animation.name for animation in model.animations] == ["upright", "level"]
     assert {"box", CROSS} <= {node.name for node in model.nodes}
-    assert np.vstack([TARGETS[:1], TARGETS]).astype(np.float32).tobytes() in model.binary_blob()
+    assert (
+        np.vstack([TARGETS[:1], TARGETS]).astype(np.float32).tobytes()
+        in model.binary_blob()
+    )
 
 
 @pytest.mark.browser
-def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures, open_block):
+def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(
+    postures, open_block
+):
     page = open_block(postures, **PHONE)
     assert texts(page, "output") == ["Answer 2, accepted."]  # the first that is
     page.locator("[aria-selected=true]").focus()
-    for key in ("ArrowDown", "ArrowRight", "ArrowUp", "ArrowLeft", "ArrowLeft", "ArrowDown"):
+    for key in (
+        "ArrowDown",
+        "ArrowRight",
+        "ArrowUp",
+        "ArrowLeft",
+        "ArrowLeft",
+        "ArrowDown",
+    ):
         page.keyboard.press(key)  # right of 5 and left of 1 is no cell
-    assert (texts(page, "output"), texts(page, "dd")) == (["Answer 4, accepted."], ["40", "0.250"])
+    assert (texts(page, "output"), texts(page, "dd")) == (
+        ["Answer 4, accepted."],
+        ["40", "0.250"],
+    )
     assert page.evaluate("document.activeElement.ariaSelected") == "true"
     assert page.locator(".map [tabindex='0']").count() == 1
     page.get_by_role("gridcell", name="× 10 left [mm]: z 0, x 0.1, refused").tap()
@@ -118,7 +163,9 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures,
     page.get_by_label("Cells show").select_option("margin [rad]")
     assert page.get_by_role("grid").get_attribute("aria-label") is None
     (caption,) = texts(page, "caption")
-    assert caption == "Plane upright. x to the right. Numbers: margin [rad]. ×: refused."
+    assert (
+        caption == "Plane upright. x to the right. Numbers: margin [rad]. ×: refused."
+    )
     page.get_by_label("Map").select_option("Plane level")
     assert texts(page, "output") == ["Answer 7, accepted."]  # the same place
     assert page.locator("[role=gridcell]").count() == 3
@@ -137,12 +184,23 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures,
 def test_the_last_run_stays_beside_the_chosen_one(open_block, folder, tmp_path):
     """The explorer of L04 tests questions and curves."""
     axis = {"low": -1, "high": 30, "ticks": [], "levels": []}
-    drawn = {"key": "q", "name": "Position", "title": "q", "unit": 1, "zero": 0, "first": 0}
-    data = maps() | {"curves": {"of": "joint4", "dt": 0.1, "until": 0.3, "drawn": [drawn]}}
+    drawn = {
+        "key": "q",
+        "name": "Position",
+        "title": "q",
+        "unit": 1,
+        "zero": 0,
+        "first": 0,
+    }
+    data = maps() | {
+        "curves": {"of": "joint4", "dt": 0.1, "until": 0.3, "drawn": [drawn]}
+    }
     for one in data["maps"]:
         one |= {"setting": f"height {one['run']}", "axes": {"q": axis}}
         for row in one["rows"]:
-            row["cells"] = [c | {"q": [0, c["answer"], 2 * c["answer"]]} for c in row["cells"]]
+            row["cells"] = [
+                c | {"q": [0, c["answer"], 2 * c["answer"]]} for c in row["cells"]
+            ]
     words = {"lower": "earlier", "higher": "later", "margin": 0.0, "within": "5 ms"}
     data["measures"][0] |= {"noun": "time", "column": 0} | words
     page = open_block(block_of(tmp_path, folder, data), **PHONE)
@@ -172,12 +230,16 @@ def picture(tmp_path, folder) -> nodes.Node:
     for name, frame in view_record.frames("world", view).items():
         write_picture(tmp_path / "frames" / f"{name}.png", frame, "run")
     data = {
-        "size": CAMERA_RES, "K": K.tolist(), "unit": view_record.DEPTH_UNIT,
+        "size": CAMERA_RES,
+        "K": K.tolist(),
+        "unit": view_record.DEPTH_UNIT,
         "pose": (TRANSFORM @ np.diag([1.0, -1, -1, 1]))[:3].tolist(),
         "names": {0: "nothing", 1: "plane", 2: "ball", 3: "hand"},
-        "planes": {1: 0.0}, "spheres": {2: BALL}, "columns": ["read"] * 6,
+        "planes": {1: 0.0},
+        "spheres": {2: BALL},
+        "columns": ["read"] * 6,
         "picture": {"name": "world", "alt": "A ball.", "caption": "A picture."},
-    }  # fmt: skip
+    }
     return block_of(tmp_path, tmp_path, data, "world")
 
 
@@ -198,7 +260,9 @@ def test_a_pixel_has_its_recorded_depth_point_and_closed_form(picture, open_bloc
     closed = sphere_depth(start, directions, np.array(BALL[:3]), BALL[3])[v, u]
     assert float(expected.split()[0]) == pytest.approx(closed, abs=6e-5)
     assert float(depth.split()[0]) == pytest.approx(closed + 1e-3, abs=7e-5)
-    found = [float(part) for part in point.replace("−", "-").removesuffix(" m").split(", ")]
+    found = [
+        float(part) for part in point.replace("−", "-").removesuffix(" m").split(", ")
+    ]
     assert found == pytest.approx(start + (closed + 1e-3) * directions[v, u], abs=6e-5)
     for at, says in (
         ((100, 400), ["plane", "2.0000 m", "2.0000 m", "0.00 mm"]),
@@ -212,7 +276,10 @@ def test_a_pixel_has_its_recorded_depth_point_and_closed_form(picture, open_bloc
     stage = page.locator(".stage").bounding_box()
     page.mouse.click(stage["x"] + stage["width"] / 4, stage["y"] + stage["height"] / 2)
     column, row = (int(part.split()[-1]) for part in texts(page, "dd")[0].split(","))
-    assert (column, row) == (pytest.approx(width / 4, abs=3), pytest.approx(height / 2, abs=3))
+    assert (column, row) == (
+        pytest.approx(width / 4, abs=3),
+        pytest.approx(height / 2, abs=3),
+    )
     page.get_by_label("Column").press("ArrowRight")
     spoken = page.get_by_label("Column").get_attribute("aria-valuetext")
     assert spoken == f"column {column + 1}, row {row}: plane, depth 2.0000 m"

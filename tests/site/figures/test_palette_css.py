@@ -30,17 +30,28 @@ TEXT = "The baseline, then KP is doubled (G1 → G2): G2's overshoot, not G22's 
         (nodes.paragraph("", TEXT), ["G1", "G2", "G2"]),
         (nodes.paragraph("", "", nodes.strong("", "G3")), ["G3"]),
         (nodes.figure("", nodes.caption("", "joint4 in G1")), ["G1"]),
-        (nodes.paragraph("", "", nodes.literal("", "G1"), nodes.reference("", "G1")), []),
+        (
+            nodes.paragraph("", "", nodes.literal("", "G1"), nodes.reference("", "G1")),
+            [],
+        ),
         (nodes.section("", nodes.title("", "G1, G2, G3: one factor at a time")), []),
     ],
 )
 def test_names_in_running_text_are_marked_and_the_text_stays(node, names):
     text = node.astext()
-    assert marked(node) == (text, [(n, ["case-name", f"case-{n.lower()}"]) for n in names])
+    assert marked(node) == (
+        text,
+        [(n, ["case-name", f"case-{n.lower()}"]) for n in names],
+    )
 
 
 def test_a_cell_that_is_a_name_or_its_words_gets_the_line_instead():
-    cells = {"G1": "case-g1", "baseline": "case-baseline", "after G2": "", "KP doubled": "case-g1"}
+    cells = {
+        "G1": "case-g1",
+        "baseline": "case-baseline",
+        "after G2": "",
+        "KP doubled": "case-g1",
+    }
     paragraphs = [nodes.paragraph("", text) for text in cells]
     _, found = marked(*(nodes.entry("", paragraph) for paragraph in paragraphs))
     marks = [["case-mark", name] if name else [] for name in cells.values()]

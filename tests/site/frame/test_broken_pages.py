@@ -45,7 +45,9 @@ OTHERS = {
         "the picture innocent.svg lies below evidence/",
     ],
     "free": ["a cell shows a table, but the page declares no bundle"],
-    "glossary": [f"glossary_forms.yml names '{n}', which is not in th" for n in ("gain", "force")],
+    "glossary": [
+        f"glossary_forms.yml names '{n}', which is not in th" for n in ("gain", "force")
+    ],
 }
 """What is said of the other pages."""
 
@@ -86,7 +88,9 @@ def test_each_mistake_in_a_text_is_shown_with_page_and_line(report):
         line += 2 + text.count("\n")
 
 
-@pytest.mark.parametrize(("page", "said"), [(p, s) for p, all_ in OTHERS.items() for s in all_])
+@pytest.mark.parametrize(
+    ("page", "said"), [(p, s) for p, all_ in OTHERS.items() for s in all_]
+)
 def test_each_mistake_is_shown_once_with_its_page(report, page, said):
     lines = [line for line in report.splitlines() if said in line]
     assert len(lines) == 1

@@ -55,7 +55,9 @@ def test_each_page_names_its_own_address_and_the_sitemap_lists_pages_alone(html)
     found = {
         name: link["href"]
         for name in names
-        for link in parsed(html, name.removesuffix(".html")).select('link[rel="canonical"]')
+        for link in parsed(html, name.removesuffix(".html")).select(
+            'link[rel="canonical"]'
+        )
     }
     assert {"index.html", "deep/page.html"} <= {*found}
     assert found == {name: ADDRESS + name for name in found}
@@ -66,7 +68,9 @@ def test_each_page_names_its_own_address_and_the_sitemap_lists_pages_alone(html)
 
 def test_a_link_to_a_page_shows_a_card(html):
     page = parsed(html, "deep/page")
-    tags = {tag["property"]: tag["content"] for tag in page.select('meta[property^="og:"]')}
+    tags = {
+        tag["property"]: tag["content"] for tag in page.select('meta[property^="og:"]')
+    }
     assert (tags["og:title"], tags["og:url"]) == ("A page", f"{ADDRESS}deep/page.html")
     assert "joint4" in tags["og:description"]
     card = Image.open(html / tags["og:image"].removeprefix(ADDRESS))
@@ -75,9 +79,15 @@ def test_a_link_to_a_page_shows_a_card(html):
 
 def test_links_of_the_404_page_begin_at_the_root_and_the_site_passes_its_checks(html):
     page = parsed(html, "404")
-    inside = [tag["href"] for tag in page.select("a[href], link[href]") if tag["href"][0] != "#"]
+    inside = [
+        tag["href"]
+        for tag in page.select("a[href], link[href]")
+        if tag["href"][0] != "#"
+    ]
     assert len(inside) > 5
-    assert [href for href in inside if not href.startswith(("/robot/course/", ADDRESS))] == []
+    assert [
+        href for href in inside if not href.startswith(("/robot/course/", ADDRESS))
+    ] == []
     checks = run_checks(Site(html, "/robot/course/"))
     assert [line for check in checks for line in check.problems] == []
 
@@ -89,14 +99,22 @@ def test_the_licence_is_a_file_of_the_site(html):
 def leaks(html: Path, text: str) -> set[str]:
     """Return the files that contain a text, as code or highlighted."""
     marked = re.compile(r"(<[^>]*>|\s)*".join(map(re.escape, text.split())))
-    files = (path for path in html.rglob("*") if path.suffix in {".html", ".js", ".md", ".txt"})
-    return {path.name for path in files if marked.search(path.read_text("utf8", "ignore"))}
+    files = (
+        path
+        for path in html.rglob("*")
+        if path.suffix in {".html", ".js", ".md", ".txt"}
+    )
+    return {
+        path.name for path in files if marked.search(path.read_text("utf8", "ignore"))
+    }
 
 
 def test_no_file_has_a_solution_or_an_answer(html, tmp_path):
     assert leaks(html, PUBLIC) == {"solved.html"}  # nor is the source published
     assert leaks(html, SECRET) == set()
     said = [mark.get_text() for mark in parsed(html, "solved").select("article p > em")]
-    assert said == ["The solution is left out on this site; the outputs are those of its run."]
+    assert said == [
+        "The solution is left out on this site; the outputs are those of its run."
+    ]
     shown = rendered(tmp_path)
     assert {"solved.html", "solved.md"} <= leaks(shown, SECRET)

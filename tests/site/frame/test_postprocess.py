@@ -22,11 +22,16 @@ def page(tmp_path, body: str, head: str = "") -> BeautifulSoup:
     return BeautifulSoup(finish_page(html, tmp_path), "html.parser")
 
 
-EXPLORERS = [("<p>Text</p>", []), ('<div class="explorer"></div>', [("explorer.js", True, None)])]
+EXPLORERS = [
+    ("<p>Text</p>", []),
+    ('<div class="explorer"></div>', [("explorer.js", True, None)]),
+]
 
 
 @pytest.mark.parametrize(("body", "explorer"), EXPLORERS)
-def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path, body, explorer):
+def test_script_files_wait_and_what_needs_them_waits_behind_them(
+    tmp_path, body, explorer
+):
     scripts = page(tmp_path, body, HEAD).select("script")
     how = [(s.get("src"), s.has_attr("defer"), s.get("type")) for s in scripts]
     assert how == [
@@ -48,7 +53,9 @@ def test_light_or_dark_is_decided_by_the_script_in_the_head(tmp_path):
     assert second == "1"
 
 
-@pytest.mark.parametrize(("given", "anchor"), [("", "page-title"), (" id='index'", "index")])
+@pytest.mark.parametrize(
+    ("given", "anchor"), [("", "page-title"), (" id='index'", "index")]
+)
 def test_a_page_is_first_shown_with_its_title(tmp_path, given, anchor):
     found = page(tmp_path, f"<article><h1{given}>Title</h1></article>")
     (link,) = found.select("head > link[rel=expect][blocking=render]")
@@ -59,7 +66,9 @@ def test_images_get_their_size_and_wait_until_they_are_in_sight(tmp_path):
     Image.new("RGB", (30, 20)).save(tmp_path / "a b.png")
     frame = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 6"><image/></svg>'
     (tmp_path / "x.svg").write_text(frame)
-    body = '<article><img src="a%20b.png"/><img src="x.svg"/><img src="x.svg" width="9"/>'
+    body = (
+        '<article><img src="a%20b.png"/><img src="x.svg"/><img src="x.svg" width="9"/>'
+    )
     images = page(tmp_path, body).select("img")
     sizes = [(i["width"], i.get("height"), i["loading"]) for i in images]
     assert sizes == [("30", "20", "lazy"), ("9", "6", "lazy"), ("9", None, "lazy")]
@@ -78,7 +87,9 @@ def test_the_size_of_a_drawing_is_read(tmp_path, attributes, size):
     file = tmp_path / "x.svg"
     file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}><g/></svg>')
     if size is None:
-        with pytest.raises(ValueError, match=r"x\.svg states no size\. Give its root element a vi"):
+        with pytest.raises(
+            ValueError, match=r"x\.svg states no size\. Give its root element a vi"
+        ):
             drawings.image_size(file)
     else:
         assert drawings.image_size(file) == size
@@ -101,11 +112,17 @@ def test_controls_are_named_by_what_they_show_and_the_sidebar_is_a_landmark(tmp_
 
 def test_markup_outside_of_what_is_mended_comes_through(tmp_path):
     body = "<pre>\n  two\n\n lines &lt; three</pre><math><mi>x</mi></math><p>a<br/>b — c</p>"
-    assert body in finish_page(f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path)
+    assert body in finish_page(
+        f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path
+    )
 
 
 def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):
-    gone = ["_static/scripts/a.js.map", "_static/scripts/fontawesome.js", "_static/locales/de/x.mo"]
+    gone = [
+        "_static/scripts/a.js.map",
+        "_static/scripts/fontawesome.js",
+        "_static/locales/de/x.mo",
+    ]
     kept = ["_static/scripts/a.js", "index.html", "_static/course.css"]
     for name in gone + kept:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

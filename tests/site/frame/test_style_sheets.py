@@ -20,15 +20,24 @@ def test_the_joined_sheet_keeps_order_addresses_and_used_rules(tmp_path):
     (tmp_path / THEME).write_text(SHEET + ".used { src: url(../vendor/a.woff2) }")
     (tmp_path / FIRST).write_text(".used { background: url('file.png') url(data:x) }")
     (tmp_path / OWN).write_text(".unused { color: blue }")
-    (tmp_path / "_static/menu.js").write_text('menu.classList.add("added-by-script", "show");')
+    (tmp_path / "_static/menu.js").write_text(
+        'menu.classList.add("added-by-script", "show");'
+    )
     (tmp_path / "deep").mkdir()
-    (tmp_path / "deep/page.html").write_text('<p class="other used">unused</p><b id="by-id"></b>')
+    (tmp_path / "deep/page.html").write_text(
+        '<p class="other used">unused</p><b id="by-id"></b>'
+    )
     style_sheets.join_sheets(tmp_path)
     joined = (tmp_path / style_sheets.JOINED).read_text()
     theme, own = joined.split(".unused { color: blue }")
     assert own == ""
     assert "unused" not in theme
-    for kept in (".used > a", "#by-id", ".added-by-script.show", "details[open] > summary"):
+    for kept in (
+        ".used > a",
+        "#by-id",
+        ".added-by-script.show",
+        "details[open] > summary",
+    ):
         assert f"{kept} {{ color: red }}" in theme
     assert joined.index("url('../file.png')") < joined.index("url(../vendor/a.woff2)")
     assert "url(data:x)" in joined
@@ -41,5 +50,6 @@ def test_a_page_has_one_link_and_keeps_the_sheets_that_are_not_joined():
     style_sheets.link_joined(page)
     found = [link["href"] for link in page.select("link")]
     assert [address.partition("?")[0] for address in found] == [
-        f"../{style_sheets.JOINED}", "../_static/math.css",
-    ]  # fmt: skip
+        f"../{style_sheets.JOINED}",
+        "../_static/math.css",
+    ]

@@ -36,7 +36,10 @@ def test_the_controls_name_parts_and_levels_and_have_the_script_s_data(joint):
     root = BeautifulSoup(markup(joint), "html.parser").div
     slider = root.select_one("input[type=range]")
     assert root.legend.get_text() == "Run of joint4"
-    assert root.select_one("[role=status]").get_text() == "Play loads the robot in 3D: 560 kB."
+    assert (
+        root.select_one("[role=status]").get_text()
+        == "Play loads the robot in 3D: 560 kB."
+    )
     picture = "The robot at the start of G1, drawn from the recorded poses."
     assert controls.alt(joint) == picture
     assert controls.caption(joint, AROUND) == (
@@ -49,11 +52,16 @@ def test_the_controls_name_parts_and_levels_and_have_the_script_s_data(joint):
     assert root.select_one(f"label[for={slider['id']}]").get_text() == "Time"
     target, limit = json.loads(root.select_one("input[type=radio]")["data-levels"])
     assert target == {
-        "channel": "position", "mark": "target", "values": [-1.75], "text": "−1.7500 rad",
-    }  # fmt: skip
+        "channel": "position",
+        "mark": "target",
+        "values": [-1.75],
+        "text": "−1.7500 rad",
+    }
     assert (limit["channel"], limit["values"]) == ("control force", [-87, 87])
     legend = root.select_one(".legend").get_text()
-    assert "Dotted: the target. Short dashes, at the edges of the control force" in legend
+    assert (
+        "Dotted: the target. Short dashes, at the edges of the control force" in legend
+    )
 
 
 def test_a_joint_s_motion_ends_with_its_quality(joint):
@@ -89,9 +97,14 @@ def test_each_package_in_the_viewer_is_named_with_its_licence_beside_it(tmp_path
 
 
 def test_the_notice_says_whose_each_model_is(tmp_path):
-    for name, credit in (("replay-arm", "© Somebody, Apache-2.0"), ("replay-box", None)):
+    for name, credit in (
+        ("replay-arm", "© Somebody, Apache-2.0"),
+        ("replay-box", None),
+    ):
         asset = gltf.Asset(version="2.0", copyright=credit)
-        (tmp_path / f"{name}.glb").write_bytes(b"".join(gltf.GLTF2(asset=asset).save_to_bytes()))
+        (tmp_path / f"{name}.glb").write_bytes(
+            b"".join(gltf.GLTF2(asset=asset).save_to_bytes())
+        )
     assert list(viewer.model_credits(tmp_path)) == [
         "The model replay-arm.glb, and the same in replay-arm.js: © Somebody, Apache-2.0.\n"
     ]

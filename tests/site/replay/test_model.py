@@ -41,8 +41,10 @@ def turning(traces):
     quat[..., 0], quat[..., 3] = np.cos(angle)[:, None], np.sin(angle)[:, None]
     quat[60:, 1] *= -1
     return {
-        "G1": replace(traces["G1"], link_quat=quat), "G2": traces["G2"], "G3": traces["G3"]
-    }  # fmt: skip
+        "G1": replace(traces["G1"], link_quat=quat),
+        "G2": traces["G2"],
+        "G3": traces["G3"],
+    }
 
 
 POSE = translation_matrix([1, 2, 3]) @ rotation_matrix(0.5, [1, 0, 0])
@@ -67,7 +69,11 @@ def model(glb) -> pygltflib.GLTF2:
 
 def moved(model):
     """The names of the nodes that animations move."""
-    return {model.nodes[c.target.node].name for one in model.animations for c in one.channels}
+    return {
+        model.nodes[c.target.node].name
+        for one in model.animations
+        for c in one.channels
+    }
 
 
 def values(model, accessor):
@@ -83,9 +89,10 @@ def keys(model, case, link, path):
     """Return (times, values) of one channel of the animation of a case."""
     animation = next(a for a in model.animations if a.name == case)
     channel = next(
-        c for c in animation.channels
+        c
+        for c in animation.channels
         if model.nodes[c.target.node].name == link and c.target.path == path
-    )  # fmt: skip
+    )
     sampler = animation.samplers[channel.sampler]
     assert sampler.interpolation == "LINEAR"
     return values(model, sampler.input)[:, 0], values(model, sampler.output)
@@ -96,10 +103,14 @@ def test_the_validator_finds_nothing(glb, tmp_path):
     assert found["issues"]["messages"] == []
     assert found["info"]["animationCount"] == 3
     assert found["info"]["totalTriangleCount"] > 0
-    assert report(glb.replace(b'"VEC3"', b'"VEC2"'), tmp_path)["issues"]["numErrors"] > 0
+    assert (
+        report(glb.replace(b'"VEC3"', b'"VEC2"'), tmp_path)["issues"]["numErrors"] > 0
+    )
 
 
-def test_each_key_is_a_sample_and_a_sign_flip_turns_nothing_the_long_way(model, turning):
+def test_each_key_is_a_sample_and_a_sign_flip_turns_nothing_the_long_way(
+    model, turning
+):
     flipped = turning["G1"].link_quat[:, 1]
     assert (flipped[1:] * flipped[:-1]).sum(axis=1).min() < 0
     for (case, trace), (k, link) in product(turning.items(), enumerate(LINKS)):
@@ -150,7 +161,9 @@ def body(name, *geoms):
     """One link of an entity of the engine; a geometry is (mesh, position, quaternion)."""
     vgeoms = [
         SimpleNamespace(
-            get_trimesh=lambda mesh=mesh: mesh, init_pos=np.array(pos), init_quat=np.array(quat)
+            get_trimesh=lambda mesh=mesh: mesh,
+            init_pos=np.array(pos),
+            init_quat=np.array(quat),
         )
         for mesh, pos, quat in geoms
     ]
@@ -159,7 +172,9 @@ def body(name, *geoms):
 
 def test_meshes_are_placed_in_their_link_and_joined_by_colour():
     red, blue = (
-        trimesh.Trimesh([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2]], vertex_colors=rgb)
+        trimesh.Trimesh(
+            [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2]], vertex_colors=rgb
+        )
         for rgb in ([255, 0, 0, 255], [0, 0, 255, 255])
     )
     upright, half = [1.0, 0, 0, 0], 0.5**0.5
@@ -168,7 +183,9 @@ def test_meshes_are_placed_in_their_link_and_joined_by_colour():
     first, second = visual_shape.read_shape(arm)
     assert (first.rgb, second.rgb) == ((255, 0, 0), (0, 0, 255))
     assert first.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
-    assert first.vertices[3:] == pytest.approx(np.array([[0, 1, 5], [-1, 0, 5], [0, 0, 6]]))
+    assert first.vertices[3:] == pytest.approx(
+        np.array([[0, 1, 5], [-1, 0, 5], [0, 0, 6]])
+    )
 
 
 def test_links_of_a_body_can_have_other_names():
@@ -196,8 +213,12 @@ def test_copies_of_links_stand_translucent_at_their_target(model):
     assert pytest.approx(POSE) == np.reshape(node["target_hand"].matrix, (4, 4)).T
     assert [model.nodes[k].name for k in node["target"].children] == ["target_hand"]
     assert model.nodes.index(node["target"]) in model.nodes[0].children
-    own, copy = (model.meshes[node[name].mesh].primitives[0] for name in ("hand", "target_hand"))
-    assert vars(copy.attributes) == vars(own.attributes)  # the same vertices, stored once
+    own, copy = (
+        model.meshes[node[name].mesh].primitives[0] for name in ("hand", "target_hand")
+    )
+    assert vars(copy.attributes) == vars(
+        own.attributes
+    )  # the same vertices, stored once
     opaque, clear = (model.materials[one.material] for one in (own, copy))
     assert (opaque.alphaMode, clear.alphaMode) == ("OPAQUE", "BLEND")
     assert clear.pbrMetallicRoughness.baseColorFactor[3] == replay_model.GHOST[3] < 1

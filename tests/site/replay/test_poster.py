@@ -18,12 +18,16 @@ CAMERA = Camera(np.array([0.0, 0.5, 0.0]), 3.0)
 
 def drawn(*parts, target=None, camera=CAMERA):
     """Return the picture of two links, at the origin and half a metre above, as (h, w, 3)."""
-    scenery = Scenery(parts, camera, target=target or {}, ground=-9.0)  # no shadow is in sight
+    scenery = Scenery(
+        parts, camera, target=target or {}, ground=-9.0
+    )  # no shadow is in sight
     glb = model.glb(scenery, ("stand", "box"), {"run": falling(0.5)})
     with Image.open(BytesIO(poster.picture(glb, camera))) as image:
         assert (image.format, image.mode) == ("WEBP", "RGBA")
         behind = Image.new("RGBA", image.size, (*GROUND.tolist(), 255))
-        return np.asarray(Image.alpha_composite(behind, image).convert("RGB")).astype(int)
+        return np.asarray(Image.alpha_composite(behind, image).convert("RGB")).astype(
+            int
+        )
 
 
 def middle(image):
@@ -59,4 +63,6 @@ def test_the_copy_at_the_target_is_translucent():
     rows = np.nonzero(np.abs(above - alone).max(axis=2) > 40)[0]
     shade = above[(rows.min() + rows.max()) // 2, poster.WIDTH // 2]
     colour, opacity = 0.92 * np.array(model.GHOST[:3]), model.GHOST[3]
-    assert shade.tolist() == pytest.approx(opacity * colour + (1 - opacity) * GROUND, abs=10)
+    assert shade.tolist() == pytest.approx(
+        opacity * colour + (1 - opacity) * GROUND, abs=10
+    )

@@ -1,7 +1,7 @@
 """The replay in a real browser: it shows the record, by keyboard and from disk.
 
-A page with two falling boxes shows what every replay does; the built lecture has a robot.
-"""
+A page with two falling boxes shows what every replay does; the built lecture has a
+robot."""
 
 import base64
 import gzip
@@ -52,7 +52,9 @@ def dropped(folder, monkeypatch, tmp_path, built):
         sys.modules, f"{registry.__name__}.{LESSON}", SimpleNamespace(LESSON=lesson)
     )
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
-    visual_shape.write_shape(tmp_path / LESSON / "lecture", [box("box"), visual_shape.floor(1.0)])
+    visual_shape.write_shape(
+        tmp_path / LESSON / "lecture", [box("box"), visual_shape.floor(1.0)]
+    )
     return folder
 
 
@@ -73,13 +75,24 @@ def test_pictures_draw_what_the_bundle_holds(dropped, tmp_path):
     assert first != second
 
 
-def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
+def test_the_block_plays_the_record_and_names_no_other_s_model(
+    block, dropped, tmp_path
+):
     assert block["evidence_runs"] == (KEY,)
     rows = rows_of([block])
     heads = ["z [m]", "ż [m/s]"]
-    assert rows[0] == ["t [s]", *(f"{case} {head}" for case in ("high", "low") for head in heads)]
+    assert rows[0] == [
+        "t [s]",
+        *(f"{case} {head}" for case in ("high", "low") for head in heads),
+    ]
     assert len(rows) == 1 + STEPS + 1
-    assert rows[21] == ["0.2", "1.8", "−2", "0.8", "−2"]  # height and velocity: high, low
+    assert rows[21] == [
+        "0.2",
+        "1.8",
+        "−2",
+        "0.8",
+        "−2",
+    ]  # height and velocity: high, low
     text = block.astext()
     assert "the box starts at a height of 2.0000 m" in text
     written = tmp_path / "book" / "_build" / "html" / "replay"
@@ -97,7 +110,9 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, t
     assert f"Play loads the box in 3D: {round(weight / 1000)} kB." in text
 
 
-def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(dropped, tmp_path):
+def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(
+    dropped, tmp_path
+):
     written = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
     replay_block(Panel(tmp_path / "book"), KEY, dropped)
     model = written.read_bytes()
@@ -115,7 +130,9 @@ def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_pat
     (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
     with pytest.raises(ValueError, match="l99 wrote no shape of its box") as caught:
         replay_block(Panel(tmp_path / "book"), KEY, dropped)
-    assert "page.write_shape(l99.read_shape(entity)) after scene.build()" in str(caught.value)
+    assert "page.write_shape(l99.read_shape(entity)) after scene.build()" in str(
+        caught.value
+    )
 
 
 @pytest.fixture
@@ -125,25 +142,39 @@ def page(block, open_block) -> Page:
 
 @pytest.mark.browser
 def test_keys_read_the_record_out_and_the_plots_draw_it(page):
-    assert readout(page, ".replay")["time"] == "0.00 s, before the first step"  # not played
+    assert (
+        readout(page, ".replay")["time"] == "0.00 s, before the first step"
+    )  # not played
     slider = choose(page, "low", 19)
     slider.press("ArrowRight")
-    fallen = {"time": "0.20 s", "height": "0.8000 m", "vertical velocity": "−2.0000 m/s"}
+    fallen = {
+        "time": "0.20 s",
+        "height": "0.8000 m",
+        "vertical velocity": "−2.0000 m/s",
+    }
     assert readout(page, ".replay") == fallen
     spoken = "low: time 0.20 s; height 0.8000 m; vertical velocity −2.0000 m/s"
     assert slider.get_attribute("aria-valuetext") == spoken
-    labels = page.locator(".replay .plot svg").evaluate_all("all => all.map(e => e.ariaLabel)")
+    labels = page.locator(".replay .plot svg").evaluate_all(
+        "all => all.map(e => e.ariaLabel)"
+    )
     assert labels == [
         "Height [m] of the box over time; low is drawn bold.",
         "Vertical velocity [m/s] of the box over time; low is drawn bold.",
     ]
-    chosen = page.locator(".replay .plot svg").first.locator(".chosen").get_attribute("points")
+    chosen = (
+        page.locator(".replay .plot svg")
+        .first.locator(".chosen")
+        .get_attribute("points")
+    )
     heights = [float(pair.split(",")[1]) for pair in chosen.split()]
     fallen = (np.array(heights) - heights[0]) / (heights[-1] - heights[0])
     assert fallen == pytest.approx(np.linspace(0, 1, STEPS + 1) ** 2, abs=0.01)
     assert page.locator(".replay .dot.case-g2").count() == 2
     cursor = page.locator(".replay .cursor").first
-    places = [slider.press(key) or cursor.get_attribute("x1") for key in ("End", "Home")]
+    places = [
+        slider.press(key) or cursor.get_attribute("x1") for key in ("End", "Home")
+    ]
     assert float(places[0]) > float(places[1])
     page.locator("input[value=low]").press("ArrowUp")
     assert page.locator(".chosen").first.get_attribute("class").split()[1] == "case-g1"
@@ -185,7 +216,9 @@ def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
     assert slider.input_value() == paused
     press_often = "for (const press of ['play', 'pause', 'play']) play.click();"
     play.evaluate(f"play => {{ {press_often} }}")
-    assert 0 < call(page, "frames_asked") <= 11  # two loops would ask twice in each of ten frames
+    assert (
+        0 < call(page, "frames_asked") <= 11
+    )  # two loops would ask twice in each of ten frames
     speed.select_option("1")
     page.wait_for_function("document.querySelector('input[type=range]').value === '40'")
     page.wait_for_function("document.querySelector('.play').innerText === 'Play'")
@@ -203,7 +236,9 @@ def test_reduced_motion_goes_by_steps(block, open_block):
 
 
 @pytest.mark.browser
-def test_without_3d_or_file_the_plots_play_and_it_is_said(block, open_block, browser_3d, tmp_path):
+def test_without_3d_or_file_the_plots_play_and_it_is_said(
+    block, open_block, browser_3d, tmp_path
+):
     arguments = ["--no-sandbox", "--disable-3d-apis"]
     blind = browser_3d.browser_type.launch(executable_path=chromium(), args=arguments)
     page = open_block(block, blind)
@@ -226,7 +261,9 @@ def test_without_3d_or_file_the_plots_play_and_it_is_said(block, open_block, bro
 def test_two_replays_of_a_page_are_two(block, dropped, tmp_path, open_block):
     other = replay_block(Panel(tmp_path / "book"), "l99/lab/cpu", dropped)
     page = open_block(nodes.container("", block, other))
-    first, second = (f".replay[data-name=replay-l99-{name}-cpu]" for name in ("lecture", "lab"))
+    first, second = (
+        f".replay[data-name=replay-l99-{name}-cpu]" for name in ("lecture", "lab")
+    )
     choose(page, "low", 7, second)
     assert page.locator(f"{first} input:checked").input_value() == "high"
     assert page.locator(f"{first} input[type=range]").input_value() == "0"

@@ -22,7 +22,10 @@ DATA = {
     "robot": "franka_panda",
     "fps": 20,
     "columns": {
-        "observation.state": (RNG.random((EPISODES, ROWS, 2)).astype(np.float32), ["arm", "hand"]),
+        "observation.state": (
+            RNG.random((EPISODES, ROWS, 2)).astype(np.float32),
+            ["arm", "hand"],
+        ),
         "action": (RNG.random((EPISODES, ROWS, 2)).astype(np.float32), ["arm", "hand"]),
         "phase": (RNG.integers(0, 9, (EPISODES, ROWS)), None),
         "next.done": (np.arange(ROWS) == np.full((EPISODES, 1), ROWS - 1), None),
@@ -53,7 +56,11 @@ def test_each_row_has_its_numbers_and_its_place(folder):
     assert np.array_equal(np.float32(found["observation.state"]), STATE.reshape(-1, 2))
     assert found["phase"] == DATA["columns"]["phase"][0].ravel().tolist()
     k = 2 * ROWS + 3
-    assert (found["index"][k], found["episode_index"][k], found["frame_index"][k]) == (k, 2, 3)
+    assert (found["index"][k], found["episode_index"][k], found["frame_index"][k]) == (
+        k,
+        2,
+        3,
+    )
     assert found["timestamp"][k] == np.float32(0.15)
     assert [k for k, done in enumerate(found["next.done"]) if done] == [29, 59, 89, 119]
 
@@ -67,30 +74,51 @@ def test_the_description_is_that_of_the_rows(folder):
     episodes = read(folder / f"state/meta/episodes/{lerobot.FILE}.parquet")
     assert episodes["dataset_from_index"] == [0, 30, 60, 90]
     assert episodes["stats/action/max"][1] == pytest.approx(ACTION[1].max(axis=0))
-    stats = json.loads((folder / "state/meta/stats.json").read_text())["observation.state"]
+    stats = json.loads((folder / "state/meta/stats.json").read_text())[
+        "observation.state"
+    ]
     assert stats["std"] == pytest.approx(STATE.reshape(-1, 2).std(axis=0), rel=1e-5)
     assert stats["q50"] == pytest.approx(np.median(STATE.reshape(-1, 2), axis=0))
 
 
 def test_episodes_with_pictures_are_a_dataset_of_their_own(folder):
-    assert read(folder / f"camera/meta/episodes/{lerobot.FILE}.parquet")["length"] == [ROWS] * FEW
+    assert (
+        read(folder / f"camera/meta/episodes/{lerobot.FILE}.parquet")["length"]
+        == [ROWS] * FEW
+    )
     stats = json.loads((folder / "camera/meta/stats.json").read_text())[lerobot.CAMERA]
-    assert np.ravel(stats["mean"]) == pytest.approx(COARSE.mean(axis=(0, 1, 2, 3)) / 255)
+    assert np.ravel(stats["mean"]) == pytest.approx(
+        COARSE.mean(axis=(0, 1, 2, 3)) / 255
+    )
     with av.open(folder / f"camera/videos/{lerobot.CAMERA}/{lerobot.FILE}.mp4") as file:
         shown = [picture.to_ndarray(format="rgb24") for picture in file.decode(video=0)]
     assert np.shape(shown) == (FEW * ROWS, 108, 144, 3)
-    assert np.abs(np.float64(shown) - DATA["pictures"].reshape(np.shape(shown))).mean() < 5
-    assert "phase" not in json.loads((folder / "camera/meta/info.json").read_text())["features"]
-    without = zipfile.ZipFile(io.BytesIO(lerobot.archive(DATA | {"pictures": None}, "")))
+    assert (
+        np.abs(np.float64(shown) - DATA["pictures"].reshape(np.shape(shown))).mean() < 5
+    )
+    assert (
+        "phase"
+        not in json.loads((folder / "camera/meta/info.json").read_text())["features"]
+    )
+    without = zipfile.ZipFile(
+        io.BytesIO(lerobot.archive(DATA | {"pictures": None}, ""))
+    )
     assert not [name for name in without.namelist() if "camera" in name]
 
 
 def test_the_archive_is_the_same_each_time_and_lists_its_digests(folder):
     assert lerobot.archive(DATA, "a") == lerobot.archive(DATA, "a")
-    sums = [line.split("  ") for line in (folder / "SHA256SUMS").read_text().splitlines()]
+    sums = [
+        line.split("  ") for line in (folder / "SHA256SUMS").read_text().splitlines()
+    ]
     listed = {name for _, name in sums} | {"SHA256SUMS"}
-    assert listed == {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()}
-    assert all(sha256((folder / name).read_bytes()).hexdigest() == digest for digest, name in sums)
+    assert listed == {
+        p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()
+    }
+    assert all(
+        sha256((folder / name).read_bytes()).hexdigest() == digest
+        for digest, name in sums
+    )
 
 
 READER = """
@@ -112,7 +140,11 @@ def test_lerobot_reads_it(folder, tmp_path):
     subprocess.run([sys.executable, "-m", "venv", tmp_path / "own"], check=True)
     python = tmp_path / "own/bin/python"
     subprocess.run([python, "-m", "pip", "install", "-q", "lerobot==0.4.4"], check=True)
-    isolated = {"HF_HOME": str(tmp_path / "hub"), "HF_HUB_OFFLINE": "1", "PATH": "/usr/bin:/bin"}
+    isolated = {
+        "HF_HOME": str(tmp_path / "hub"),
+        "HF_HUB_OFFLINE": "1",
+        "PATH": "/usr/bin:/bin",
+    }
     command = [python, "-c", READER, folder]
     done = subprocess.run(command, env=isolated, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-3000:]

@@ -41,7 +41,9 @@ def page(tmp_path):
 def test_the_student_s_notebook_is_clean(page):
     student = student_of(page)
     text = nbformat.writes(student)
-    assert not [words for words in ("SECRET", "Only on the site", "{measured}") if words in text]
+    assert not [
+        words for words in ("SECRET", "Only on the site", "{measured}") if words in text
+    ]
     assert "It was (yours)." in text
     assert student.metadata.kernelspec.name == "python3"
     sources = [cell.source for cell in student.cells]
@@ -81,10 +83,17 @@ def test_each_part_of_a_work_sheet_follows_what_it_belongs_to(tmp_path):
     heads = [source.split("\n")[0] for source in sources]
     first = heads.index("## Work sheet: fall")
     assert heads[first:] == [
-        "## Work sheet: fall", "## Work sheet, part 1: Predictions, before the run", "x = 1",
-        "## 2. The scene", "y = 2", "## Work sheet, part 2: The scene",
-        "## 3. Run", "## Work sheet, part 3: Results", "z = 3", "## Work sheet, part 4: Measured",
-    ]  # fmt: skip
+        "## Work sheet: fall",
+        "## Work sheet, part 1: Predictions, before the run",
+        "x = 1",
+        "## 2. The scene",
+        "y = 2",
+        "## Work sheet, part 2: The scene",
+        "## 3. Run",
+        "## Work sheet, part 3: Results",
+        "z = 3",
+        "## Work sheet, part 4: Measured",
+    ]
     assert sources[first + 1].endswith("\n\nEarlier or later?")
     assert sources[-1].endswith("```python\n## no heading\n```")
 
@@ -105,11 +114,16 @@ def test_a_work_sheet_without_predictions_or_numbers_is_refused(tmp_path, sheet,
     ("installed", "said"),
     [
         (PINNED, None),
-        ({"genesis-world": "1.0.0", "robo-genesis": "0.1.0"}, "genesis-world 1.2.3; it is 1.0.0"),
+        (
+            {"genesis-world": "1.0.0", "robo-genesis": "0.1.0"},
+            "genesis-world 1.2.3; it is 1.0.0",
+        ),
         ({"genesis-world": "1.2.3"}, "robo-genesis 0.1.0; it is not installed here"),
     ],
 )
-def test_its_check_accepts_the_pinned_engine_alone(monkeypatch, capsys, installed, said):
+def test_its_check_accepts_the_pinned_engine_alone(
+    monkeypatch, capsys, installed, said
+):
     def look_up(name: str) -> str:
         if name not in installed:
             raise PackageNotFoundError(name)
@@ -122,7 +136,9 @@ def test_its_check_accepts_the_pinned_engine_alone(monkeypatch, capsys, installe
         assert {*left} == {"__builtins__"}
         assert capsys.readouterr().out == "genesis-world 1.2.3\nrobo-genesis 0.1.0\n"
     else:
-        with pytest.raises(RuntimeError, match=rf"{said}[\s\S]*-m pip install -c constr"):
+        with pytest.raises(
+            RuntimeError, match=rf"{said}[\s\S]*-m pip install -c constr"
+        ):
             exec(CHECK, {})
 
 
@@ -134,12 +150,18 @@ def executed(page, folder, *outputs):
         for k, (source, output) in enumerate(zip(codes, outputs, strict=True), 1)
     ]
     writer = Writer(folder, lambda _: "0.12 s")
-    found = notebooks.executed_notebook(page, new_notebook(cells=ran), "The origin.", writer)
+    found = notebooks.executed_notebook(
+        page, new_notebook(cells=ran), "The origin.", writer
+    )
     return [c for c in found.cells if c.cell_type == "code"], nbformat.writes(found)
 
 
-@pytest.mark.parametrize(("shown", "counts"), [("1", [1, 2, 3, 4, 5]), ("0", [1, 3, 4, 5])])
-def test_an_executed_notebook_has_what_the_site_shows(page, tmp_path, monkeypatch, shown, counts):
+@pytest.mark.parametrize(
+    ("shown", "counts"), [("1", [1, 2, 3, 4, 5]), ("0", [1, 3, 4, 5])]
+)
+def test_an_executed_notebook_has_what_the_site_shows(
+    page, tmp_path, monkeypatch, shown, counts
+):
     monkeypatch.setenv("SOLUTIONS", shown)
     stack = ["File /home/me/secret.py", "ValueError: no"]
     error = new_output("error", ename="ValueError", evalue="no", traceback=stack)

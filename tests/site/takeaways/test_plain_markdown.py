@@ -14,9 +14,18 @@ def writer(tmp_path):
         ("Plain *text* with $x_1$.", "Plain *text* with $x_1$."),
         ("(anchor)=\n## Title", "## Title"),
         ("% a comment\n\nText.", "Text."),
-        ("[page](lecture.md), [Genesis](https://x.org/a)", "page, [Genesis](https://x.org/a)"),
-        ("It went to {measured}`l04/lab G2.overshoot`.", "It went to <l04/lab G2.overshoot>."),
-        ("{term}`DOF`, {ref}`this part <there>`, {numref}`fig-a`", "DOF, this part, the figure"),
+        (
+            "[page](lecture.md), [Genesis](https://x.org/a)",
+            "page, [Genesis](https://x.org/a)",
+        ),
+        (
+            "It went to {measured}`l04/lab G2.overshoot`.",
+            "It went to <l04/lab G2.overshoot>.",
+        ),
+        (
+            "{term}`DOF`, {ref}`this part <there>`, {numref}`fig-a`",
+            "DOF, this part, the figure",
+        ),
         ("{engine-source}`engine/scene.py`", "`genesis/engine/scene.py`"),
         ("```{lesson-status} l04\n```\n\nText.", "Text."),
         ("| a | b |\n| - | - |\n| {term}`x` | 1 |", "| a | b |\n| - | - |\n| x | 1 |"),
@@ -29,8 +38,14 @@ def writer(tmp_path):
             "```{number} l04/lab G1.overshoot\n:tolerance: 9\nHow\nmuch?\n\n- low: Aha.\n```",
             "**Question.** How\nmuch?",
         ),
-        (":::{admonition} First\n:class: tip\nDo *it*.\n:::", "> **First**\n> \n> Do *it*."),
-        ("It holds. {guard}`l04/lab law`\nNext {guard}`law` one.", "It holds.\nNext one."),
+        (
+            ":::{admonition} First\n:class: tip\nDo *it*.\n:::",
+            "> **First**\n> \n> Do *it*.",
+        ),
+        (
+            "It holds. {guard}`l04/lab law`\nNext {guard}`law` one.",
+            "It holds.\nNext one.",
+        ),
         (":::{note}\nMind.\n:::", "> **Note**\n> \n> Mind."),
         (":::{dropdown} A hint\ninside\n:::", "> **A hint**\n> \n> inside"),
         ("- item\n\n  ```{term-list}\n  gone\n  ```\n- next", "- item\n\n- next"),

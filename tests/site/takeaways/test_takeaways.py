@@ -38,14 +38,20 @@ print(json.dumps([*doctor.examine()][-1]))
 """
 
 
-def test_a_table_of_episodes_names_environment_joint_and_finger(tmp_path, traces, joints):
+def test_a_table_of_episodes_names_environment_joint_and_finger(
+    tmp_path, traces, joints
+):
     q = np.repeat(traces["G2"].q[:, None], 2, axis=1) * np.array([[1], [2]], np.float32)
     n = len(q)
     run = Episodes(
-        t=traces["G2"].t, phase=np.ones((n, 2), np.int8), q=q,
-        object_pos=np.zeros((n, 2, 3), np.float32), object_quat=np.ones((n, 2, 4), np.float32),
-        force=np.tile(np.float32([[1, 2], [3, 4]]), (n, 1, 1)), touches=np.zeros((n, 2), np.int8),
-    )  # fmt: skip
+        t=traces["G2"].t,
+        phase=np.ones((n, 2), np.int8),
+        q=q,
+        object_pos=np.zeros((n, 2, 3), np.float32),
+        object_quat=np.ones((n, 2, 4), np.float32),
+        force=np.tile(np.float32([[1, 2], [3, 4]]), (n, 1, 1)),
+        touches=np.zeros((n, 2), np.int8),
+    )
     described = write_traces(tmp_path, {"batch": run}, joints, LINKS)
     last = [*csv.DictReader(io.StringIO(files.csv_text(run, described, "batch")))][-1]
     assert float(last["force env 1 left [N]"]) == 3
@@ -54,7 +60,9 @@ def test_a_table_of_episodes_names_environment_joint_and_finger(tmp_path, traces
     assert trace_files.read_any_trace(tmp_path, described, "batch").q.shape == q.shape
 
 
-def test_each_number_is_in_its_table_with_its_unit_and_none_is_made_up(tmp_path, traces, joints):
+def test_each_number_is_in_its_table_with_its_unit_and_none_is_made_up(
+    tmp_path, traces, joints
+):
     run = traces["G2"]
     described = write_traces(tmp_path, {"G2": run}, joints, LINKS)
     table = list(csv.DictReader(io.StringIO(files.csv_text(run, described, "G2"))))
@@ -72,30 +80,41 @@ def test_each_number_is_in_its_table_with_its_unit_and_none_is_made_up(tmp_path,
         name = f"{field} joint4 [{unit}]"
         assert np.array_equal(column(name)[1:], getattr(run, field)[:, 3])
         assert np.float32(table[0][name]) == getattr(run, f"start_{field}")[3]
-    assert {row["effort_limit joint4 [N·m]"] for row in table} == {str(run.effort_limit[3])}
+    assert {row["effort_limit joint4 [N·m]"] for row in table} == {
+        str(run.effort_limit[3])
+    }
     empty = {name.split()[0] for name, value in table[0].items() if value == ""}
     assert empty == {"target", "internal_force"}
     assert [name for name, value in table[1].items() if value == ""] == []
 
 
-def test_a_kept_table_is_of_one_state_of_all_its_code(tmp_path, monkeypatch, traces, joints):
+def test_a_kept_table_is_of_one_state_of_all_its_code(
+    tmp_path, monkeypatch, traces, joints
+):
     run, own, keys = tmp_path / "run", tmp_path / "own", []
     for folder in (run, own):
         folder.mkdir()
     described = write_traces(run, {"G2": traces["G2"]}, joints, LINKS)
     write_json(run / "arrays.json", described.model_dump(by_alias=True))
-    monkeypatch.setattr(files, "derived", lambda kind, inputs, make: keys.append(inputs) or make())
+    monkeypatch.setattr(
+        files, "derived", lambda kind, inputs, make: keys.append(inputs) or make()
+    )
     ((_, table, _),) = files._arrays(run, own)
     assert next(csv.reader(table.open()))[0] == "t [s]"
     for module in (files, trace_files, fields, bundle, npz_archive, trace, text):
         assert Path(module.__file__).read_bytes() in keys[0], module.__name__
 
 
-REPOSITORIES = [("", None), ("https://github.com/a/b", ["Repository, https://github.com/a/b"])]
+REPOSITORIES = [
+    ("", None),
+    ("https://github.com/a/b", ["Repository, https://github.com/a/b"]),
+]
 
 
 @pytest.mark.parametrize(("repository", "urls"), REPOSITORIES)
-def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repository, urls):
+def test_the_wheel_pins_the_engine_and_is_the_same_each_time(
+    tmp_path, repository, urls
+):
     root, lesson = tmp_path / "checkout", "robo_genesis/lessons/l01/"
     shutil.copytree(project.ROOT / files.PACKAGE, root / files.PACKAGE)
     for name in files.SOURCES:
@@ -106,7 +125,10 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repositor
         (root / name).touch()
     first = files.build_wheel(tmp_path, root, repository)
     assert files.built_wheel(root, repository) == first.read_bytes()
-    assert first.name == f"robo_genesis-{files.package_facts()['version']}-py3-none-any.whl"
+    assert (
+        first.name
+        == f"robo_genesis-{files.package_facts()['version']}-py3-none-any.whl"
+    )
     with zipfile.ZipFile(first) as wheel:
         names = wheel.namelist()
         (found,) = (name for name in names if name.endswith("/METADATA"))
@@ -119,7 +141,9 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repositor
         for path in sources
         if path.is_file() and path.suffix not in (".pyc", ".tmpl")
     }
-    assert {name for name in names if not name.startswith("robo_genesis-")} == there | data
+    assert {
+        name for name in names if not name.startswith("robo_genesis-")
+    } == there | data
 
 
 def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path):
@@ -130,7 +154,9 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
         wheel.extractall(installed)
     given = os.environ | {"PYTHONPATH": str(installed), "HOME": str(home)}
     command = [sys.executable, "-c", UP_TO_THE_ENGINE]
-    done = subprocess.run(command, cwd=home, env=given, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=home, env=given, capture_output=True, text=True, check=False
+    )
     version, libraries, backend = json.loads(done.stdout)["steps"][:3]
     assert f"genesis-world {project.engine_pin()}, as pinned" in version["found"]
     assert libraries["state"] == "ok"
@@ -140,7 +166,9 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
 def test_the_wheel_installs_itself_beside_the_constraints(tmp_path):
     command = [sys.executable, "-m", "robo_genesis.install"]
     given = os.environ | {"PYTHONPATH": files.build_wheel(tmp_path).name}
-    done = subprocess.run(command, cwd=tmp_path, env=given, capture_output=True, text=True)
+    done = subprocess.run(
+        command, cwd=tmp_path, env=given, capture_output=True, text=True
+    )
     assert f"{tmp_path}/constraints.txt is not a file" in done.stderr
     assert done.returncode == 1
     assert not (tmp_path / "course").exists()
@@ -158,7 +186,11 @@ def test_the_wheel_installs_itself_beside_the_constraints(tmp_path):
     ],
 )
 def test_a_valid_repository_on_github_alone_offers_a_codespace(given, valid, offered):
-    with nullcontext() if valid else pytest.raises(ConfigError, match="OWNER/NAME, without a sl"):
+    with (
+        nullcontext()
+        if valid
+        else pytest.raises(ConfigError, match="OWNER/NAME, without a sl")
+    ):
         require_address(None, SimpleNamespace(course_repository=given))
     assert offered in codespace(given)
     assert bool(codespace(given)) == bool(offered)
@@ -166,15 +198,21 @@ def test_a_valid_repository_on_github_alone_offers_a_codespace(given, valid, off
 
 def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
     commands = files.run_commands("https://example.org/cpu", "lab.ipynb")
-    page = SimpleNamespace(notebook=new_notebook(cells=[new_markdown_cell("# A lab\n\nText.")]))
+    page = SimpleNamespace(
+        notebook=new_notebook(cells=[new_markdown_cell("# A lab\n\nText.")])
+    )
     ran = SimpleNamespace(run_id="0" * 32, started="2026-01-02T10:00:00Z")
     config = SimpleNamespace(html_title="Course", author="Its authors")
     text = files.origin_of(page, ran, commands, config, "student notebook")
     first, second, *_ = text.splitlines()
     pin = project.engine_pin()
-    assert first.startswith(f"> Course, *A lab*: student notebook. Written for Genesis {pin};")
+    assert first.startswith(
+        f"> Course, *A lab*: student notebook. Written for Genesis {pin};"
+    )
     assert first.endswith("the site shows run 00000000 of 2026-01-02.")
-    assert second.startswith("> © Its authors. Code: MIT licence. Text and figures: CC BY 4.0.")
+    assert second.startswith(
+        "> © Its authors. Code: MIT licence. Text and figures: CC BY 4.0."
+    )
     wheel = files.wheel_name()
     assert text.endswith(
         f"To run it on {files.system()}, put `{wheel}` and `constraints.txt` from the lab's page "

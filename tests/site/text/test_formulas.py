@@ -29,11 +29,22 @@ ACCENT, BOLD = '<mover accent="true">', 'style="font-weight: bold"'
 @pytest.mark.parametrize(
     ("latex", "has", "lacks"),
     [
-        *((rf"\{n}{{q}}", ACCENT, "\\") for n in ("dot", "ddot", "hat", "tilde", "vec", "bar")),
+        *(
+            (rf"\{n}{{q}}", ACCENT, "\\")
+            for n in ("dot", "ddot", "hat", "tilde", "vec", "bar")
+        ),
         (r"\overset{!}{=}", "<mover>", "accent"),
         (r"\boldsymbol{q}", BOLD, "mathvariant"),
-        (r"\begin{aligned} a &= b \end{aligned}", 'style="text-align: right"', "columnalign"),
-        (r"\begin{align} a &= b \end{align}", 'style="text-align: right"', "columnalign"),
+        (
+            r"\begin{aligned} a &= b \end{aligned}",
+            'style="text-align: right"',
+            "columnalign",
+        ),
+        (
+            r"\begin{align} a &= b \end{align}",
+            'style="text-align: right"',
+            "columnalign",
+        ),
     ],
 )
 def test_a_formula_uses_what_browsers_implement(latex, has, lacks):
@@ -56,15 +67,21 @@ def test_the_font_is_light_with_each_character_and_the_tables_that_place_accents
 
 @pytest.mark.browser
 def test_the_dot_of_a_velocity_is_visible_at_one_pixel_per_pixel(browser):
-    page = browser.new_page(viewport={"width": 300, "height": 100}, device_scale_factor=1)
+    page = browser.new_page(
+        viewport={"width": 300, "height": 100}, device_scale_factor=1
+    )
 
     css = formulas.css()
 
     def drawn(latex: str) -> np.ndarray:
-        body = f"<p style='font-size: 17px; margin: 40px'>{to_mathml(latex, 'inline')}</p>"
+        body = (
+            f"<p style='font-size: 17px; margin: 40px'>{to_mathml(latex, 'inline')}</p>"
+        )
         page.set_content(f"<!doctype html><style>{css}</style>{body}")
         page.evaluate("document.fonts.ready")
-        ink = 255 - np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("L"), int)
+        ink = 255 - np.asarray(
+            Image.open(io.BytesIO(page.screenshot())).convert("L"), int
+        )
         loaded = page.evaluate("[...document.fonts].map(font => font.status)")
         assert loaded == ["loaded"] * css.count("@font-face")
         return ink

@@ -12,19 +12,28 @@ def links(html, name):
 
 def test_only_first_uses_in_running_text_link_to_their_definitions(small_site):
     page, found = links(small_site, "terms")
-    assert [link.get_text() for link in found] == ["Overshoots", "degree\nof freedom", "DOF"]
+    assert [link.get_text() for link in found] == [
+        "Overshoots",
+        "degree\nof freedom",
+        "DOF",
+    ]
     assert all(link.find_parent("p") for link in found)
     assert not page.select("h1 a.term-link, table a.term-link, code a.term-link")
     assert [link["title"] for link in found] == [
-        "How far it passes, counted along its DOF.", *["One axis of motion."] * 2,
-    ]  # fmt: skip
-    assert "A step is a time step." in page.article.get_text()  # a term that is not linked
+        "How far it passes, counted along its DOF.",
+        *["One axis of motion."] * 2,
+    ]
+    assert (
+        "A step is a time step." in page.article.get_text()
+    )  # a term that is not linked
     entries, own = links(small_site, "glossary")
     for link in found:
         file, _, anchor = link["href"].partition("#")
         assert file == "glossary.html"
         assert entries.find(id=anchor).name == "dt"
-    assert [(link.get_text(), link["href"][0]) for link in own] == [("DOF", "#")]  # not itself
+    assert [(link.get_text(), link["href"][0]) for link in own] == [
+        ("DOF", "#")
+    ]  # not itself
 
 
 def test_words_are_whole_and_the_longest_term_wins():

@@ -22,8 +22,14 @@ FUNCTION = '''\
     [
         (FUNCTION, FUNCTION[:18] + FUNCTION[FUNCTION.index("        text") :]),
         ('A = 1\n"""What A is."""\nB = 2\n', "A = 1\nB = 2\n"),
-        ('class A:\n    """Doc."""\n\n    b: int\n    """Doc."""\n', "class A:\n    b: int\n"),
-        ('def empty():\n    """Only this."""\n', 'def empty():\n    """Only this."""\n'),
+        (
+            'class A:\n    """Doc."""\n\n    b: int\n    """Doc."""\n',
+            "class A:\n    b: int\n",
+        ),
+        (
+            'def empty():\n    """Only this."""\n',
+            'def empty():\n    """Only this."""\n',
+        ),
         ("cut = (\n", "cut = (\n"),
     ],
 )

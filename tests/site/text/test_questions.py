@@ -21,7 +21,12 @@ from robo_genesis.site.text import questions
         ("1", "equal", "", "the same"),
         ("s", "equal", "settling_time", "at the same time"),
         ("s", "equal", "rise_time", "about the same (less than 15 ms apart)"),
-        ("1", "equal", "saturation_samples", "about the same (less than 1.5 samples apart)"),
+        (
+            "1",
+            "equal",
+            "saturation_samples",
+            "about the same (less than 1.5 samples apart)",
+        ),
     ],
 )
 def test_exactly_the_measured_option_is_right(unit, order, metric, text):
@@ -33,18 +38,30 @@ def test_exactly_the_measured_option_is_right(unit, order, metric, text):
 def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
     first, second = (experiment.metrics[name].overshoot for name in ("G1", "G2"))
     assert abs(first - second) > l04.RESOLUTION["rad"]
-    found, sentence, origin = questions.measured_order("l04/lab", "overshoot", ["G1", "G2"])
+    found, sentence, origin = questions.measured_order(
+        "l04/lab", "overshoot", ["G1", "G2"]
+    )
     assert (found.order, found.unit) == ("higher" if second > first else "lower", "rad")
-    assert f"{1000 * first:.3g} mrad for G1, {1000 * second:.3g} mrad for G2" in sentence
+    assert (
+        f"{1000 * first:.3g} mrad for G1, {1000 * second:.3g} mrad for G2" in sentence
+    )
     assert origin.startswith("Measured by l04/lab on cpu")
-    assert questions.measured_order("l04/lab", "overshoot", ["G2", "G2"])[0].order == "equal"
+    assert (
+        questions.measured_order("l04/lab", "overshoot", ["G2", "G2"])[0].order
+        == "equal"
+    )
 
 
 def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
-    found, said, _ = questions.measured_order("l04/lab", "overshoot", ["G1", "load"], absent=True)
+    found, said, _ = questions.measured_order(
+        "l04/lab", "overshoot", ["G1", "load"], absent=True
+    )
     assert (found.order, found.unit) == (None, "rad")
     assert said == "The record of l04/lab has no such run."
-    for cases, said in ((["G1", "G2_longer"], "records G2_longer; ask"), (["G9", "no_run"], "G9")):
+    for cases, said in (
+        (["G1", "G2_longer"], "records G2_longer; ask"),
+        (["G9", "no_run"], "G9"),
+    ):
         with pytest.raises(LookupError, match=said):
             questions.measured_order("l04/lab", "overshoot", cases, absent=True)
 
@@ -56,11 +73,15 @@ def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
         ("m", (0.1001, 0.0025), 0.0, "Depth: 100 mm for A, 2.5 mm for B."),
         ("rad", (-1e-9, 0.0447), 0.0, "Depth: 0 mrad for A, 44.7 mrad for B."),
         ("m", (0.2011, 0.1971), 0.0, "Depth: 0.2011 m for A, 0.1971 m for B."),
-        ("s", (0.14, 0.15), 0.015,
-         "Depth: 0.14 s for A, 0.15 s for B. A difference below 15 ms does not count."),
+        (
+            "s",
+            (0.14, 0.15),
+            0.015,
+            "Depth: 0.14 s for A, 0.15 s for B. A difference below 15 ms does not count.",
+        ),
         ("s", (0.14, None), 0.0, "The depth was observed for A alone"),
     ],
-)  # fmt: skip
+)
 def test_the_answer_has_both_values_in_a_readable_unit(unit, values, margin, said):
     resolution = {"m": 1e-5, "s": 0.005, "rad": 1e-5}
     found = Comparison("depth", unit, *values, resolution[unit], margin)
@@ -75,8 +96,11 @@ NUMERIC = [*questions.JUDGED, questions.WRONG]
     ("lines", "keys", "causes"),
     [
         ("", KEYS, {}),
-        ("- lower: Not before\n  it.\n- unknown: No.", KEYS,
-         {"lower": "Not before it.", "unknown": "No."}),
+        (
+            "- lower: Not before\n  it.\n- unknown: No.",
+            KEYS,
+            {"lower": "Not before it.", "unknown": "No."},
+        ),
         ("- x57.3: In degrees.", NUMERIC, {"x57.3": "In degrees."}),
         ("- x57.3: In degrees.", KEYS, None),
         ("- x5.: No.", NUMERIC, None),
@@ -84,11 +108,13 @@ NUMERIC = [*questions.JUDGED, questions.WRONG]
         ("- no cause", KEYS, None),
         ("- lower: a\n- lower: b", KEYS, None),
     ],
-)  # fmt: skip
+)
 def test_the_causes_of_valid_keys_follow_a_question(lines, keys, causes):
     asked = ["When does", "it end?", "", *lines.splitlines()]
     if causes is None:
-        with pytest.raises(LookupError, match=rf"is not a cause.*Valid.*`- {keys[0]}: …`"):
+        with pytest.raises(
+            LookupError, match=rf"is not a cause.*Valid.*`- {keys[0]}: …`"
+        ):
             questions.split_causes(asked, keys)
     else:
         assert questions.split_causes(asked, keys) == ("When does it end?", causes)
@@ -97,7 +123,9 @@ def test_the_causes_of_valid_keys_follow_a_question(lines, keys, causes):
 def test_a_tolerance_is_a_share_in_percent():
     assert questions.percents("0.5") == 0.5
     for text in ("0", "100", "nan", "20 %"):
-        with pytest.raises(ValueError, match=f"'{text}' is not a tolerance. Give percents above 0"):
+        with pytest.raises(
+            ValueError, match=f"'{text}' is not a tolerance. Give percents above 0"
+        ):
             questions.percents(text)
 
 
@@ -123,7 +151,10 @@ def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
 def test_the_right_number_is_the_bundle_s(outputs, experiment):
     causes = {"low": "The motor saturates.", "x57.3": "In degrees."}
     value = experiment.metrics["G2"].overshoot
-    for unit, scale, text in (("", 1, f"{value:.4f} rad"), ("mrad", 1000, f"{1000 * value:.3g} m")):
+    for unit, scale, text in (
+        ("", 1, f"{value:.4f} rad"),
+        ("mrad", 1000, f"{1000 * value:.3g} m"),
+    ):
         found = questions.asked_number("l04/lab", "G2.overshoot", 20, causes, unit)
         assert found["value"] == pytest.approx(scale * value)
         assert found["tolerance"] == pytest.approx(scale * value / 5)
@@ -131,7 +162,9 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
         assert found["answer"].startswith(text)
     assert found["feedback"][1] == ("low", "Too low. The motor saturates.")
     assert found["feedback"][3] == ("x57.3", "No. In degrees.")
-    with pytest.raises(LookupError, match=r"cannot be shown in 'mm'\. Valid for a number is mrad"):
+    with pytest.raises(
+        LookupError, match=r"cannot be shown in 'mm'\. Valid for a number is mrad"
+    ):
         questions.asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
 
 
@@ -140,7 +173,9 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 
 
 @pytest.mark.browser
-def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(page):
+def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(
+    page,
+):
     shown = questions.options("s", None, "5 ms", {"lower": "Why"}, 0.0)
     first = questions.asked(name="choice-3", options=shown, **MEASURED)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
@@ -166,7 +201,11 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
         page.locator("#choice-4").fill(typed)
         page.keyboard.press("Tab")
         assert said.last.inner_text() == text
-        shown = [t.inner_text() for t in page.locator(".number .feedback").all() if t.is_visible()]
+        shown = [
+            t.inner_text()
+            for t in page.locator(".number .feedback").all()
+            if t.is_visible()
+        ]
         assert shown == [text] * bool(text)
 
 
