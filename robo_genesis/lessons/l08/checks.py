@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import fields
-from typing import Any
 
 import numpy as np
 
@@ -10,17 +9,18 @@ from robo_genesis.core.checks import (
     Finding,
     above,
     at_most,
+    below,
     equal,
     model_counts,
     noted,
     within,
 )
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.trace import Demonstrations, Episodes
+from robo_genesis.core.trace import Episodes
 from robo_genesis.lessons.l08 import dataset, metrics, spec
 from robo_genesis.sim.arm import lifting, picking
-from robo_genesis.sim.arm.kinematics import ARM
-from robo_genesis.sim.arm.laws import commanded, dynamics, model_joints
+from robo_genesis.sim.arm.kinematics import ARM, hand_pose
+from robo_genesis.sim.arm.laws import commanded, model_joints
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import posture, stamps
@@ -120,18 +120,10 @@ def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
         ("again", "exact", slice(None)),
         ("permuted", "askew", spec.ORDER),
     ):
-        if name in run.cases:
-            yield from same_episodes(run, name, other, order)
-
-
-def same_episodes(
-    run: Experiment, name: str, other: str, order: Any
-) -> Iterator[Finding]:
-    """Require equal episodes of two batches, those of the second in an order."""
-    one, two = run.traces[name], run.traces[other]
-    for array in (of.name for of in fields(Episodes) if of.name != "t"):
-        differ = int((getattr(one, array) != getattr(two, array)[:, order]).sum())
-        yield equal(f"{name}.{array}", differ, 0)
+        one, two = run.traces[name], run.traces[other]
+        for array in (of.name for of in fields(Episodes) if of.name != "t"):
+            differ = int((getattr(one, array) != getattr(two, array)[:, order]).sum())
+            yield equal(f"{name}.{array}", differ, 0)
 
 
 def commands_come_first(run: Experiment) -> Iterator[Finding]:
@@ -160,83 +152,79 @@ def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """Each batch begins where its case puts robot and object, and recorded commands are
-    those of the phase machine. In the episodes that are recorded at all steps, links
-    and control forces are those of the driven robot at each sample, until the hand is
-    above the object all forces and velocities as well, and the states are those of the
-    batch.
+    """Each batch begins where its case puts robot and object. An episode that is recorded
+    at all steps has the states of its batch, and at each sample links and control
+    forces of the driven robot.
     """
     yield from kept("the joint map", model_joints(run.joints))
-    for name in (batch for batch in spec.BATCHES if batch in run.cases):
-        yield from kept(name, begins(run.traces[name], run.cases[name]))
-    for name, (batch, row) in spec.ROWS.items():
-        if name in run.cases:
-            yield from kept(name, of_batch(run, name, batch, row))
+    for name, case in run.cases.items():
+        trace = run.traces[name]
+        batch = isinstance(case, picking.PickCase)
+        laws = begins(trace, case) if batch else of_batch(run, name, *spec.ROWS[name])
+        yield from kept(name, laws)
 
 
 def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
-    """Yield a start or a command that is not that of the case, or no orientation."""
+    """Yield a start that is not that of the case, or no orientation."""
     yield from unit_quaternions(trace.object_quat)
-    yield from apart("start", "q [rad or m]", trace.q[0], case.q_start, 1e-6)
     place = np.column_stack([case.starts, np.full(len(case.starts), case.size[2] / 2)])
-    yield from apart("start", "object_pos [m]", trace.object_pos[0], place, 1e-6)
-    yield from apart("start", "object_quat", trace.object_quat[0], case.turns, 1e-6)
-    if isinstance(trace, Demonstrations):
-        yield from sent(trace, case)
-
-
-def sent(trace: Demonstrations, case: picking.PickCase) -> Iterator[Finding]:
-    """Yield a command that the phase machine does not send.
-
-    The goal of a phase is its last command. In a sample, the arm's command moves
-    straight to it, by the stride of each outer step, or by less in a sample in which
-    the phase begins.
-    """
-    rows, phase = np.arange(trace.target.shape[1]), trace.phase[1:]
-    target = trace.target.astype(np.float64)
-    shut = (phase >= picking.CLOSE) & (phase < picking.OPEN)
-    fingers = np.where(shut, 0.0, case.q_start[-1])[..., None]
-    yield from apart(
-        "motion", "target of fingers [m]", target[..., ARM:], fingers, 1e-6
-    )
-    before = np.concatenate(
-        [np.broadcast_to(case.q_start, target[:1].shape), target[:-1]]
-    )
-    before, arm = before[..., :ARM], target[..., :ARM]
-    of_phase = phase[::-1] == np.arange(picking.DONE + 1)[:, None, None]
-    way = arm[len(phase) - 1 - of_phase.argmax(axis=1), rows][phase, rows] - before
-    longest, far = (np.abs(of).max(axis=-1) for of in (way, arm - before))
-    whole = np.minimum(case.commands * case.stride, longest)
-    begins = phase != trace.phase[:-1]
-    share = np.where(begins, np.minimum(far, whole), whole) / np.maximum(longest, 1e-9)
-    yield from apart(
-        "motion", "target of arm [rad]", arm, before + share[..., None] * way, 2e-6
-    )
+    start = {"q": case.q_start, "object_pos": place, "object_quat": case.turns}
+    for array, expected in start.items():
+        yield from apart("start", array, getattr(trace, array)[0], expected, 1e-6)
 
 
 def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Finding]:
     """Yield what an episode does not share with its batch, or with a driven robot."""
-    trace, case, links = run.traces[name], run.cases[name], run.links[:-1]
-    every, batch = spec.ASKEW.commands, run.traces[whole]
+    trace, case, batch = run.traces[name], run.cases[name], run.traces[whole]
     pos, quat = trace.link_pos[:, -1], trace.link_quat[:, -1]
     for array, values in (("q", trace.q), ("object_pos", pos), ("object_quat", quat)):
         expected = getattr(batch, array)[:, row]
-        yield from apart(
-            "pose", f"{array} of the batch", values[::every], expected, 0.0
-        )
+        found = values[:: spec.ASKEW.commands]
+        yield from apart("pose", f"{array} of the batch", found, expected, 0.0)
     yield from unit_quaternions(trace.link_quat)
     robot = lifting.without_bodies(trace, 1)
-    yield from commanded(robot, case.commanding(trace.target), links)
-    steps = every * int((batch.phase[:, row] > 0).argmax()) - every
-    approach = lifting.without_bodies(trace, 1, steps)
-    yield from dynamics(approach, case.commanding(approach.target))
+    yield from commanded(robot, case.commanding(trace.target), run.links[:-1])
 
 
-CHECKS = (structure, stamps, laws_of_motion, posture)
+# How far in one sample an untouched object moves, and a held one in the hand [m].
+RESTS, GRIPPED = 5e-5, 1e-3
+
+
+def nothing_jumps(run: Experiment) -> Iterator[Finding]:
+    """Between two samples a joint of the arm moves by no more than its commands can, an
+    object that was never touched by less than 0.05 mm, and one that is lifted or moved by
+    two pressing fingers by less than 1 mm in the hand. No two episodes of a batch are
+    equal.
+    """
+    batches = {
+        name: case
+        for name, case in run.cases.items()
+        if isinstance(case, picking.PickCase) and run.page.runs[name].measured
+    }
+    for name, case in batches.items():
+        trace = run.traces[name]
+        moved, turned = (
+            np.diff(of.astype(float), axis=0) for of in (trace.object_pos, trace.q)
+        )
+        share = np.abs(turned[..., :ARM]).max(axis=(0, 2)) / (
+            case.commands * case.stride
+        )
+        yield at_most(f"{name}.share_of_the_commands", float(np.max(share)), 1.01)
+        free = ~np.maximum.accumulate(trace.touches.astype(bool), axis=0)[1:]
+        apart_m = np.linalg.norm(moved, axis=2)
+        yield below(f"{name}.untouched_m", float((apart_m * free).max()), RESTS)
+        held = metrics.inside_move(trace)[1:] & metrics.pressed(trace)[1:]
+        hand = np.diff(hand_pose(trace.q).position, axis=0)
+        slid = np.linalg.norm(moved - hand, axis=2)
+        yield below(f"{name}.in_the_hand_m", float((slid * held).max()), GRIPPED)
+        paths = trace.q.swapaxes(0, 1).reshape(len(case.starts), -1)
+        yield equal(f"{name}.different", len(np.unique(paths, axis=0)), len(paths))
+
+
+CHECKS = (structure, stamps, laws_of_motion, nothing_jumps, posture)
 LAB = (
     place_is_enough,
     held_but_sliding,
-    order_does_not_matter,
     commands_come_first,
     pictures_show_the_states,
 )

@@ -75,22 +75,9 @@ def cases() -> dict[str, PickCase]:
     }
 
 
-def order(name: str) -> np.ndarray:
-    """Return a permutation of a batch: environment k of its copy has the episode of this number."""
-    return np.random.default_rng(7).permutation(len(COUNTED[name].starts))
-
-
-def permuted(name: str) -> PickCase:
-    """Return a batch in another order."""
-    of, arrays = COUNTED[name], ("starts", "beliefs", "yaws", "timed", "stride")
-    found = {n: getattr(of, n)[order(name)] for n in arrays if np.ndim(getattr(of, n))}
-    return replace(of, **found)
-
-
-COUNTED = cases()
-COPIES = {f"{name}_permuted": permuted(name) for name in COUNTED}
+CASES = cases()
 
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the page as JSON values, for the evidence key."""
-    return inputs(COUNTED | COPIES, counted=list(spec.EXPECTED_MODEL))
+    return inputs(CASES, counted=list(spec.EXPECTED_MODEL))

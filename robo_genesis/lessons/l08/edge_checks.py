@@ -7,27 +7,12 @@ import numpy as np
 from robo_genesis.core.checks import Finding, above, at_most, below, equal, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l08 import checks, edge, metrics, rates
-from robo_genesis.sim.arm.laws import model_joints
 from robo_genesis.sim.arm.picking import CLOSE
 from robo_genesis.sim.common_checks import stamps
-from robo_genesis.sim.laws import kept
 
 MEASURES = False
 
 BAND = 12.5  # Least difference of two counts that is called a difference
-
-
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """Each batch begins where its case puts robot and object."""
-    yield from kept("the joint map", model_joints(run.joints))
-    for name, case in run.cases.items():
-        yield from kept(name, checks.begins(run.traces[name], case))
-
-
-def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
-    """A permuted copy of each batch has the same episodes to the last bit, in their new order."""
-    for name in edge.COUNTED:
-        yield from checks.same_episodes(run, f"{name}_permuted", name, edge.order(name))
 
 
 def window_of_errors(run: Experiment) -> Iterator[Finding]:
@@ -122,8 +107,8 @@ def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
 RATES = (
     checks.structure,
     stamps,
-    laws_of_motion,
-    order_does_not_matter,
+    checks.laws_of_motion,
+    checks.nothing_jumps,
     window_of_errors,
     correction_helps,
     window_is_centred,

@@ -40,9 +40,14 @@ def off_axis(trace: Episodes, case: PickCase) -> FloatArray:
     return np.asarray(np.linalg.norm(trace.object_pos[..., :2] - case.bowl_at, axis=-1))
 
 
+def pressed(trace: Episodes) -> np.ndarray:
+    """Return the samples (n+1, e) in which both fingers hold the object."""
+    return np.asarray((trace.force > PRESSES).all(axis=2))
+
+
 def rungs(trace: Episodes, case: PickCase) -> dict[str, np.ndarray]:
     """Return by rung which episodes (e,) pass it, whatever the others say."""
-    both = (trace.force > PRESSES).all(axis=2)
+    both = pressed(trace)
     carry = (trace.phase == MOVE) | (trace.phase == LOWER)
     rise = trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
     at_move = (trace.phase >= MOVE).argmax(axis=0)

@@ -10,7 +10,6 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed, scaled_value
 from robo_genesis.core.trace import Episodes
 from robo_genesis.lessons.l08 import metrics, rates, spec
-from robo_genesis.lessons.l08.checks import order_does_not_matter
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.kinematics import ARM, hand_pose
 from robo_genesis.sim.arm.picking import CLOSE, DONE, OPEN, PickCase
@@ -141,7 +140,6 @@ def conclusions(run: Experiment) -> str:
     n, good = len(level), int(m.resting)
     first = ((rung, (level == k).sum()) for k, rung in enumerate(metrics.RUNGS))
     lost = [f"{count} at “{rung}”" for rung, count in first if count]
-    differ = sum(finding.found for finding in order_does_not_matter(run))
     return bullets(
         [
             f"{good} of {n} episodes reach the last rung. The interval of the rate is "
@@ -154,8 +152,5 @@ def conclusions(run: Experiment) -> str:
             f"{scaled_value(m.creep, 'mm/s')} (medians)."
             if m.carried
             else "No episode is carried, so force and slide are not measured.",
-            f"Numbers that differ in the repeated batch: {differ}."
-            if differ
-            else "The repeated batch is equal to the last bit.",
         ]
     )

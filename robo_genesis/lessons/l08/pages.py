@@ -1,45 +1,36 @@
 """The measuring pages of L08, and its declaration."""
 
 from dataclasses import replace
-from typing import Any
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import MeasuringPage, Run, counts
+from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
 from robo_genesis.core.trace import Demonstrations, Episodes, Trace
 from robo_genesis.lessons.l08 import checks, edge, edge_checks, metrics, spec
 from robo_genesis.lessons.l08.creep import HeldMetrics
 from robo_genesis.lessons.l08.creep_checks import CREEP
 from robo_genesis.lessons.l08.metrics import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
+from robo_genesis.sim.bodies.table import SceneCase
 from robo_genesis.sim.camera import film
 
 MEASURES = False
 
+
+def one_of_each(cases: dict[str, SceneCase]) -> dict[str, Run]:
+    """Return runs of single episodes."""
+    return {name: Run(case, False, ONE, Trace) for name, case in cases.items()}
+
+
 COPY = "repeats the episodes of another run of this page, and has no metrics"
 ONE = "one episode of a batch, at all its steps"
 
-
-# The frames that hold the films
-SHEETS = [
-    of for name in spec.FILMS for of in film.sheet_names(name, spec.EXACT.steps + 1)
-]
-
-
-def batches(cases: dict[str, Any]) -> dict[str, Run]:
-    """Return runs of all episodes; those that are not counted copy others."""
-    counted = {name: name in (*spec.COUNTED, *edge.COUNTED) for name in cases}
-    return {
-        n: Run(cases[n], own, "" if own else COPY, Episodes)
-        for n, own in counted.items()
-    }
-
-
 LECTURE = MeasuringPage(
-    runs={name: Run(case, False, ONE) for name, case in spec.EPISODES.items()}
-    | batches(spec.BATCHES),
-    kind=Trace,
+    runs=one_of_each(spec.EPISODES)
+    | runs_of(spec.CASES)
+    | runs_of(spec.COPIES, measured=False, note=COPY),
+    kind=Episodes,
     joints=JOINT_NAMES,
     readings={"model": counts(MODEL_COUNTS)},
     measure=metrics.episodes_metrics,
@@ -47,11 +38,17 @@ LECTURE = MeasuringPage(
     parameters=spec.parameters,
 )
 
+# The frames that hold the films
+SHEETS = [
+    sheet
+    for name in spec.FILMS
+    for sheet in film.sheet_names(name, spec.EXACT.steps + 1)
+]
+
 LAB = with_functions(
     replace(
         LECTURE,
-        runs={name: Run(case, False, ONE) for name, case in spec.LAB_EPISODE.items()}
-        | batches(spec.LAB)
+        runs=one_of_each(spec.LAB_EPISODE)
         | {"exact": Run(spec.EXACT, kind=Demonstrations)},
         checks=(*checks.CHECKS, *checks.LAB),
         parameters=spec.lab_parameters,
@@ -66,7 +63,7 @@ LAB = with_functions(
 
 RATES = replace(
     LECTURE,
-    runs=batches(edge.COUNTED | edge.COPIES),
+    runs=runs_of(edge.CASES),
     checks=edge_checks.RATES,
     parameters=edge.parameters,
     camera=False,
@@ -90,7 +87,7 @@ TOGETHER = replace(
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys((*spec.COUNTED, *edge.COUNTED), EpisodesMetrics)
+    metrics=dict.fromkeys(spec.CASES | edge.CASES, EpisodesMetrics)
     | dict.fromkeys(CREEP.cases, HeldMetrics),
     pages={
         "lecture": LECTURE,

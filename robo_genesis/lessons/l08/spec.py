@@ -88,12 +88,10 @@ ORDER = np.random.default_rng(3).permutation(len(STARTS))
 
 PERMUTED = replace(ASKEW, starts=STARTS[ORDER], beliefs=ASKEW.beliefs[ORDER])
 
-# Batches of the lecture; `again` repeats `exact`, `permuted` has the episodes of
-# `askew`.
-BATCHES = {"exact": EXACT, "again": EXACT, "askew": ASKEW, "permuted": PERMUTED}
+CASES = {"exact": EXACT, "askew": ASKEW}
 
-# Batches that have metrics.
-COUNTED = ("exact", "askew")
+# Batches of the lecture that repeat `exact`, and `askew` in another order.
+COPIES = {"again": EXACT, "permuted": PERMUTED}
 
 # Episodes of `ASKEW` that the replay shows, and their environments.
 SHOWN = {"placed": 105, "slipped": 199, "tipped": 224, "pushed": 246}
@@ -123,9 +121,6 @@ def one(row: int, of: PickCase = ASKEW) -> SceneCase:
 
 EPISODES = {name: one(row) for name, row in SHOWN.items()}
 
-# Batches of the lab.
-LAB = {"exact": EXACT, "again": EXACT}
-
 # The episode of `EXACT` that the lab has at all its outer steps.
 LAB_EPISODE = {"one": one(0, EXACT)}
 
@@ -134,9 +129,6 @@ FILMS = ("film_0", "film_1", "film_2")
 
 # By episode, its batch and its environment there.
 ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact", 0)}
-
-# The batches of lecture and lab that have metrics.
-CASES = {name: BATCHES[name] for name in COUNTED}
 
 # The camera; it shows one environment.
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
@@ -178,9 +170,9 @@ RELATIONS: tuple[Any, ...] = ()
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lecture as JSON values, for the evidence key."""
-    return inputs(BATCHES | EPISODES, VIEW, counted=list(EXPECTED_MODEL))
+    return inputs(CASES | COPIES | EPISODES, VIEW, counted=list(EXPECTED_MODEL))
 
 
 def lab_parameters() -> dict[str, Any]:
     """Return every configured input of the lab, as `parameters`."""
-    return inputs(LAB | LAB_EPISODE, VIEW, counted=list(EXPECTED_MODEL))
+    return inputs({"exact": EXACT} | LAB_EPISODE, VIEW, counted=list(EXPECTED_MODEL))

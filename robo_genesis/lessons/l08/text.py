@@ -25,7 +25,7 @@ COUNTED = {
         "in the bowl at the end": ("askew", "in_bowl"),
         "all seven rungs": ("askew", "resting"),
     },
-    "expert": {spec.LABELS[name]: (name, "resting") for name in spec.COUNTED},
+    "expert": {spec.LABELS[name]: (name, "resting") for name in spec.CASES},
     "counted": {
         "all phases done": ("boxes", "finished"),
         "horizontally in the bowl": ("boxes", "over_bowl"),
@@ -61,7 +61,7 @@ def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
     """Return by rung how many episodes reach it, and how many fail there first."""
     left = len(spec.STARTS)
     for rung in metrics.RUNGS:
-        exact, askew = (int(getattr(run.metrics[name], rung)) for name in spec.COUNTED)
+        exact, askew = (int(getattr(run.metrics[name], rung)) for name in spec.CASES)
         yield {
             "rung": rung,
             spec.LABELS["exact"]: exact,

@@ -1,10 +1,11 @@
 """The page on rates on made-up batches: its checks and tables, and the clock of a descent."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from lessons.changed_runs import failed, put, trace
+from lessons.l08.conftest import without_motion
 from lessons.l08.made_batches import episodes
 from robot_runs import LINKS
 
@@ -36,14 +37,12 @@ def run(joints):
         name: episodes(
             case, *outcomes(name, case), **(paced if name == "paced" else {})
         )
-        for name, case in edge.COUNTED.items()
+        for name, case in edge.CASES.items()
     }
-    for name, of in list(made.items()):
-        arrays = {f.name: getattr(of, f.name) for f in fields(of) if f.name != "t"}
-        copy = {array: values[:, edge.order(name)] for array, values in arrays.items()}
-        made[f"{name}_permuted"] = replace(of, **copy)
     model = {"model": spec.EXPECTED_MODEL}
-    return Experiment(pages.RATES, made, [*LINKS, "object"], model, {}, False, joints)
+    return Experiment(
+        without_motion(pages.RATES), made, [*LINKS, "object"], model, {}, False, joints
+    )
 
 
 def test_each_check_accepts_the_batches(run):
@@ -52,7 +51,6 @@ def test_each_check_accepts_the_batches(run):
 
 ALL = slice(None)
 SPOILED = {
-    "order_does_not_matter": trace("boxes_permuted", force=put((9, 3, 0), 0.5)),
     "window_of_errors": trace("grid", force=put((ALL, slice(0, 256, 5)), 0)),
     "correction_helps": trace("corrected", force=put((ALL, slice(95, 128)), 0)),
     "window_is_centred": trace("corrected", force=put((ALL, slice(0, 9)), 0)),

@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import copied, failed, metric, put, reading, shift, trace
+from lessons.l08.conftest import arm, batch
 
-from robo_genesis.lessons.l08 import explorer, metrics, plots, rates, spec, text
+from robo_genesis.core.checks import evaluate
+from robo_genesis.core.experiment import runs_of
+from robo_genesis.lessons.l08 import checks, explorer, metrics, plots, rates, spec, text
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.session import CaseError
 
@@ -167,3 +170,31 @@ def test_commands_that_are_shifted_by_one_row_are_found(lab, rows):
     assert failed(lab) == set()
     shifted = trace("exact", target=lambda values: np.roll(values, rows, axis=0))(lab)
     assert failed(shifted) == {"commands_come_first"}
+
+
+@pytest.fixture(scope="module")
+def driven_few(episodes):
+    """The episodes of the replay as a batch."""
+    rows = [*spec.SHOWN.values()]
+    starts, beliefs = (of[rows] for of in (spec.STARTS, spec.ASKEW.beliefs))
+    case = replace(spec.ASKEW, starts=starts, beliefs=beliefs)
+    own = {k: arm(*belief) for k, belief in enumerate(beliefs.tolist())}
+    page = replace(episodes.page, runs=runs_of({"askew": case}))
+    return replace(episodes, page=page, traces={"askew": batch(case, own)})
+
+
+@pytest.mark.parametrize(
+    ("arrays", "part"),
+    [
+        ({}, None),
+        ({"q": shift((30, 0, 3), 0.1)}, "commands"),
+        ({"object_pos": shift((slice(3, None), 0, 0), 1e-4)}, "untouched"),
+        ({"object_pos": shift((60, 0, 2), 2e-3)}, "hand"),
+        ({"q": lambda q: np.repeat(q[:, :1], 4, axis=1)}, "different"),
+    ],
+)
+def test_nothing_jumps(episodes, driven_few, arrays, part):
+    run = trace("askew", **arrays)(driven_few)
+    (check,) = evaluate([checks.nothing_jumps], run)
+    assert check.passed == (part is None), check.detail
+    assert part is None or part in check.detail
