@@ -2,8 +2,7 @@
 
 from typing import Any
 
-import numpy as np
-
+from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l05 import spec, study
@@ -15,10 +14,10 @@ MEASURES = False
 
 COLUMNS = 9  # Most cells in a row of a map
 
-# Label, axes and values from the bottom of the maps of targets.
+# Label, axis upwards and values from the bottom of the maps of targets.
 PLACES = {
-    "vertical": ("Plane y = 0", ("z", "x"), spec.GRID_Z),
-    "horizontal": (f"Plane z = {spec.HEIGHT:g} m", ("y", "x"), spec.GRID_Y),
+    "vertical": ("Plane y = 0", "z", spec.GRID_Z),
+    "horizontal": (f"Plane z = {spec.HEIGHT:g} m", "y", spec.GRID_Y),
 }
 
 # Alternative text and caption of the pictures that a reader can read.
@@ -54,37 +53,65 @@ def explored(run: Experiment, name: str) -> dict[str, Any]:
 
 def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
     """Return the maps called `reach`, or `solutions`, as `site/figures/explorer.py` shows them."""
-    maps = (
+    shown = (
         [solution_map(run)]
         if which == "solutions"
-        else [plane_map(name) for name in PLACES]
+        else [plane_map(run, name) for name in PLACES]
     )
     tables = {}
-    for one in maps:
-        found = {row["answer"]: row for row in records(run, one["run"])}
-        axes = one.pop("axes")
-        for row in one["rows"]:
-            row["cells"] = [
-                _cell(found[str(k)], f"{axes[0]} {row['label']}, {axes[1]} {column}")
-                for k, column in zip(row["cells"], one["columns"], strict=False)
-            ]
-        shown = {cell["answer"] for row in one["rows"] for cell in row["cells"]}
+    for one in shown:
+        answers = {cell["answer"] for row in one["rows"] for cell in row["cells"]}
         tables[one["caption"]] = [
-            row for row in found.values() if int(row["answer"]) in shown
+            row for row in records(run, one["run"]) if int(row["answer"]) in answers
         ]
-    rows = next(iter(tables.values()))
+    columns = [*next(iter(tables.values()))[0]]
     return {
         "choices": ("Map", "Cells show"),
-        "maps": maps,
+        "maps": shown,
         "measures": [{"label": name} for name in QUANTITIES],
-        "columns": [*rows[0]][1:],
+        "columns": columns[1:],
         "notes": {
             "×": "×: refused.",
             "↓": "↓: accepted by its residual, fingertips in the floor.",
         },
         "dt": DT,
-        "postures": {one["run"]: spec.QUESTIONS[one["run"]].positions for one in maps},
+        "postures": {one["run"]: spec.QUESTIONS[one["run"]].positions for one in shown},
         "tables": tables,
+    }
+
+
+def plane_map(run: Experiment, name: str) -> dict[str, Any]:
+    """Return the map of the targets in a plane."""
+    label, axis, upwards = PLACES[name]
+    columns, rows = (
+        [f"{value:g}" for value in values] for values in (spec.GRID_X, upwards)
+    )
+    places = [f"{axis} {row}, x {column}" for row in rows for column in columns]
+    cells = map(_cell, records(run, name), places)
+    caption = f"{label}. x [m] to the right, {axis} [m] upwards."
+    return maps.grid(caption, columns, rows, [*cells], run=name, label=label)
+
+
+def solution_map(run: Experiment) -> dict[str, Any]:
+    """Return the map of the answers for one target."""
+    found = records(run, "many_starts")
+    rows = []
+    for curve, (_, inside) in enumerate(study.solution_families(run), start=1):
+        cells = [
+            _cell(found[answer], f"curve {curve}, place {k % COLUMNS + 1}")
+            for k, answer in enumerate(inside)
+        ]
+        rows += [
+            {"label": str(curve), "cells": cells[k : k + COLUMNS]}
+            for k in range(0, len(cells), COLUMNS)
+        ]
+    return {
+        "run": "many_starts",
+        "label": "One target has many answers",
+        "caption": "One target has many answers. Each row belongs to one curve; joint1 grows from "
+        "left to right.",
+        "rows": rows,
+        "columns": [str(k + 1) for k in range(COLUMNS)],
     }
 
 
@@ -111,44 +138,6 @@ def short(value: float) -> str:
         return f"{value:.0f}".replace("-", "−")
     text = f"{value:.{3 if value < 1 else 2}f}".rstrip("0").rstrip(".")
     return text.removeprefix("0") or "0"
-
-
-def plane_map(name: str) -> dict[str, Any]:
-    """Return run, label, caption, axes, labels of columns, and rows of a map of targets."""
-    (label, axes, upwards), columns = PLACES[name], spec.GRID_X
-    caption = f"{label}. x [m] to the right, {axes[0]} [m] upwards."
-    numbers = (
-        np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
-    )
-    rows = [
-        {"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)
-    ]
-    return {
-        "run": name,
-        "label": label,
-        "caption": caption,
-        "axes": axes,
-        "rows": rows[::-1],
-        "columns": [f"{x:g}" for x in columns],
-    }
-
-
-def solution_map(run: Experiment) -> dict[str, Any]:
-    """Return the same of the map of answers for one target."""
-    rows = [
-        {"label": str(number), "cells": [k + 1 for k in inside[at : at + COLUMNS]]}
-        for number, (_, inside) in enumerate(study.solution_families(run), start=1)
-        for at in range(0, len(inside), COLUMNS)
-    ]
-    return {
-        "run": "many_starts",
-        "label": "One target has many answers",
-        "caption": "One target has many answers. Each row belongs to one curve; joint1 grows from "
-        "left to right.",
-        "axes": ("curve", "place"),
-        "rows": rows,
-        "columns": [str(k) for k in range(1, COLUMNS + 1)],
-    }
 
 
 def picture(run: Experiment, name: str) -> dict[str, Any]:

@@ -1,7 +1,9 @@
 """The sweep as the data of an explorer: a map of the gains for each load."""
 
+from itertools import product
 from typing import Any
 
+from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal
 from robo_genesis.lessons.l06 import spec
@@ -25,13 +27,14 @@ def explored(run: Experiment) -> dict[str, Any]:
     """Return the sweep as `site/figures/explorer.py` shows it: KP upwards, KV to the right."""
     words = {"lower": "lower", "higher": "higher", "margin": 1.0, "within": "1 mm"}
     measures = [
-        {"label": label, "noun": noun} | words for label, noun in SHOWN.values()
+        {"label": label, "noun": noun, "column": k} | words
+        for k, (label, noun) in enumerate(SHOWN.values())
     ]
     return {
         "choices": ("In the hand", "Map shows"),
         "maps": [_map(run, load) for load in spec.LOADS],
-        "measures": [measure | {"column": k} for k, measure in enumerate(measures)],
-        "columns": [label for label, _ in SHOWN.values()],
+        "measures": measures,
+        "columns": [measure["label"] for measure in measures],
         "notes": {"●": "●: the plain robot."},
         "curves": {"drawn": []},
         "without_script": "The map needs JavaScript. The table of the sweep shows a part of it.",
@@ -41,19 +44,16 @@ def explored(run: Experiment) -> dict[str, Any]:
 def _map(run: Experiment, load: float) -> dict[str, Any]:
     """Return the robots with one load."""
     label = f"{load:g} kg" if load else "nothing"
-    return {
-        "label": label,
-        "setting": f"{label} in the hand",
-        "caption": "Factors of KP upwards, of KV to the right.",
-        "columns": [f"{kv:g}".removeprefix("0") for kv in spec.FACTORS],
-        "rows": [
-            {
-                "label": f"{kp:g}".removeprefix("0"),
-                "cells": [_cell(run, kp, kv, load) for kv in spec.FACTORS],
-            }
-            for kp in reversed(spec.FACTORS)
-        ],
-    }
+    factors = [f"{factor:g}".removeprefix("0") for factor in spec.FACTORS]
+    pairs = product(spec.FACTORS, repeat=2)
+    return maps.grid(
+        "Factors of KP upwards, of KV to the right.",
+        factors,
+        factors,
+        [_cell(run, kp, kv, load) for kp, kv in pairs],
+        label=label,
+        setting=f"{label} in the hand",
+    )
 
 
 def _cell(run: Experiment, kp: float, kv: float, load: float) -> dict[str, Any]:

@@ -32,9 +32,8 @@ def views(run: Experiment) -> Figure:
     """Show what both cameras see of scene A, without a camera its link origins."""
     if not run.rendered:
         return posture(run)
-    at = dict(zip(rungs.CAMERAS, ("beside the table", "on the hand"), strict=True))
     return plotting.stacked(
-        {at[name]: run.frames[f"{name}_rgb"] for name in rungs.CAMERAS}
+        {place: run.frames[f"{name}_rgb"] for name, place in rungs.CAMERAS.items()}
     )
 
 

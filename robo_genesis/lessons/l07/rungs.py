@@ -14,7 +14,8 @@ from robo_genesis.sim.bodies.table import SceneCase
 from robo_genesis.sim.camera.geometry import project
 from robo_genesis.sim.camera.views import View
 
-CAMERAS = ("world", "wrist")
+# Where each camera is.
+CAMERAS = {"world": "beside the table", "wrist": "on the hand"}
 
 # Names of the contact points of each finger in the counts of a lift.
 FINGERS = ("closed_left", "closed_right", "held_left", "held_right")

@@ -134,8 +134,10 @@ def outlines(found: Experiment, camera: str) -> FloatArray:
 # What each verdict says.
 WORDS = {
     "reachable": "the hand reaches it",
-    "world": "in the picture of the camera beside the table",
-    "wrist": "in the picture of the camera on the hand",
+    **{
+        name: f"in the picture of the camera {place}"
+        for name, place in rungs.CAMERAS.items()
+    },
     "graspable": "free of the bowl and the edge",
 }
 

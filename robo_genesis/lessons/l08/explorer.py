@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal
-from robo_genesis.core.trace import Trace
+from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l08 import metrics, spec
 from robo_genesis.sim.arm import picking
 
@@ -26,37 +27,24 @@ def explored(found: Experiment) -> dict[str, Any]:
     """Return the data of the map, as `site/figures/explorer.py` shows them."""
     trace, case = found.traces["askew"], spec.ASKEW
     level, apart = metrics.reached(trace, case), metrics.off_axis(trace, case)[-1]
-    moving = trace.phase == picking.MOVE
-    press = np.array(
-        [
-            np.median(trace.force[moving[:, k], k]) if moving[:, k].any() else 0.0
-            for k in range(len(level))
-        ]
-    )
-    cells = [cell(k, int(level[k]), press[k], apart[k]) for k in range(len(level))]
-    n = spec.CELLS
-    y = np.linspace(*spec.REGION[1], n + 1)
-    rows = [
-        {"label": decimal(1000 * (y[k] + y[k + 1]) / 2, 0), "cells": cells[k * n :][:n]}
-        for k in range(n)
-    ]
-    x = 100 * np.linspace(*spec.REGION[0], 2 * n + 1)[1::2]
-    caption = (
-        "Starts from above, x [cm] to the right, y [mm] upwards. A cell is an episode."
+    cells = []
+    for k, moving in enumerate((trace.phase == picking.MOVE).T):
+        press = np.median(trace.force[moving, k]) if moving.any() else 0.0
+        cells.append(cell(k, int(level[k]), press, 1000 * apart[k]))
+    x, y = (np.linspace(*ends, 2 * spec.CELLS + 1)[1::2] for ends in spec.REGION)
+    starts = maps.grid(
+        "Starts from above, x [cm] to the right, y [mm] upwards. A cell is an episode.",
+        [f"{100 * place:.0f}" for place in x],
+        [decimal(1000 * place, 0) for place in y],
+        cells,
+        run="ends",
+        label="Starts",
     )
     return {
         "thing": "robot",
         "around": True,
         "choices": ("Map", "Cells show"),
-        "maps": [
-            {
-                "run": "ends",
-                "label": "Starts",
-                "caption": caption,
-                "rows": rows[::-1],
-                "columns": [str(round(value)) for value in x],
-            }
-        ],
+        "maps": [starts],
         "measures": [{"label": "rungs passed"}, {"label": "error along the pads [mm]"}],
         "columns": COLUMNS,
         "notes": {},
@@ -68,10 +56,8 @@ def explored(found: Experiment) -> dict[str, Any]:
 
 def cell(number: int, level: int, press: float, apart: float) -> dict[str, Any]:
     """Return a cell of the map, which shows the end of its episode."""
-    (x, y), error = (
-        1000 * spec.STARTS[number],
-        1000 * (spec.ASKEW.beliefs - spec.STARTS)[number],
-    )
+    x, y = 1000 * spec.STARTS[number]
+    error = 1000 * (spec.ASKEW.beliefs - spec.STARTS)[number]
     done = level == len(metrics.RUNGS)
     failed = "none" if done else metrics.RUNGS[level]
     place = f"{x:.0f}, {decimal(y, 0)}"
@@ -88,14 +74,14 @@ def cell(number: int, level: int, press: float, apart: float) -> dict[str, Any]:
             str(level),
             failed,
             decimal(press, 1),
-            decimal(1000 * apart, 0),
+            decimal(apart, 0),
         ],
         "numbers": [level, round(float(error[0]), 1)],
         "texts": [str(level), decimal(error[0], 0)],
     }
 
 
-def ends(found: Experiment) -> Trace:
+def ends(found: Experiment) -> BodyTrace:
     """Return the start and all ends: links by forward kinematics, the object as recorded."""
     from robo_genesis.sim.mujoco.kinematics import link_poses
 
@@ -105,17 +91,7 @@ def ends(found: Experiment) -> Trace:
         for of in (trace.q, trace.object_pos, trace.object_quat)
     )
     at, turn = link_poses(q, found.links[:-1])
-    none = np.zeros_like(q[1:])
-    return Trace(
-        t=np.arange(len(q)) * spec.ASKEW.dt,
-        q=q,
-        qd=none,
-        target=none,
-        control_force=none,
-        internal_force=none,
-        start_control_force=none[0],
-        start_qd=none[0],
-        effort_limit=none[0],
-        link_pos=np.concatenate([at, pos[:, None]], axis=1),
-        link_quat=np.concatenate([turn, quat[:, None]], axis=1),
-    )
+    places = np.concatenate([at, pos[:, None]], axis=1)
+    turns = np.concatenate([turn, quat[:, None]], axis=1)
+    still = np.zeros_like(places)
+    return BodyTrace(np.arange(len(q)) * spec.ASKEW.dt, places, turns, still, still)
