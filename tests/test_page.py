@@ -16,8 +16,7 @@ from robo_genesis import page as pages
 from robo_genesis.core import plotting, project, shown
 from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.exercises import FunctionFailed
-from robo_genesis.lessons import l02
-from robo_genesis.lessons.l02 import spec
+from robo_genesis.lessons.l02 import exercises, plots, spec, text
 from robo_genesis.sim import session
 
 SOLVED = solutions("l02")
@@ -123,8 +122,8 @@ def test_a_page_without_an_engine_is_refused(monkeypatch, tmp_path):
 
 def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
     measure(page)
-    page.show(l02.text.metric_table)
-    page.show(l02.plots.height)
+    page.show(text.metric_table)
+    page.show(plots.height)
     (table, named), (drawing, drawn) = displayed
     assert named == {
         "function": "robo_genesis.lessons.l02.text.metric_table",
@@ -143,11 +142,11 @@ def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
         (lambda run: "", (), "cannot be shown"),
         ("a table", (), r"'a table'. Give a function of a lesson and not its result"),
         (
-            l02.text.metric_table,
+            text.metric_table,
             (1, {2}),
             r"arguments \(1, \{2\}\). Valid are JSON values",
         ),
-        (l02.text.metric_table, (float("nan"),), "Valid are JSON values"),
+        (text.metric_table, (float("nan"),), "Valid are JSON values"),
     ],
 )
 def test_anything_else_is_refused(page, displayed, function, arguments, message):
@@ -186,8 +185,8 @@ def test_a_figure_has_the_palette_s_colours_and_no_others(
             draw([1, 2], [3, 4], **colour)
         return drawn
 
-    height.__module__, height.__qualname__ = l02.plots.__name__, "height"
-    monkeypatch.setattr(l02.plots, "height", height)
+    height.__module__, height.__qualname__ = plots.__name__, "height"
+    monkeypatch.setattr(plots, "height", height)
     if colour.get("color") == "red":
         with pytest.raises(
             shown.ShownError, match=r"l02.plots.height draws in #ff0000. A page dr"
@@ -228,16 +227,16 @@ def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(
 ):
     measure(page)
     page._written |= {"make_scene": 1, "record": 1}
-    page.test(l02.exercises.stepped, SOLVED["stepped"])
+    page.test(exercises.stepped, SOLVED["stepped"])
     with pytest.raises(FunctionFailed) as failed:
-        page.test(l02.exercises.usable_frame, usable_frame)
+        page.test(exercises.usable_frame, usable_frame)
     first, *_, line = failed.value._render_traceback_()
     assert first == "usable_frame does not pass its test yet."
     assert line.endswith('of its cell: return rgb["wide"]')
     with pytest.raises(
         LookupError, match=r"test_\w+ is not declared\. Functions: make_scene"
     ):
-        page.test(l02.exercises.stepped, test_without_a_camera_no_frame_is_taken)
+        page.test(exercises.stepped, test_without_a_camera_no_frame_is_taken)
     page.finish(None)
     last = capsys.readouterr().out.splitlines()[-2:]
     assert last == [

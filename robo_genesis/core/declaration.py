@@ -1,9 +1,7 @@
-"""The form of a lesson's declaration in its `__init__.py`."""
+"""The form of a lesson's declaration in its `pages.py`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import import_module
-from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
@@ -43,26 +41,3 @@ class Lesson:
             for of in self.metrics.values()
             for name, v in of.about(what).items()
         }
-
-
-def on_demand(package: str, **offered: str) -> Callable[[str], Any]:
-    """Return the `__getattr__` of a lesson: what a page uses is imported when it is used.
-
-    A module of the lesson's folder needs no argument. The readers of import statements
-    know the arguments as well, so each is written out.
-
-    Args:
-        package: the `__name__` of the lesson.
-        offered: by name, the module that has it, or that it is: `run` of the lesson's
-            folder, or a module of another sub-package by its whole name.
-    """
-
-    def imported(name: str) -> Any:
-        place = offered.get(name, name)
-        module = place if "." in place else f"{package}.{place}"
-        if name[:1] == "_" or (name not in offered and not find_spec(module)):
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        found = import_module(module)
-        return getattr(found, name, found) if name in offered else found
-
-    return imported

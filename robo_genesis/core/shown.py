@@ -42,7 +42,7 @@ def name_of(function: Any) -> str:
     if not isfunction(function):
         raise ShownError(
             f"page.show was given {function!r}. Give a function of a lesson and not its result: "
-            "page.show(l02.text.metric_table)."
+            "page.show(text.metric_table)."
         )
     name = f"{function.__module__}.{function.__qualname__}"
     if find(name) is not function:

@@ -39,24 +39,12 @@ def find_lesson(name: str) -> Lesson:
 
     Raises:
         LookupError: it does not exist; the message lists the lessons.
-        TypeError: its folder declares none.
     """
-    if not LESSONS:
-        raise LookupError(
-            f"No lesson was found in {Path(__file__).parent}: Python imported the course from the "
-            "closed wheel. Install the wheel with `python -m pip install`, or unpack it, and take "
-            "it off PYTHONPATH."
-        )
     if name not in LESSONS:
         raise LookupError(
             f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}."
         )
-    lesson = getattr(import_module(f"{__name__}.{name}"), "LESSON", None)
-    if not isinstance(lesson, Lesson):
-        raise TypeError(
-            f"lessons/{name}/__init__.py declares LESSON as {lesson!r}. Each folder of a lesson "
-            "declares one: LESSON = Lesson(spec=..., metrics=..., pages=..., replays=...)."
-        )
+    lesson: Lesson = import_module(f"{__name__}.{name}.pages").LESSON
     return lesson
 
 

@@ -85,21 +85,3 @@ def test_a_lookup_error_lists_the_choices():
         LookupError, match=r"no replay called 'falls'\. Choices: drops, slides\."
     ):
         find_replay("l03", "falls")
-
-
-def test_a_closed_wheel_says_what_to_do(monkeypatch):
-    monkeypatch.setattr("robo_genesis.lessons.LESSONS", ())
-    with pytest.raises(LookupError, match=r"closed wheel\. Install the wheel"):
-        find_lesson("l01")
-
-
-def test_a_lesson_gives_its_modules_and_what_it_offers_when_they_are_used():
-    from robo_genesis.lessons import l03, l05
-
-    assert (
-        l03.tables.__name__ == "robo_genesis.lessons.l03.tables"
-    )  # which has a name `tables`
-    assert l05.kinematics.__name__ == "robo_genesis.sim.arm.kinematics"
-    assert l05.ask.__module__ == "robo_genesis.lessons.l05.run"
-    with pytest.raises(AttributeError, match=r"l05' has no attribute 'kinematix'"):
-        _ = l05.kinematix

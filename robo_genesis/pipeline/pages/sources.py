@@ -169,10 +169,9 @@ def measuring_modules(
 ) -> dict[str, str]:
     """Return the modules and data that decide what a page measures, with their digests.
 
-    They are all modules of the lesson that measure, what its `__init__.py` imports from
-    `sim`, what the page itself imports, and what these import; see `Tree.measures`. The
-    digest of a module is that of its syntax. With them go the data files of the lesson
-    and of `core` and `sim`.
+    They are all modules of the lesson that measure, what the page itself imports, and
+    what these import; see `Tree.measures`. The digest of a module is that of its
+    syntax. With them go the data files of the lesson and of `core` and `sim`.
 
     Args:
         lesson: the name of its folder.
@@ -183,12 +182,8 @@ def measuring_modules(
         Module without the package's name, such as `core.trace`, or data file, such as
         `lessons/l04/arm.xml`, to digest.
     """
-    own, tree = f"{PACKAGE}.lessons.{lesson}", Tree(root)
-    given = imported_names(tree.text(init), own) if (init := tree.module(own)) else ()
-    of_sim = [name for name in given if name.startswith(f"{PACKAGE}.sim.")]
-    modules = tree.closure(
-        [*lesson_modules(lesson, root), *of_sim, *imports], tree.measures
-    )
+    tree = Tree(root)
+    modules = tree.closure([*lesson_modules(lesson, root), *imports], tree.measures)
     data = tree.data_for(
         [*modules.values(), root / PACKAGE / "lessons" / lesson / "__init__.py"]
     )

@@ -176,9 +176,6 @@ def _names(source: str, package: str) -> list[str]:
             elif isinstance(node, ast.ImportFrom):
                 base = resolve_name("." * node.level + (node.module or ""), package)
                 names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
-            elif isinstance(node, ast.Call) and ast.unparse(node.func) == "on_demand":
-                offered = [ast.literal_eval(keyword.value) for keyword in node.keywords]
-                names += [o if "." in o else f"{package}.{o}" for o in offered]
     except (SyntaxError, ValueError, ImportError):
         return []
     return [name for name in names if name.split(".")[0] == PACKAGE]

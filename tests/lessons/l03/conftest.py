@@ -9,7 +9,8 @@ from lessons.experiments import experiment_of
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, theory
+from robo_genesis.lessons.l03 import spec, study, study_spec, theory
+from robo_genesis.lessons.l03.pages import LESSON
 from robo_genesis.sim.bodies.contacts import SETTINGS
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 

@@ -5,7 +5,8 @@ from lessons.experiments import experiment_of
 from robot_runs import assigned, driven
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l04 import LESSON, spec, study, study_spec
+from robo_genesis.lessons.l04 import spec, study, study_spec
+from robo_genesis.lessons.l04.pages import LESSON
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 

@@ -2,7 +2,8 @@ import json
 
 import pytest
 
-from robo_genesis.lessons.l04 import LESSON, spec, study_spec
+from robo_genesis.lessons.l04 import spec, study_spec
+from robo_genesis.lessons.l04.pages import LESSON
 
 PAGES = ("lecture", "formula", "integrator", "batch")
 MODEL = spec.EXPECTED_MODEL

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from lessons.exercise_cells import page_of
 
-from robo_genesis.lessons import l08
-from robo_genesis.lessons.l08 import exercises
+from robo_genesis.lessons.l08 import exercises, metrics
 
 SOLVED = {
     cell.source.partition("(")[0].removeprefix("def "): cell.source
@@ -128,7 +127,7 @@ CHANGES = [(name, *each) for name, of in MISTAKES.items() for each in of.items()
 
 
 def judged(name, old, new):
-    names = {"np": np, "l08": l08}
+    names = {"np": np, "metrics": metrics}
     assert old in SOLVED[name]
     exec(SOLVED[name].replace(old, new), names)
     return getattr(exercises, TESTS[name])(names[name])

@@ -41,8 +41,8 @@ TABLE, HEIGHT, POSTURE = (
     for name in ("text.metric_table", "plots.height", "plots.posture")
 )
 SOURCES = (
-    "from robo_genesis.lessons import l02\nfrom robo_genesis.lessons.l02 import plots",
-    "page.show(l02.text.metric_table)\npage.show(plots.height)",
+    "from robo_genesis.lessons.l02 import plots, text",
+    "page.show(text.metric_table)\npage.show(plots.height)",
     "page.show(plots.posture)",
     "print('a number of no function')",
     "page.finish(scene)",
@@ -232,7 +232,7 @@ OTHER_SVG = "the page shows another image/svg+xml than the bundle"
             lambda ran: table(ran).metadata.update(robo_genesis=7),
             "the output is of 7, exp",
         ),
-        ("page.show(l02.text.metric_table)", id, "measured outputs is 2, expected 1"),
+        ("page.show(text.metric_table)", id, "measured outputs is 2, expected 1"),
         (
             "for k in (1, 2):\n    page.show(plots.height)",
             id,
@@ -246,7 +246,7 @@ OTHER_SVG = "the page shows another image/svg+xml than the bundle"
             "metric_table, a=1)`. Write",
         ),
         (
-            SHOW.replace("l02.text.metric_table", ""),
+            SHOW.replace("text.metric_table", ""),
             id,
             "expected that of `page.show()`. Write",
         ),

@@ -49,7 +49,9 @@ def dropped(folder, monkeypatch, tmp_path, built):
     lesson = Lesson(spec, {}, {}, {"drops": DROPPED})
     monkeypatch.setattr(registry, "LESSONS", (*registry.LESSONS, LESSON))
     monkeypatch.setitem(
-        sys.modules, f"{registry.__name__}.{LESSON}", SimpleNamespace(LESSON=lesson)
+        sys.modules,
+        f"{registry.__name__}.{LESSON}.pages",
+        SimpleNamespace(LESSON=lesson),
     )
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
     visual_shape.write_shape(

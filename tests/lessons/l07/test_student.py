@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robo_genesis.lessons.l07 import own, rungs, spec
+from robo_genesis.lessons.l07 import rungs, spec, student
 
 GOOD = {"margin": (0.1, 0.005, 1)}
 
@@ -42,22 +42,22 @@ def by_margin(results):
 def test_each_outcome_has_words(failed, mine, ladder, said):
     values = {rung: {"margin": 0.0 if rung in failed else 0.1} for rung in spec.RUNGS}
     results = dict.fromkeys(spec.RUNGS, GOOD) | mine
-    found = own.compared(ladder, results, SimpleNamespace(values=values))
+    found = student.compared(ladder, results, SimpleNamespace(values=values))
     assert all(words in found for words in said), found
     assert ("differ" in found) == ("differ" in said[0])
 
 
 def test_a_missing_function_is_named_and_another_error_is_raised(capsys):
-    assert own.attempt(not_written, None) is None
-    assert own.attempt(lambda facts: {"drift": (2e-3, 0, 1e-3)}, None)
+    assert student.attempt(not_written, None) is None
+    assert student.attempt(lambda facts: {"drift": (2e-3, 0, 1e-3)}, None)
     printed = capsys.readouterr().out
     assert "write ladder" in printed
     assert "2000.0 µm   FAILS" in printed
     with pytest.raises(KeyError):
-        own.attempt(lambda facts: {}["drift"], None)
+        student.attempt(lambda facts: {}["drift"], None)
 
 
 def test_the_generated_text_names_a_failed_rung(scenes, monkeypatch):
-    assert "passes all five rungs" in own.conclusions(scenes)
+    assert "passes all five rungs" in student.conclusions(scenes)
     monkeypatch.setattr(rungs, "failed", lambda run, scene: ["seen"])
-    assert "The scene fails seen." in own.conclusions(scenes)
+    assert "The scene fails seen." in student.conclusions(scenes)

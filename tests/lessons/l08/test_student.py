@@ -5,7 +5,7 @@ import pytest
 from lessons.changed_runs import put, trace
 from lessons.exercise_cells import solutions
 
-from robo_genesis.lessons.l08 import own, plots, spec
+from robo_genesis.lessons.l08 import plots, spec, student
 
 SOLVED, EXACT, ALL = solutions("l08"), spec.EXACT, slice(None)
 
@@ -46,37 +46,37 @@ def test_the_lab_passes_its_checks(lab):
     ],
 )
 def test_each_outcome_has_words(lab, arrays, said):
-    found = own.conclusions(trace("exact", **arrays)(lab))
+    found = student.conclusions(trace("exact", **arrays)(lab))
     assert all(words in found for words in said), found
 
 
 def test_the_student_s_numbers_stand_beside_the_course_s(lab):
     given = lab.traces["exact"], EXACT
-    table = own.counted(SOLVED["rungs"], *given).splitlines()
+    table = student.counted(SOLVED["rungs"], *given).splitlines()
     assert [line.split()[1:] for line in table[1:8]] == [["64", "64"]] * 7
     assert (
-        own.rate(SOLVED["rungs"], SOLVED["wilson"], *given).count("94.3 to 100.0 %")
+        student.rate(SOLVED["rungs"], SOLVED["wilson"], *given).count("94.3 to 100.0 %")
         == 2
     )
-    assert own.slide(SOLVED["creep"], *given).count("1.60 mm/s") == 2
-    assert "differ in the episodes" in own.counted(lambda *arrays: 3, *given)
+    assert student.slide(SOLVED["creep"], *given).count("1.60 mm/s") == 2
+    assert "differ in the episodes" in student.counted(lambda *arrays: 3, *given)
     none = trace("exact", force=put(ALL, 0))(lab).traces["exact"]
-    assert "No episode is carried" in own.slide(SOLVED["creep"], none, EXACT)
+    assert "No episode is carried" in student.slide(SOLVED["creep"], none, EXACT)
 
 
 def test_what_is_missing_is_named(lab, capsys):
     given = lab.traces["exact"], EXACT
-    assert "held            -      64" in own.counted(not_written, *given)
-    assert "yours   -" in own.rate(not_written, SOLVED["wilson"], *given)
-    assert "yours   -" in own.rate(SOLVED["rungs"], not_written, *given)
-    assert "yours   -" in own.slide(not_written, *given)
+    assert "held            -      64" in student.counted(not_written, *given)
+    assert "yours   -" in student.rate(not_written, SOLVED["wilson"], *given)
+    assert "yours   -" in student.rate(SOLVED["rungs"], not_written, *given)
+    assert "yours   -" in student.slide(not_written, *given)
     assert capsys.readouterr().out.count("write it") == 4
 
 
 def test_the_student_s_expert_is_the_course_s():
-    mine = own.waypoints(SOLVED["grasp_pose"], EXACT)
+    mine = student.waypoints(SOLVED["grasp_pose"], EXACT)
     assert np.allclose(mine, EXACT.waypoints, rtol=0, atol=1e-12)
-    expert = own.machine(SOLVED["ended"])(
+    expert = student.machine(SOLVED["ended"])(
         EXACT, np.zeros((9, 64, 7)), np.ones(64, bool)
     )
     q, expert.since[:2] = np.zeros((64, 9)), 9
