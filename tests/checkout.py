@@ -9,7 +9,7 @@ from tiny_book import SETTINGS
 
 from robo_genesis.core.git import git
 from robo_genesis.core.project import ROOT
-from robo_genesis.pipeline.fresh_checkout import environment
+from robo_genesis.pipeline.release import environment
 
 
 def copy_checkout(work: Path) -> Path:
@@ -25,7 +25,8 @@ def copy_checkout(work: Path) -> Path:
 def run_in(work: Path, *command: str, fails: bool = False) -> str:
     """Run a command in a copy, with no setting of an outer make; `python` is this interpreter."""
     words = [sys.executable if word == "python" else word for word in command]
-    given = environment(work, *SETTINGS) | {"PYTHONDONTWRITEBYTECODE": "1"}
+    given = {n: v for n, v in environment(work).items() if n not in SETTINGS}
+    given |= {"PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(words, cwd=work, env=given, capture_output=True, text=True)
     said = done.stdout + done.stderr
     assert (done.returncode != 0) == fails, said

@@ -170,8 +170,11 @@ def start(
         str(folder / "cache"),
         *more,
     ]
+    options = [n for n in settings if not n.startswith("ROBO_")]
+    arguments += [f"--{n.lower().replace('_', '-')}={settings.pop(n)}" for n in options]
     kept = {name: value for name, value in os.environ.items() if name not in SETTINGS}
-    command = [sys.executable, str(ROOT / "build_scripts" / script), *arguments]
+    command = [sys.executable, "-m", "robo_genesis", script.removesuffix(".py")]
+    command += arguments
     how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     how["env"] = kept | {"PYTHONPATH": str(ROOT)} | settings
     return subprocess.Popen(command, process_group=0 if own_group else None, **how)

@@ -1,4 +1,4 @@
-"""`make repin`: try another engine in a fresh checkout, then change pin and lock.
+"""`make repin`: try another engine in a worktree of the last commit, then change pin and lock.
 
 Nothing of the checkout is touched before the last step, which writes two files.
 """
@@ -7,25 +7,23 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from importlib.metadata import distributions
 from pathlib import Path
 
-from packaging.utils import canonicalize_name
 from packaging.version import InvalidVersion, Version
 
 from robo_genesis.core import project
-from robo_genesis.core.files import locked, write_whole
-from robo_genesis.core.git import git, unclean
-from robo_genesis.core.project import ENGINE, PUBLISHED, locked_versions
+from robo_genesis.core.files import write_whole
+from robo_genesis.core.git import git
+from robo_genesis.core.project import ENGINE, PUBLISHED
 from robo_genesis.maintain import report as refresh
+from robo_genesis.maintain.lock import LOCK, write_lock
 from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
-from robo_genesis.pipeline.fresh_checkout import environment, fresh_checkout
-from robo_genesis.pipeline.pages.kernels import wait_or_kill
+from robo_genesis.pipeline.release import environment, worktree
 
 # What a change of the pin changes: measured results are never kept in the tree.
-FILES = ("pyproject.toml", "requirements.lock")
+FILES = ("pyproject.toml", LOCK)
 
 # The line of `make book` for a page that failed or whose bundle is refused, and why.
 FAILED = re.compile(
@@ -41,7 +39,7 @@ def run_repin(
     cache: Path = project.CACHE,
     say: Callable[[str], None] = say,
 ) -> list[str]:
-    """Try the version in a checkout of the last commit, then write pin and lock.
+    """Try the version in a worktree of the last commit, then write pin and lock.
 
     Args:
         genesis: the engine's version.
@@ -56,37 +54,29 @@ def run_repin(
     Raises:
         ProjectError, BundleRefused: nothing was changed.
     """
-    folder, old = cache / "repin", project.engine_pin(root)
+    old = project.engine_pin(root)
     new = wanted_version(genesis, old)
-    if problems := unclean(root, "make repin tries the last commit"):
-        raise project.ProjectError("\n".join(problems))
-    require_locked_packages(root)
     before = texts(root)
-
-    with (
-        locked(folder / "lock", "Another make repin"),
-        fresh_checkout(root, folder / "work", cache) as work,
-    ):
-        trial = Trial(cache, old, new, work, Progress(say))
-        report, new = trial.run(), trial.new
+    shared = ("derived", project.COMPILED, "npm", project.STORE)
+    with worktree(root, cache / "repin" / "work", cache, shared) as work:
+        report = Trial(cache, old, new, work, Progress(say)).run()
         if texts(root) != before:
             raise project.ProjectError(
                 f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
-                "Commit or stash that change, then run make repin again; it reuses what is "
-                "compiled and executed."
+                "Commit or stash that change, then run make repin again."
             )
         write(root, texts(work))
     return [
         f"Pinned: {ENGINE} {old} → {new}, in {' and '.join(FILES)}. Nothing is committed.",
         f"Report: {report}",
         'Review both; describe the changes in CHANGELOG.md under "Evidence changed". The next '
-        "make book sets up .venv anew (with PYTHON=…, install the lock there first).",
+        "make book installs the new lock (with PYTHON=…, install it there first).",
         f"git restore {' '.join(FILES)} restores the old pin.",
     ]
 
 
 def wanted_version(given: str, pin: str) -> str:
-    """Return the wanted version, without a leading `v`; whether it exists, pip knows.
+    """Return the wanted version, without a leading `v`; whether it exists, the index knows.
 
     Args:
         given: what the user gave.
@@ -98,9 +88,9 @@ def wanted_version(given: str, pin: str) -> str:
     try:
         version = Version(given)
     except InvalidVersion:
-        valid = f"Usage: make repin GENESIS=1.2.3 (the pin is {pin})."
         raise project.ProjectError(
-            f"GENESIS={given!r} is not a version. {valid}"
+            f"GENESIS={given!r} is not a version. Usage: make repin GENESIS=1.2.3 (the pin is "
+            f"{pin})."
         ) from None
     if version == Version(pin):
         raise project.ProjectError(
@@ -109,42 +99,11 @@ def wanted_version(given: str, pin: str) -> str:
     return str(version)
 
 
-def require_locked_packages(root: Path) -> None:
-    """Raise ProjectError if this environment is not the one that the lock describes.
-
-    The new lock keeps the installed versions, so they must be those of the old one.
-    """
-    installed = {
-        canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()
-    }
-    unlike = [
-        f"{name} {found} instead of {version}"
-        for name, version in locked_versions(
-            (root / FILES[1]).read_text("utf8")
-        ).items()
-        if (found := installed.get(canonicalize_name(name), "(none)")) != version
-    ]
-    if unlike:
-        raise project.ProjectError(
-            f"This environment differs from requirements.lock: {', '.join(unlike)}. Install the "
-            "lock (pip install -r requirements.lock), or omit PYTHON=…, so that .venv is used."
-        )
-
-
 def set_pin(root: Path, old: str, new: str) -> None:
-    """Write another engine version into the one line that pins it.
-
-    Raises:
-        ProjectError: the line is not written as expected.
-    """
+    """Write another engine version into the one line that pins it."""
     path = root / FILES[0]
-    pattern = rf"(?<=[\"']){ENGINE}\s*==\s*{re.escape(old)}(?=[\"'])"
-    text, count = re.subn(pattern, f"{ENGINE}=={new}", path.read_text("utf8"))
-    if count != 1:
-        raise project.ProjectError(
-            f'{path} has "{ENGINE}=={old}" {count} times, expected once. Write the pin in one line.'
-        )
-    path.write_text(text, "utf8")
+    text = path.read_text("utf8")
+    path.write_text(text.replace(f"{ENGINE}=={old}", f"{ENGINE}=={new}"), "utf8")
 
 
 def texts(root: Path) -> dict[str, bytes]:
@@ -160,10 +119,10 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 
 @dataclass(slots=True)
 class Trial:
-    """The steps in the checkout, each with its log.
+    """The steps in the worktree, each with its log.
 
-    `before` is what the old version built, `failed` what the current step has found:
-    the name of each page that is not accepted → `failed` or `refused`, and why.
+    `before` is what the old version built, `failed` the name of each page that the
+    current step did not accept → `failed` or `refused`, and why.
     """
 
     cache: Path
@@ -177,75 +136,63 @@ class Trial:
     def run(self) -> Path:
         """Resolve, build with the old and the new version, report, test; return the report."""
         set_pin(self.work, self.old, self.new)
-        lock = str(self.work / "build_scripts" / "lock.py")
-        self.command("resolve", f"{ENGINE} {self.new}", sys.executable, lock, "--keep")
-        asked, locked = (
-            self.new,
-            locked_versions((self.work / FILES[1]).read_text("utf8")),
-        )
-        self.new = locked[ENGINE]  # as the index spells it
-        set_pin(self.work, asked, self.new)
+        self.progress("resolve", f"{ENGINE} {self.new}")
+        write_lock(self.work)
         new = texts(self.work)
         git(self.work, "checkout", "--", *FILES)
-        self.command(
-            "book", f"with {self.old}", "make", "book", f"PYTHON={sys.executable}"
-        )
-        site = (self.work / "book" / PUBLISHED).rename(
-            self.work / ".cache" / "old"
-        ) / "html"
-        self.before = refresh.read_build(self.work, self.old, site)
+        self.command("book", f"with {self.old}", f"PYTHON={sys.executable}")
+        self.before = refresh.read_build(self.work, self.old, self.site)
         write(self.work, new)
-        python = f"BASE_PYTHON={sys.executable}"
-        self.command("install", "the new lock", "make", ".venv/.installed", python)
-        self.command("book", f"with {self.new}", "make", "book")
+        self.command(
+            ".venv/.installed", "the new lock", f"BASE_PYTHON={sys.executable}"
+        )
+        self.command("book", f"with {self.new}")
         report = self.write_report()
-        self.command("test", f"with {self.new}", "make", "test")
+        self.command("test", f"with {self.new}")
         return report
 
-    def command(self, stage: str, what: str, *command: str) -> None:
-        """Run one command there; a failure names it and its log, and ends with a report.
+    @property
+    def site(self) -> Path:
+        """The folder of the HTML that the worktree built."""
+        return self.work / "book" / PUBLISHED / "html"
+
+    def command(self, target: str, what: str, *settings: str) -> None:
+        """Make one target there; a failure names it and its log, and ends with a report.
 
         Raises:
             ProjectError: the command failed.
         """
-        version = project.engine_pin(self.work)
-        log = self.cache / "repin" / "logs" / f"{stage}-{version}.log"
+        stage = target.strip(".").partition("/")[0]
+        log = self.cache / "repin" / "logs" / f"{stage}-{what.split()[-1]}.log"
         self.progress(stage, what, f"log: {log}")
-        self.failed = {}
-        if run_logged(command, self.work, log, lambda: self.name_failed(stage, log)):
-            self.name_failed(stage, log)
-            head, lines = f"Failed: {stage} {what}", last_words(log)
-            remedy = (
-                f"The checkout still pins {self.old}. Give another version, or change what failed "
-                f"so that it passes with {self.new} too, and commit; then run make repin again. It "
-                "reuses what is compiled and executed, and begins with the pages that failed."
+        if not run_logged(["make", target, *settings], self.work, log):
+            return
+        text = ANSI.sub("", log.read_text("utf8", errors="replace"))
+        if target == "book":  # the tests print builds of their own
+            self.failed = {
+                page: (state, why) for page, state, why in FAILED.findall(text)
+            }
+        head, lines = f"Failed: {target} {what}", text.splitlines()[-LINES:]
+        remedy = (
+            f"The checkout still pins {self.old}. Give another version, or change what failed "
+            f"so that it passes with {self.new} too, and commit; then run make repin again. It "
+            "reuses what is compiled and executed."
+        )
+        report = self.write_report(head, remedy, *lines)
+        raise project.ProjectError(
+            "\n".join(
+                [*lines, f"Log: {log}", f"Report: {report}", "", f"{head}. {remedy}"]
             )
-            places = [
-                f"Log: {log}",
-                f"Report: {self.write_report(head, remedy, *lines)}",
-            ]
-            raise project.ProjectError(
-                "\n".join([*lines, *places, "", f"{head}. {remedy}"])
-            )
-
-    def name_failed(self, stage: str, log: Path) -> None:
-        """Print each page of a build that failed or was refused since the last call."""
-        for page, state, why in FAILED.findall(log.read_text("utf8", errors="replace")):
-            if (
-                stage == "book" and page not in self.failed
-            ):  # tests print builds of their own
-                self.failed[page] = state, why
-                self.progress(stage, page, f"{state}: {why}")
+        )
 
     def write_report(self, *failed: str) -> Path:
         """Compare what both versions built, as far as they did, and write the report."""
         found = refresh.Refresh((self.old, self.new))
         if self.before:
-            site = self.work / "book" / PUBLISHED / "html"
             absent = [
                 page for page, (state, _) in self.failed.items() if state == "failed"
             ]
-            after = refresh.read_build(self.work, self.new, site, absent)
+            after = refresh.read_build(self.work, self.new, self.site, absent)
             found = refresh.compare_builds(self.before, after)
         found = replace(found, failed=failed, pages=self.failed)
         folder = self.cache / "reports" / f"repin-{self.old}-{self.new}"
@@ -253,38 +200,25 @@ class Trial:
         return refresh.document(found).write(folder)
 
 
-def last_words(log: Path) -> list[str]:
-    """Return what a command wrote after its last line of progress, without empty lines."""
-    text = ANSI.sub("", log.read_text("utf8", errors="replace"))
-    after = re.split(r"^\[ *[\d.]+ s\] .*$", text, flags=re.MULTILINE)[-1]
-    return [line.rstrip() for line in after.splitlines() if line.strip()][-LINES:]
-
-
-def run_logged(
-    command: Sequence[str],
-    folder: Path,
-    log: Path,
-    meanwhile: Callable[[], None] = lambda: None,
-) -> int:
-    """Run a command in a checkout with its output in a log, and return its exit status.
+def run_logged(command: list[str], folder: Path, log: Path) -> int:
+    """Run a command in a worktree with its output in a log, and return its exit status.
 
     Args:
         command: program and arguments; it ends with this process.
-        folder: the checkout.
+        folder: the worktree.
         log: file of its output, written over.
-        meanwhile: called each second.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
-    with log.open("wb") as output:
-        process = subprocess.Popen(
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
             command,
             cwd=folder,
             env=environment(folder),
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,
-            # a Ctrl-C of the terminal reaches this process alone
-            start_new_session=True,
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
-        )
-        return wait_or_kill(process, meanwhile)
+        ) as process,
+    ):
+        return process.wait()

@@ -1,6 +1,5 @@
-"""What the commands share: arguments, settings from the environment, and exit statuses."""
+"""What the commands share: progress, processes and exit statuses."""
 
-import argparse
 import ctypes
 import gc
 import os
@@ -11,17 +10,9 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import (
-    BACKEND,
-    BOOK,
-    BUILD_BACKEND,
-    CACHE,
-    RENDER,
-    ProjectError,
-)
+from robo_genesis.core.project import ProjectError
 from robo_genesis.core.text import ended
 from robo_genesis.evidence.refusals import BundleRefused
 
@@ -125,76 +116,3 @@ def output_of(command: Sequence[str], refusal: str, **options: Any) -> str:
             f"{refusal}, {ended(done.returncode)}:\n{done.stdout}{done.stderr}"
         )
     return done.stdout
-
-
-def choice(name: str, default: str, choices: tuple[str, ...], reason: str = "") -> str:
-    """Return an environment variable that has few valid values; exit with 1 on another.
-
-    Args:
-        name: the variable.
-        default: its value if it is unset or empty.
-        choices: the valid values.
-        reason: why no other is valid.
-    """
-    value = os.environ.get(name) or default
-    if value not in choices:
-        sys.exit(
-            f"{name}={value!r} is not valid{reason}. Choices: {', '.join(choices)}."
-        )
-    return value
-
-
-def port() -> int:
-    """Return PORT, by default 8000; exit with 1 if it is not the number of a port."""
-    value = os.environ.get("PORT") or "8000"
-    if not value.isdecimal() or int(value) > 65535:
-        sys.exit(
-            f"PORT={value!r} is not valid. Choices: 1 to 65535, or 0 for a free port."
-        )
-    return int(value)
-
-
-def positive(name: str, default: int) -> int:
-    """Return an environment variable that is a number from 1; exit with 1 on another value."""
-    value = os.environ.get(name) or str(default)
-    if not (value.isdecimal() and int(value) > 0):
-        sys.exit(f"{name}={value!r} is not valid. Give a number from 1.")
-    return int(value)
-
-
-def path(name: str) -> Path | None:
-    """Return an environment variable as an absolute path, None if it is unset or empty."""
-    value = os.environ.get(name)
-    return absolute(value) if value else None
-
-
-def absolute(value: str) -> Path:
-    """Return a text as an absolute path."""
-    return Path(value).absolute()
-
-
-def set_contract() -> None:
-    """Set the camera as RENDER says, and the CPU; exit with 1 on another setting."""
-    os.environ[RENDER] = choice("RENDER", "1", ("0", "1"))
-    os.environ[BACKEND] = choice(
-        BACKEND,
-        BUILD_BACKEND,
-        (BUILD_BACKEND,),
-        " for a build, which executes its pages on the CPU; `make evidence` records accelerators. "
-        "Unset it",
-    )
-
-
-def parser(description: str) -> argparse.ArgumentParser:
-    """Return a parser with the arguments of the commands that execute pages."""
-    arguments = argparse.ArgumentParser(description=description.splitlines()[0])
-    arguments.add_argument(
-        "--book", type=absolute, default=BOOK, help="folder of the pages"
-    )
-    arguments.add_argument(
-        "--cache", type=absolute, default=CACHE, help="folder of the caches"
-    )
-    arguments.add_argument(
-        "--timeout", type=int, default=TIMEOUT, help="seconds for one cell"
-    )
-    return arguments

@@ -11,7 +11,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, put, settle, settle_below
-from robo_genesis.core.git import git, require_history, unclean
+from robo_genesis.core.git import require_history, unclean
 from robo_genesis.pipeline import npm, up_to_date
 from robo_genesis.pipeline.agreement import agree
 from robo_genesis.pipeline.bundles.of_build import verify_results
@@ -32,7 +32,6 @@ from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_env
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
 from robo_genesis.pipeline.pages.store import (
     Verify,
-    exported,
     forget,
     handed_over,
     places,
@@ -50,7 +49,7 @@ class Build:
 
     `jobs` pages run at once; `verify` None is the course's own verification. `release`
     demands a clean tree and every lesson's required evidence, and reuses no executed
-    page of the cache; `fresh_checkout` calls it so. `executed` holds all pages as
+    page of the cache; `release.build` calls it so. `executed` holds all pages as
     another machine executed them; then none is executed here. `second` holds a second
     execution, which must agree with it. `to` is the book that gets the site, by default
     `book`. `command` is the command that bundles name. `sphinx` loads Sphinx, by
@@ -156,21 +155,19 @@ def run_build(build: Build) -> list[str]:
         return [f"Site: {html / 'index.html'}", *summary(executed=ran), *agreed]
 
 
-def export_one(name: str, to: Path | None, build: Build) -> list[str]:
-    """Execute one page of the book, unless the store has it, and export it as files.
+def execute_one(name: str, build: Build) -> list[str]:
+    """Execute one page of the book, unless the store has it.
 
     Args:
         name: the page as the table of contents names it, or as `l04/lab`.
-        to: gets the page's folder.
         build: where book and caches are, and with which resources.
 
     Returns:
-        The last lines for the user: where the page is, and what executed it.
+        The last lines for the user: what executed it, and where its log is.
 
     Raises:
-        BuildError: the book lacks the page, or it failed or is refused. Nothing was
-            exported.
-        ProjectError: folder, checkout or book are not fit for it, or a build runs here.
+        BuildError: the book lacks the page, or it failed or is refused.
+        ProjectError: checkout or book are not fit for it, or a build runs here.
     """
     with build_lock(build.cache):
         engine, pages, into, environment = _prepare(build)
@@ -183,20 +180,13 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
             raise BuildError(
                 f"PAGE={name!r} is not valid. Executed pages of this book: {valid}."
             )
-        if to is None:
-            raise BuildError(
-                "TO is not set. Name the folder that gets the page: TO=folder."
-            )
-        place = exported(names[name], to)
         progress = Progress(build.say)
         [result] = results = _execute(build, [names[name]], into, environment, progress)
         verify = build.verify or partial(verify_bundle, book=build.book)
         if refused := verify_results(verify, results, progress)[1]:
             raise BuildError(*refused)
-        put(result.folder, place)
-        progress("export", result.page.docname, result.status)
     return [
-        f"Executed page: {place}",
+        f"Executed page: {into[result.page.docname]} ({result.status})",
         f"Engine: {project.ENGINE} {engine}, run {result.run_id}",
     ]
 
@@ -285,11 +275,7 @@ def _accepted(
     if refused := refused + refused_records(build.book, labs):
         raise BuildError("\n".join(refused))
     if build.release:
-        dirty, commit = (
-            unclean(build.root),
-            git(build.root, "rev-parse", "HEAD").strip(),
-        )
-        if problems := dirty + missing_for_release(build.book, labs, manifests, commit):
+        if problems := unclean(build.root) + missing_for_release(build.book, labs):
             raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
         progress("release", "clean tree, current evidence")
     return manifests

@@ -1,6 +1,7 @@
-"""A release is one commit with all required evidence; everything else is named and refused."""
+"""A release is one commit with all required evidence; what is lacking is named."""
 
 import shutil
+from argparse import Namespace
 from pathlib import Path
 
 import pytest
@@ -8,54 +9,79 @@ from spoilers import predicate, seal
 from test_status import spoil_stale
 from tiny_book import commit, git
 
-from robo_genesis.core.git import unclean
-from robo_genesis.evidence.bundle import read_manifest
+from robo_genesis.core.project import BOOK, ProjectError
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.pipeline.release import missing_for_release
+from robo_genesis.pipeline import release
+from robo_genesis.pipeline.release import missing_for_release, worktree
+
+MAIN = """
+import os, sys
+from pathlib import Path
+page = Path("page.md").read_text()
+place, options = Path({found!r}), " ".join(sys.argv[1:])
+place.write_text(page + options + os.environ["PYTHONPATH"])
+sys.exit(page != "committed")
+"""
 
 
 @pytest.fixture
-def checkout(tmp_path) -> Path:
-    root = tmp_path / "checkout"
-    root.mkdir()
-    (root / "page.md").write_text("A page.\n")
+def root(tmp_path) -> Path:
+    """A checkout whose command `book` says what it found."""
+    root = tmp_path / "a checkout"
+    (root / "robo_genesis").mkdir(parents=True)
+    main = MAIN.format(found=str(tmp_path / "found"))
+    (root / "robo_genesis" / "__main__.py").write_text(main)
+    (root / "page.md").write_text("committed")
+    (root / ".gitignore").write_text("/.cache\n__pycache__/\n")
     commit(root)
     return root
 
 
 @pytest.fixture
-def built(folder, checkout) -> dict[str, Path]:
-    """A bundle that this commit's build left."""
-    recorded_at(folder, git(checkout, "rev-parse", "HEAD").strip())
-    return {"l04": folder}
+def build(root, monkeypatch):
+    monkeypatch.setattr(release, "ROOT", root)
+    settings = {"render": "1", "jobs": 2, "site_url": "", "solutions": "0"}
+    options = Namespace(book=BOOK, cache=root / ".cache", timeout=9, **settings)
+    return lambda: release.build(options)
 
 
-def recorded_at(folder: Path, commit: str | None, dirty: bool = False) -> None:
-    """Let a bundle say at which state of the checkout it was recorded."""
-    predicate(git=commit and {"commit": commit, "dirty": dirty})(folder)
-    seal(folder)
+def test_a_release_is_built_from_the_commit_with_its_own_code(root, build):
+    (root / "page.md").write_text("changed")
+    (root / ".cache" / "engine").mkdir(parents=True)
+    with pytest.raises(ProjectError, match=r"1 changed or new files \(page\.md\)"):
+        build()
+    git(root, "stash")
+    (root / ".cache" / "release").mkdir()  # of a release that was killed
+    assert build() == 0
+    tree = root / ".cache" / "release"
+    found = (root.parent / "found").read_text()
+    assert found.startswith("committedbook --release=1 --render=1 --jobs=2")
+    assert f"--to={BOOK}{tree}" in found
+    assert not tree.exists()
+    assert (root / ".cache" / "engine").is_dir()
 
 
-def missing(book: Path, built: dict[str, Path | None], root: Path) -> list[str]:
-    manifests = {f"{name}/lab": read_manifest(at) for name, at in built.items() if at}
-    return missing_for_release(
-        book, built, manifests, git(root, "rev-parse", "HEAD").strip()
-    )
+def test_a_release_that_fails_leaves_its_worktree_for_the_report(root, build):
+    (root / "page.md").write_text("wrong")
+    commit(root)
+    with pytest.raises(ProjectError, match="The release failed"):
+        build()
+    assert (root / ".cache" / "release" / "page.md").is_file()
+
+
+def test_two_users_of_a_worktree_are_refused(root):
+    folder = root / ".cache" / "work"
+    with (
+        worktree(root, folder, root / ".cache", ()),
+        pytest.raises(ProjectError, match="Another user of"),
+        worktree(root, folder, root / ".cache", ()),
+    ):
+        pass
 
 
 @pytest.fixture
 def book(tmp_path, courses_pages) -> Path:
     return tmp_path / "book"
-
-
-def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, book):
-    assert unclean(checkout) == []
-    assert missing(book, built, checkout) == []
-    git(
-        checkout, "config", "status.showUntrackedFiles", "no"
-    )  # whatever the user's git shows
-    (checkout / "new.md").write_text("New.\n")
-    assert "new.md" in unclean(checkout)[0]
 
 
 @pytest.mark.parametrize(
@@ -65,50 +91,28 @@ def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, boo
         (
             "cpu",
             True,
-            "l04 requires evidence of its minimum hardware, cpu, which is stale: ",
+            "l04 requires evidence of its minimum hardware, cpu, which is stale",
         ),
         (
             "amdgpu",
             True,
-            "l04 requires evidence of its minimum hardware, amdgpu, which is missing",
+            "l04 requires evidence of its minimum hardware, amdgpu, which is mi",
         ),
     ],
 )
-def test_lacking_evidence_is_named(
-    checkout, built, book, monkeypatch, hardware, has_lab, said
-):
+def test_lacking_evidence_is_named(folder, book, monkeypatch, hardware, has_lab, said):
+    assert missing_for_release(book, {"l04": folder}) == []
     monkeypatch.setattr(l04, "MINIMUM_HARDWARE", hardware)
     if hardware == "cpu":
-        spoil_stale(built["l04"])
-    [line] = missing(book, built if has_lab else {"l04": None}, checkout)
+        spoil_stale(folder)
+    [line] = missing_for_release(book, {"l04": folder if has_lab else None})
     assert line.startswith(said)
 
 
-@pytest.mark.parametrize(
-    ("commit", "dirty", "said"),
-    [
-        ("1" * 40, False, "recorded at commit 1111"),
-        ("1" * 40, True, "recorded from a changed tree (1111"),
-        (None, False, "recorded outside a git checkout"),
-    ],
-)
-def test_evidence_of_another_state_of_the_tree_is_named(
-    checkout, built, book, commit, dirty, said
-):
-    recorded_at(built["l04"], commit, dirty)
-    [line] = missing(book, built, checkout)
-    assert line.startswith("l04/lab, this build: ")
-    assert said in line
-
-
-def test_of_recordings_only_those_of_a_changed_tree_stop_a_release(
-    checkout, built, book
-):
-    recorded = shutil.copytree(built["l04"], book / "evidence" / "l04" / "cpu")
-    recorded_at(recorded, "1" * 40)
-    assert missing(book, built, checkout) == []
-    recorded_at(recorded, "1" * 40, dirty=True)
-    [line] = missing(book, built, checkout)
-    assert line.startswith("evidence/l04/cpu: recorded from a changed tree")
-    spoil_stale(recorded)
-    assert missing(book, built, checkout) == []
+@pytest.mark.parametrize(("dirty", "stops"), [(False, False), (True, True)])
+def test_a_recording_of_a_changed_tree_stops_a_release(folder, book, dirty, stops):
+    recorded = shutil.copytree(folder, book / "evidence" / "l04" / "cpu")
+    predicate(git={"commit": "1" * 40, "dirty": dirty})(recorded)
+    seal(recorded)
+    lines = missing_for_release(book, {"l04": folder})
+    assert [line.partition(" was")[0] for line in lines] == ["evidence/l04/cpu"] * stops

@@ -4,16 +4,12 @@ The host needs Python, but no other package: what this module imports, imports n
 """
 
 import os
-import stat
+import shutil
 import subprocess
-import sys
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.core.project import ENGINE_PREFIXES, ProjectError
+from robo_genesis.core.project import ENGINE_PREFIXES, ROOT, ProjectError
 
-ENGINES = ("docker", "podman")
 IMAGE = "robo-genesis-rocm"
 DOCKERFILE = ".rocm/Dockerfile"
 PLACE = "/course"  # Where the container sees the checkout
@@ -22,83 +18,52 @@ PLACE = "/course"  # Where the container sees the checkout
 DEVICES = (Path("/dev/kfd"), Path("/dev/dri"))
 
 # How the variables begin that the container gets; the image has a ROCm of its own.
-PASSED = tuple(
-    name for name in ENGINE_PREFIXES if name not in ("ROCM_", "NVIDIA_TF32_")
-)
-
-WITHOUT = "book/evidence/recording.md describes the steps without a container."
+PASSED = tuple(name for name in ENGINE_PREFIXES if name != "ROCM_")
 
 
-@dataclass(frozen=True, slots=True)
-class Host:
-    """The machine that starts the container; `find` returns the path of a program, or None."""
-
-    root: Path
-    find: Callable[[str], str | None]
-    environment: Mapping[str, str]
-    devices: tuple[Path, ...] = DEVICES
-
-
-def record(host: Host) -> int:
-    """Build the image and record in it; return the status of the first command that fails, or 0.
+def record(lesson: str) -> int:
+    """Build the image and record in it; return the status of the command that failed, or 0.
 
     Args:
-        host: see there.
+        lesson: whose lab is recorded; empty for all.
 
     Raises:
-        ProjectError: nothing was started.
+        ProjectError: docker and podman, or a device is missing. Nothing was started.
     """
-    for command in commands(host):
-        status = subprocess.run(command, cwd=host.root, check=False).returncode
-        if status:
-            print(f"FAILED with status {status}: {' '.join(command)}", file=sys.stderr)
-            return status
-    return 0
-
-
-def commands(host: Host) -> list[list[str]]:
-    """Return the command that builds the image and the one that records a lab in it.
-
-    Docker's options are those of AMD's page on ROCm containers. The process has the ids
-    of the user, so that the bundle belongs to the user, and the groups of the devices,
-    `video` and `render`. Podman keeps the user's own groups.
-
-    Args:
-        host: see there. LESSON of its environment names the lab.
-
-    Raises:
-        ProjectError: docker and podman, or a device is missing.
-    """
-    engine = next(filter(host.find, ENGINES), None)
+    engine = shutil.which("docker") or shutil.which("podman")
     if engine is None:
         raise ProjectError(
-            f"PATH has neither {' nor '.join(ENGINES)}. Install one of them, or record without it: "
-            f"{WITHOUT}"
+            "PATH has neither docker nor podman. Install one of them, or record without a "
+            "container: see book/evidence/recording.md."
         )
-    for device in host.devices:
-        if not device.exists():
-            raise ProjectError(
-                f"{device} is missing here. A recording needs an AMD GPU with its kernel driver: "
-                f"{' and '.join(map(str, host.devices))} must exist. Install amdgpu-dkms, or use "
-                "another machine."
-            )
+    if missing := [str(device) for device in DEVICES if not device.exists()]:
+        raise ProjectError(
+            f"{' and '.join(missing)} missing here. A recording needs an AMD GPU with its kernel "
+            "driver. Install amdgpu-dkms, or use another machine."
+        )
     build = [engine, "build", "--tag", IMAGE, "--file", DOCKERFILE, "."]
+    status = subprocess.run(build, cwd=ROOT, check=False).returncode
+    return status or subprocess.run(run_command(engine, lesson), check=False).returncode
+
+
+def run_command(engine: str, lesson: str) -> list[str]:
+    """Return the command that records in the container.
+
+    Docker's options are those of AMD's page on ROCm containers. The process has the ids
+    of the user, so that the bundle belongs to the user, and the groups of the devices.
+    Podman keeps the user's own groups.
+    """
     run = [engine, "run", "--rm", "--security-opt=seccomp=unconfined"]
-    run += [f"--device={device}" for device in host.devices]
-    if engine == "podman":
+    run += [f"--device={device}" for device in DEVICES]
+    if Path(engine).name == "podman":
         run += ["--group-add=keep-groups", "--userns=keep-id"]
     else:
-        nodes = [
-            node for device in host.devices for node in (device, *device.glob("*"))
-        ]
-        groups = {
-            node.stat().st_gid for node in nodes if stat.S_ISCHR(node.stat().st_mode)
-        }
+        nodes = [node for device in DEVICES for node in (device, *device.glob("*"))]
+        groups = {node.stat().st_gid for node in nodes if not node.is_dir()}
         run += [f"--group-add={group}" for group in sorted(groups)]
         run += [f"--user={os.getuid()}:{os.getgid()}"]
-    run += [f"--volume={host.root}:{PLACE}", f"--workdir={PLACE}"]
-    passed = sorted(
-        n for n in host.environment if n.startswith(PASSED) or n == "LESSON"
-    )
-    run += [f"--env={given}" for given in ("HOME=/tmp", "USER=course", *passed)]
-    return [build, [*run, IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]]
+    run += [f"--volume={ROOT}:{PLACE}", f"--workdir={PLACE}"]
+    passed = sorted(name for name in os.environ if name.startswith(PASSED))
+    run += [f"--env={name}" for name in ("HOME=/tmp", "USER=course", *passed)]
+    run += [IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]
+    return [*run, *([f"LESSON={lesson}"] if lesson else [])]

@@ -20,13 +20,11 @@ import numpy as np
 from nbformat import NotebookNode
 from sphinx.config import Config
 
-from robo_genesis import install
 from robo_genesis.core import project
 from robo_genesis.core.files import NO_SOURCE, derived, files_below, write_whole
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.install import CONSTRAINTS, ENVIRONMENT
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages import built
@@ -58,6 +56,8 @@ DEBIAN = (
     "libegl1",
     "libgl1",
 )  # Packages of Debian that a fresh system lacks
+
+CONSTRAINTS = "constraints.txt"  # The lock, beside the wheel
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 EPOCH = "315532800"  # 1980-01-01, the oldest time that a zip can hold
@@ -119,15 +119,16 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
 def run_commands(torch_index: str, notebook: str = "") -> tuple[str, ...]:
     """Return the commands that run a student notebook in an environment of its own.
 
-    The wheel itself installs, because Python can run a module of an archive.
-
     Args:
         torch_index: address of an index with builds of Torch for the CPU.
         notebook: file name of the notebook; all files are in the current folder.
     """
+    packages = f"./{wheel_name()} jupyterlab"
     return (
-        f"PYTHONPATH={wheel_name()} python3 -m {install.__name__} \\\n  {torch_index}",
-        f"{ENVIRONMENT}/bin/jupyter lab {notebook}".rstrip(),
+        "python3 -m venv course",
+        f"course/bin/pip install -c {CONSTRAINTS} {packages} \\\n"
+        f"  --extra-index-url {torch_index}",
+        f"course/bin/jupyter lab {notebook}".rstrip(),
     )
 
 

@@ -1,6 +1,5 @@
 """`make verify`: a line for each bundle, and the exit status of the worst."""
 
-import importlib.util
 import shutil
 
 import pytest
@@ -16,21 +15,15 @@ from spoilers import (
     seal,
 )
 
-from robo_genesis.core.project import ROOT, ProjectError, engine_pin
+from robo_genesis.core.project import ProjectError, engine_pin
 from robo_genesis.evidence import advice
+from robo_genesis.pipeline.bundles import overview
 
 
 @pytest.fixture
-def command(tmp_path, monkeypatch, courses_pages):
-    """The script, on a book without bundles."""
-    spec = importlib.util.spec_from_file_location(
-        "verify", ROOT / "build_scripts" / "verify.py"
-    )
-    script = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(script)
-    monkeypatch.setattr(script, "BOOK", tmp_path / "book")
-    monkeypatch.delenv("BUNDLE", raising=False)
-    return script
+def verify(tmp_path, courses_pages):
+    """Verify a book without bundles, or one folder; return the exit status."""
+    return lambda folder=None: overview.verify(folder, tmp_path / "book")
 
 
 @pytest.fixture
@@ -48,13 +41,13 @@ def built(folder, tmp_path):
     )
 
 
-def test_no_bundle_is_said_and_no_error(command, capsys):
-    assert command.main() == 0
+def test_no_bundle_is_said_and_no_error(verify, capsys):
+    assert verify() == 0
     assert capsys.readouterr().out.startswith("No bundle is recorded in book/evidence")
 
 
-def test_each_bundle_has_a_line(command, recorded, built, capsys):
-    assert command.main() == 0
+def test_each_bundle_has_a_line(verify, recorded, built, capsys):
+    assert verify() == 0
     lines = [line.split(maxsplit=4) for line in capsys.readouterr().out.splitlines()]
     assert [line[:4] for line in lines] == [
         ["l04", "recorded", "amdgpu", "verified"],
@@ -76,18 +69,16 @@ stale = both(older_compiler, seal)
         (filed_as("rocm"), "rocm     refused      backend: "),
     ],
 )
-def test_what_is_not_current_is_status_1(command, recorded, built, capsys, spoil, said):
+def test_what_is_not_current_is_status_1(verify, recorded, built, capsys, spoil, said):
     spoil(recorded)
-    assert command.main() == 1
+    assert verify() == 1
     out = capsys.readouterr().out
     assert said in out
     assert "l04 built      cpu      verified" in out
 
 
-def test_what_does_not_show_the_claims_is_status_1(
-    command, recorded, undecided, capsys
-):
-    assert command.main() == 1
+def test_what_does_not_show_the_claims_is_status_1(verify, recorded, undecided, capsys):
+    assert verify() == 1
     assert (
         "inconclusive Not shown of what the lesson claims: peak_speed"
         in capsys.readouterr().out
@@ -95,14 +86,9 @@ def test_what_does_not_show_the_claims_is_status_1(
 
 
 @pytest.fixture
-def check(command, monkeypatch, capsys):
+def check(verify, capsys):
     """Check one folder alone; return exit status and lines."""
-
-    def run(folder):
-        monkeypatch.setenv("BUNDLE", str(folder))
-        return command.main(), capsys.readouterr().out.splitlines()
-
-    return run
+    return lambda folder: (verify(folder), capsys.readouterr().out.splitlines())
 
 
 def test_one_folder_is_checked_alone(check, recorded, folder, tmp_path):
@@ -159,7 +145,7 @@ def test_a_copy_of_the_build_s_run_is_not_an_accelerator_s(check, folder, built)
 
 def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder):
     for _ in range(2):  # the first reads the pages, which takes Jupyter's packages
-        said, loaded = run_watched("verify.py", BUNDLE=str(folder))
+        said, loaded = run_watched("verify.py", f"--bundle={folder}")
     assert "verified" in said
     assert "numpy" in loaded
     assert not loaded & {*ENGINE, *JUPYTER, "matplotlib"}
@@ -170,8 +156,6 @@ def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder)
     assert not loaded & {*ENGINE, *JUPYTER, "matplotlib"}
 
 
-def test_a_broken_book_is_named(command, recorded, monkeypatch):
-    monkeypatch.undo()
-    monkeypatch.setattr(command, "BOOK", recorded.parents[2])
+def test_a_broken_book_is_named(recorded):
     with pytest.raises(ProjectError, match=r"_toc.yml:1: it cannot be read"):
-        command.main()
+        overview.verify(None, recorded.parents[2])

@@ -163,17 +163,6 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
     assert "the engine would start now" in backend["found"]
 
 
-def test_the_wheel_installs_itself_beside_the_constraints(tmp_path):
-    command = [sys.executable, "-m", "robo_genesis.install"]
-    given = os.environ | {"PYTHONPATH": files.build_wheel(tmp_path).name}
-    done = subprocess.run(
-        command, cwd=tmp_path, env=given, capture_output=True, text=True
-    )
-    assert f"{tmp_path}/constraints.txt is not a file" in done.stderr
-    assert done.returncode == 1
-    assert not (tmp_path / "course").exists()
-
-
 @pytest.mark.parametrize(
     ("given", "valid", "offered"),
     [
@@ -217,6 +206,7 @@ def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
     assert text.endswith(
         f"To run it on {files.system()}, put `{wheel}` and `constraints.txt` from the lab's page "
         "beside it, and in that folder:\n\n```console\n"
-        f"PYTHONPATH={wheel} python3 -m robo_genesis.install \\\n  https://example.org/cpu\n"
+        f"python3 -m venv course\ncourse/bin/pip install -c constraints.txt ./{wheel} jupyterlab "
+        "\\\n  --extra-index-url https://example.org/cpu\n"
         "course/bin/jupyter lab lab.ipynb\n```"
     )

@@ -1,0 +1,108 @@
+"""`make verify`: the states of all bundles, or of one, with what its refusal means.
+
+One line for each bundle that is recorded in the book and for each of the last build:
+lesson, backend, state, reason. For one folder, also what a refusal means for somebody
+who recorded it at home, and how its numbers differ from the last build's run on the CPU
+of the same page.
+"""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from robo_genesis.core.project import BOOK, PUBLISHED
+from robo_genesis.core.text import printable
+from robo_genesis.evidence import report
+from robo_genesis.evidence.advice import advice
+from robo_genesis.evidence.bundle import read_manifest
+from robo_genesis.evidence.compare import compare
+from robo_genesis.evidence.refusals import BundleRefused
+from robo_genesis.pipeline.bundles.status import (
+    RECORDED_PAGE,
+    Status,
+    bundle_status,
+    changes,
+    recorded_folders,
+    recorded_status,
+)
+
+NO_BUNDLE = (
+    "No bundle is recorded in book/evidence, and none is built. `make book` builds one."
+)
+
+
+def verify(folder: Path | None, book: Path = BOOK) -> int:
+    """Print a line for each bundle, and advice for one folder.
+
+    Args:
+        folder: of one bundle; None for all of a book.
+        book: the folder of the pages.
+
+    Returns:
+        0 all verified, or no bundle; 1 any is inconclusive, stale, failed or refused.
+    """
+    notes: list[str] = []
+    if folder:
+        status, notes = one_bundle(folder, book)
+        bundles = [(folder.parent.name, status)]
+    else:
+        bundles = list(all_bundles(book))
+    lines = [line(*bundle) for bundle in bundles] or [NO_BUNDLE]
+    print(*lines, *map(printable, notes), sep="\n")
+    return int(any(status.state != "verified" for _, status in bundles))
+
+
+def all_bundles(book: Path) -> Iterator[tuple[str, Status]]:
+    """Yield (place, status) of the recorded bundles, then of the last build's."""
+    for folder in recorded_folders(book):
+        lesson, backend = folder.parts[-2:]
+        labs = {lesson: built(book, lesson)}
+        yield f"{lesson} recorded", recorded_status(book, lesson, backend, labs=labs)
+    for folder in recorded_folders(book / PUBLISHED):
+        lesson = folder.parent.name
+        yield f"{lesson} built", bundle_status(folder, lesson, "lab")
+
+
+def built(book: Path, lesson: str) -> Path:
+    """Return the folder of the last build's bundle of a lab, which may be missing."""
+    return book / PUBLISHED / "evidence" / lesson / "cpu"
+
+
+def one_bundle(folder: Path, book: Path) -> tuple[Status, list[str]]:
+    """Return the status of one bundle, and lines for the person who recorded it."""
+    manifest, reference = None, None
+    with suppress(BundleRefused, OSError):
+        manifest = read_manifest(folder)
+    run = manifest.predicate if manifest else None
+    if run and run.page == RECORDED_PAGE and built(book, run.lesson).is_dir():
+        reference = built(book, run.lesson)
+    runs = [reference] if reference else []
+    status = bundle_status(folder, book=book, cpu_runs=runs)
+    lines = []
+    if status.code:
+        stale = changes(manifest, book) if manifest and status.code == "stale" else []
+        kinds = tuple(dict.fromkeys(kind for kind, _ in stale))
+        lines = [f"What this means: {text}" for text in advice(status.code, kinds, run)]
+    if reference and folder.resolve() != reference.resolve():
+        lines += compared(reference, folder)
+    return status, lines
+
+
+def compared(reference: Path, folder: Path) -> list[str]:
+    """Return lines that compare a bundle of a lab with this build's run on the CPU."""
+    try:
+        text = report.summary(compare(reference, folder)).splitlines()
+    except BundleRefused as refusal:
+        return [f"It cannot be compared with this build's run on the CPU: {refusal}"]
+    return ["Compared with this build's run on the CPU (build → yours):", *text]
+
+
+def line(place: str, status: Status) -> str:
+    """Return one bundle's line."""
+    text = status.reason
+    if not text and status.manifest:
+        run = status.manifest.predicate
+        text = (
+            f"run {run.run_id[:8]} of {run.started[:10]}, Genesis {run.engine.version}"
+        )
+    return printable(f"{place:14} {status.backend:8} {status.state:12} {text}")
