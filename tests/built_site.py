@@ -21,7 +21,7 @@ from robo_genesis.core.project import BOOK, CACHE, ROOT, STORE
 from robo_genesis.lessons import LESSONS, find_lesson
 from robo_genesis.pipeline.html.archive import ARCHIVE, FOLDER
 from robo_genesis.pipeline.pages.book import find_pages, page_files
-from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.page_index import PageIndex
 from robo_genesis.pipeline.pages.store import places, stored_result
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ TEXT = {
 OUTSIDE = dict(os.environ)
 
 
-def executed_pages() -> BuiltPages:
+def executed_pages() -> PageIndex:
     """Return the executed pages from which the site was built."""
     pages = find_pages(BOOK)
     into = places(pages, CACHE / STORE, ROOT, OUTSIDE)
@@ -64,7 +64,7 @@ def executed_pages() -> BuiltPages:
         page.docname for page, found in zip(pages, results, strict=True) if not found
     ]
     assert absent == [], "Not executed with this code. Run: make book"
-    return BuiltPages.of(results)
+    return PageIndex.of(results)
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

@@ -160,7 +160,7 @@ def test_anything_else_is_refused(page, displayed, function, arguments, message)
     ("name", "message"),
     [
         ("os.system", "cannot be shown"),
-        ("robo_genesis.pipeline.pages.bound.marked", "cannot be shown"),
+        ("robo_genesis.pipeline.pages.outputs.shown_outputs", "cannot be shown"),
         ("robo_genesis.lessons.l02.text.tables", "cannot be shown"),
         ("robo_genesis.core.checks.model_counts", "returned generator"),
     ],

@@ -47,7 +47,7 @@ RUN_ID, COMMAND = "ROBO_GENESIS_RUN_ID", "ROBO_GENESIS_COMMAND"
 PAGE_SHA256, PAGE_IMPORTS = "ROBO_GENESIS_PAGE_SHA256", "ROBO_GENESIS_PAGE_IMPORTS"
 
 # What a build tells Sphinx: the file that lists the executed pages, see
-# `build.built_pages`.
+# `build.page_index`.
 EXECUTED_PAGES = "ROBO_GENESIS_EXECUTED_PAGES"
 
 SOLUTIONS = (

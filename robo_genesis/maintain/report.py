@@ -23,7 +23,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_status,
 )
 from robo_genesis.pipeline.pages.book import code_digest, find_pages
-from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, read_record
+from robo_genesis.pipeline.pages.page_folder import OUTPUTS, PageRefused, read_record
 from robo_genesis.pipeline.pages.results import find_bundle
 from robo_genesis.pipeline.pages.store import folders
 

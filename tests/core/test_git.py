@@ -6,7 +6,7 @@ from tiny_book import commit
 from robo_genesis.core.git import require_history
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.recording.labs import Recording, record
-from robo_genesis.pipeline.stages import Build, export_one
+from robo_genesis.pipeline.stages import Build, execute_one
 
 
 def test_only_a_repository_that_cannot_be_read_is_refused(tmp_path):
@@ -20,7 +20,7 @@ def test_only_a_repository_that_cannot_be_read_is_refused(tmp_path):
     )  # as unreadable as another user's
     settings = {"root": below, "cache": tmp_path / "cache"}
     for command in (
-        lambda: export_one("l04/lab", None, Build(**settings)),
+        lambda: execute_one("l04/lab", Build(**settings)),
         lambda: record(Recording(to=tmp_path, **settings)),
     ):
         with pytest.raises(

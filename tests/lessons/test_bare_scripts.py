@@ -14,8 +14,8 @@ from lessons.exercise_cells import page_of
 from robo_genesis.core import project
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.command import ANSI
-from robo_genesis.pipeline.pages.folder import NOTEBOOK
-from robo_genesis.pipeline.pages.printed import LOG
+from robo_genesis.pipeline.pages.page_folder import NOTEBOOK
+from robo_genesis.pipeline.pages.values import LOG
 from robo_genesis.site.course.sizes import HIDDEN
 
 MODULES = {"genesis", "mujoco", "numpy", "robo_genesis"}

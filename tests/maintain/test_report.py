@@ -18,7 +18,7 @@ from robo_genesis.maintain.report import (
 )
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.folder import write_page
+from robo_genesis.pipeline.pages.page_folder import write_page
 from robo_genesis.site.evidence.ledger_data import LEDGER
 
 

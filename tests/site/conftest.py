@@ -9,7 +9,7 @@ from small_book import render_small_book
 from watching import errors
 from without_sphinx import page_of
 
-from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.page_index import PageIndex
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def built(tmp_path, monkeypatch):
     def tell(outputs):
         (tmp_path / "told").mkdir()
         for name, value in (
-            BuiltPages(outputs=outputs).write(tmp_path / "told/pages").items()
+            PageIndex(outputs=outputs).write(tmp_path / "told/pages").items()
         ):
             monkeypatch.setenv(name, value)
 

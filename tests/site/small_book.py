@@ -11,9 +11,9 @@ from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import execute_pages
-from robo_genesis.pipeline.pages.folder import write_page
+from robo_genesis.pipeline.pages.page_folder import write_page
+from robo_genesis.pipeline.pages.page_index import PageIndex
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.course.course_map import FILE
@@ -81,7 +81,7 @@ def executed(pages: list[Page], folder: Path) -> list[PageResult]:
 def draft_of(book: Path, folder: Path, results: list[PageResult]) -> Draft:
     """Render a book."""
     sphinx = SphinxProcess(book, folder / "render.log")
-    return render(sphinx, folder / "staging", BuiltPages.of(results))
+    return render(sphinx, folder / "staging", PageIndex.of(results))
 
 
 def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Path:

@@ -9,12 +9,12 @@ from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
-from robo_genesis.pipeline.pages import bound as shown
-from robo_genesis.pipeline.pages.folder import MARK, RECORD, stored_notebook
-from robo_genesis.pipeline.pages.printed import declared
+from robo_genesis.pipeline.pages import outputs
+from robo_genesis.pipeline.pages.page_folder import RECORD, stored_notebook
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
-from robo_genesis.pipeline.pages.store import Verify, failed_mark
+from robo_genesis.pipeline.pages.store import Verify
+from robo_genesis.pipeline.pages.values import prints
 
 
 def verify_results(
@@ -25,7 +25,7 @@ def verify_results(
 ) -> tuple[dict[str, Any], list[str]]:
     """Verify the bundles of pages, and compare what the pages show with them.
 
-    A refused page of the store is marked, so that it is executed again. One that was
+    A refused page of the store loses its record, so that it is executed again. One that was
     executed now is verified once more by the next build, because the rule may be wrong.
 
     Args:
@@ -57,8 +57,7 @@ def verify_results(
                 f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
             )
             if result.status == "reused":
-                (result.folder / MARK).write_text(line, "utf8")
-                failed_mark(result.folder).touch()
+                (result.folder / RECORD).unlink()
                 line += " The next build executes the page again."
             refused.append(line)
     return manifests, refused
@@ -77,12 +76,12 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     folder, bundle = result.folder, result.bundle
     assert bundle is not None
     code = [
-        path.read_text("utf8") for path in Tree().closure([shown.__name__]).values()
+        path.read_text("utf8") for path in Tree().closure([outputs.__name__]).values()
     ]
-    inputs = [(folder / RECORD).read_text("utf8"), declared(result.page.notebook), code]
+    inputs = [(folder / RECORD).read_text("utf8"), prints(result.page.notebook), code]
 
     def compare() -> int:
-        return shown.require_shown(
+        return outputs.require_shown(
             result.page, stored_notebook(result), bundle, manifest
         )
 

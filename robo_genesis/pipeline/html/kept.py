@@ -16,8 +16,8 @@ from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.html.sphinx_process import read_again
 from robo_genesis.pipeline.pages.book import page_files
-from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.folder import RECORD
+from robo_genesis.pipeline.pages.page_folder import RECORD
+from robo_genesis.pipeline.pages.page_index import PageIndex
 
 STATE = "state.json"
 
@@ -34,7 +34,7 @@ class State:
     pages: dict[str, str]
 
 
-def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
+def read_state(book: Path, built: PageIndex, root: Path = ROOT) -> State:
     """Return the state of all that a render reads.
 
     Args:

@@ -26,8 +26,8 @@ from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.serve import SiteFile, listen
 from robo_genesis.pipeline.html.sphinx_process import EXECUTED, HTML, SphinxProcess
 from robo_genesis.pipeline.pages.book import Page, code_digest, find_pages, page_files
-from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
-from robo_genesis.pipeline.pages.folder import PageRefused, read_record
+from robo_genesis.pipeline.pages.page_folder import PageRefused, read_record
+from robo_genesis.pipeline.pages.page_index import LAST_OUTPUTS, PageIndex
 from robo_genesis.pipeline.pages.store import folders, places
 
 # Below the cache folder: what is rendered and shown, separate from the results of `make
@@ -70,7 +70,7 @@ class Live:
         self.draft: Draft | None = None
         self.started: list[subprocess.Popen[str]] = []
         self.is_ended = False
-        self.runs = BuiltPages()
+        self.runs = PageIndex()
         self.reported: set[Path | str] = set()
         self.seen = self.look()
 
@@ -117,9 +117,9 @@ class Live:
             say("The browser keeps the last good state.")
         return False
 
-    def built(self, pages: Sequence[Page]) -> BuiltPages:
+    def built(self, pages: Sequence[Page]) -> PageIndex:
         """Return the last run of each page; execute the pages that changed, or name them."""
-        found, into = BuiltPages(), places(pages, self.cache / project.STORE)
+        found, into = PageIndex(), places(pages, self.cache / project.STORE)
         for page in pages:
             place = into[page.docname]  # another after any change that may help
             told = (
@@ -200,7 +200,7 @@ class Live:
             end(process)
             raise LiveEndedError
 
-    def restart(self, built: BuiltPages) -> None:
+    def restart(self, built: PageIndex) -> None:
         """Start Sphinx; what it kept is used if only pages changed since the last good state."""
         if self.sphinx is not None:
             end(self.sphinx.process)

@@ -11,7 +11,7 @@ from pathlib import Path
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.kept import UNFIT, keep, prepare, read_state
 from robo_genesis.pipeline.html.sphinx_process import HTML, SphinxProcess
-from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.page_index import PageIndex
 
 # The folder of the states of runs. Every change on which they depend empties the kept
 # folder.
@@ -21,7 +21,7 @@ STATES = "states"
 def render(
     sphinx: SphinxProcess,
     staging: Path,
-    built: BuiltPages,
+    built: PageIndex,
     kept_folder: Path | None = None,
     meanwhile: Callable[[Draft], None] = lambda draft: None,
 ) -> Draft:
@@ -56,7 +56,7 @@ def render(
 def _render_changes(
     sphinx: SphinxProcess,
     folder: Path,
-    built: BuiltPages,
+    built: PageIndex,
     meanwhile: Callable[[], None] = lambda: None,
 ) -> None:
     """Render what changed since the last render in a folder."""

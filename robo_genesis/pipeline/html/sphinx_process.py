@@ -27,7 +27,7 @@ from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import ANSI, collect_rarely, end_with_parent
 
 if TYPE_CHECKING:  # the process is started before the packages of Jupyter are loaded
-    from robo_genesis.pipeline.pages.built import BuiltPages
+    from robo_genesis.pipeline.pages.page_index import PageIndex
 
 LOG = "render.log"  # Its name in the folder of the caches
 HTML = "_build/html"  # The folder of the pages in the folder that Sphinx gets
@@ -75,7 +75,7 @@ class SphinxProcess:
     def render(
         self,
         folder: Path,
-        built: "BuiltPages",
+        built: "PageIndex",
         meanwhile: Callable[[], None] = lambda: None,
     ) -> None:
         """Render the book, and end the process.

@@ -75,8 +75,7 @@ class Page:
         return any("own-kernels" in tags for tags in self._tags())
 
     def _tags(self) -> list[list[str]]:
-        cells = (cell for cell in self.notebook.cells if cell.cell_type == "code")
-        return [cell.metadata.get("tags", []) for cell in cells]
+        return [cell.metadata.get("tags", []) for cell in code_cells(self.notebook)]
 
     @property
     def code(self) -> Code:
@@ -228,9 +227,14 @@ def _parsed(path: Path, text: str) -> NotebookNode:
     return cast(NotebookNode, pickle.loads(read))
 
 
+def code_cells(notebook: NotebookNode) -> list[NotebookNode]:
+    """Return the code cells of a notebook."""
+    return [cell for cell in notebook.cells if cell.cell_type == "code"]
+
+
 def code_of(notebook: NotebookNode) -> Code:
     """Return what the code cells of a notebook do."""
-    return read_code(cell.source for cell in notebook.cells if cell.cell_type == "code")
+    return read_code(cell.source for cell in code_cells(notebook))
 
 
 def code_digest(page: Page) -> str:

@@ -1,22 +1,18 @@
 """Kernels that no configuration of the user reaches, and that never outlive the build."""
 
-import multiprocessing
 import os
-import shutil
 import signal
 import subprocess
-import threading
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
 
 import psutil  # type: ignore[import-untyped]
 from jupyter_client.kernelspec import KernelSpecManager
 from jupyter_client.manager import AsyncKernelManager
 
-from robo_genesis.core.project import ENGINE_PREFIXES
+from robo_genesis.core.project import ENGINE_PREFIXES, ROOT
 
 # The variables of the user that a kernel gets: the machine's own, and the engine's
 # switches, which are part of the pages' fingerprint. Others (MPLBACKEND, PYTHONSTARTUP
@@ -24,22 +20,23 @@ from robo_genesis.core.project import ENGINE_PREFIXES
 MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
 ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 
-START = "__import__('robo_genesis.pipeline.pages.opened', fromlist=['start']).start()"
-ARGUMENTS = [f"--IPKernelApp.exec_lines={START}"]
+# The first code of a kernel. Linux kills it when the thread that started it ends, also
+# by SIGKILL (1 is PR_SET_PDEATHSIG of <linux/prctl.h>, 9 SIGKILL). Its exit handler
+# runs after the engine's, and before ipykernel's, which hangs in about one of ten.
+START = "import atexit, ctypes, os; ctypes.CDLL(None).prctl(1, 9); atexit.register(os._exit, 0)"
+ARGUMENTS = [f"--IPKernelApp.exec_lines=exec({START!r}, {{}})"]
 
 
 class CleanKernelManager(AsyncKernelManager):
     """Starts the kernel of this interpreter and knows no installed kernelspec.
 
-    `busy` is set while a cell runs, `process` when the kernel starts. They are class
-    attributes because nbclient takes a class, not an instance; each worker process has
-    one kernel.
+    `busy` is set while a cell runs, `process` when the kernel starts.
     """
 
     busy = False
     process: subprocess.Popen[bytes] | None = None
 
-    def __init__(self, **given: Any) -> None:
+    def __init__(self, folder: Path) -> None:
         """Set what differs from a usual kernel.
 
         The engine saves what it compiled in its exit handler, for which the usual 5 s
@@ -47,24 +44,35 @@ class CleanKernelManager(AsyncKernelManager):
         because kernels that start at the same time can draw the same TCP port. With
         `@`, a name is one of Linux and not of a file, whose path may have 107
         characters only.
-        """
-        sockets = {"transport": "ipc", "ip": f"@robo-{uuid.uuid4().hex}"}
-        no_specs = KernelSpecManager(
-            kernel_dirs=[]
-        )  # so that only the native kernel is left
-        own = {"shutdown_wait_time": 120.0, "kernel_spec_manager": no_specs}
-        super().__init__(**given | sockets | own)
 
-    async def start_kernel(self, **given: Any) -> None:  # type: ignore[override]
+        Args:
+            folder: gets the file that describes the connection.
+        """
+        super().__init__(
+            connection_file=str(folder / "kernel.json"),
+            transport="ipc",
+            ip=f"@robo-{uuid.uuid4().hex}",
+            shutdown_wait_time=120.0,
+            kernel_spec_manager=KernelSpecManager(kernel_dirs=[]),
+        )
+
+    async def start_kernel(self, **given: object) -> None:  # type: ignore[override]
         """Start the kernel, and keep its process, whose exit status says why it died."""
         await super().start_kernel(**given)
-        type(self).process = self.provisioner.process  # type: ignore[union-attr]
+        self.process = self.provisioner.process  # type: ignore[union-attr]
 
     async def shutdown_kernel(  # type: ignore[override]
         self, now: bool = False, restart: bool = False
     ) -> None:
         """Stop the kernel, at once if a cell still runs: a busy kernel answers no request."""
-        await super().shutdown_kernel(now=now or type(self).busy, restart=restart)
+        if self.busy:
+            self.kill()
+        await super().shutdown_kernel(now=now or self.busy, restart=restart)
+
+    def kill(self) -> None:
+        """Kill the kernel, if it was started, and all processes below it."""
+        if self.process:
+            kill_with_descendants([self.process.pid])
 
 
 def users_variables() -> dict[str, str]:
@@ -74,33 +82,26 @@ def users_variables() -> dict[str, str]:
     }
 
 
-def clean_environment(
-    home: Path, root: Path, extra: Mapping[str, str]
-) -> dict[str, str]:
+def clean_environment(home: Path, extra: Mapping[str, str]) -> dict[str, str]:
     """Return the whole environment for a kernel.
 
     Args:
         home: folder for IPython's and Jupyter's own files.
-        root: the checkout, the only entry of the kernel's PYTHONPATH.
         extra: variables of this run.
     """
-    folders = {
-        "IPYTHONDIR": home / "ipython",
-        **dict.fromkeys(("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR"), home / "jupyter"),
-        "JUPYTER_RUNTIME_DIR": home,
-    }
-    for folder in folders.values():
-        folder.mkdir(parents=True, exist_ok=True)
     return {
         **users_variables(),
-        **{name: str(path) for name, path in folders.items()},
+        "IPYTHONDIR": str(home),
+        "JUPYTER_CONFIG_DIR": str(home),
+        "JUPYTER_DATA_DIR": str(home),
+        "JUPYTER_RUNTIME_DIR": str(home),
         "JUPYTER_NO_CONFIG": "1",
         "JUPYTER_PREFER_ENV_PATH": "1",
         "LC_ALL": "C.UTF-8",
         "MPLBACKEND": "module://matplotlib_inline.backend_inline",
         "PYTHONHASHSEED": "0",
         "PYTHONNOUSERSITE": "1",
-        "PYTHONPATH": str(root),
+        "PYTHONPATH": str(ROOT),
         # with 1, each call of a compiled kernel prints an empty text
         "QD_ENABLE_PYBUF": "0",
         "TZ": "UTC",
@@ -141,16 +142,12 @@ def wait_or_kill(
 
 
 def kill_with_descendants(pids: Iterable[int]) -> None:
-    """Kill processes and everything below them.
+    """Kill processes and everything below them; processes that are gone are skipped.
 
     Kernels lead sessions of their own, so no process group contains them all. The
-    processes are stopped first: a stopped worker cannot start one more kernel while the
-    list is made.
-
-    Args:
-        pids: process ids; processes that are gone are skipped.
+    processes are stopped first, so that they start no other while the list is made.
     """
-    doomed: list[Any] = []
+    doomed: list[psutil.Process] = []
     for pid in pids:
         with suppress(psutil.NoSuchProcess):
             process = psutil.Process(pid)
@@ -160,23 +157,3 @@ def kill_with_descendants(pids: Iterable[int]) -> None:
         with suppress(psutil.NoSuchProcess):
             process.kill()
     psutil.wait_procs(doomed, timeout=10)
-
-
-def die_with_parent(scratch: Path) -> None:
-    """Make this worker kill its kernel and itself when the build process is gone.
-
-    Args:
-        scratch: temporary folder of the build, which no other process would remove.
-    """
-    parent = multiprocessing.parent_process()
-    if parent is None:
-        return
-
-    def wait_and_die() -> None:
-        parent.join()
-        children = psutil.Process().children(recursive=True)
-        kill_with_descendants(child.pid for child in children)
-        shutil.rmtree(scratch, ignore_errors=True)
-        os._exit(1)
-
-    threading.Thread(target=wait_and_die, daemon=True).start()

@@ -20,7 +20,7 @@ from robo_genesis.pipeline.pages.guards import contradicted
 from robo_genesis.pipeline.pages.page_rules import first_line
 
 LOG_LINES = 15
-Status = Literal["executed", "reused", "taken over", "failed"]
+Status = Literal["executed", "reused", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 
 # What a cell may put out. HTML could hide or imitate what the site says about its
@@ -257,10 +257,15 @@ def at_cell(
     return Failure(
         error,
         message,
-        cell=[cell.cell_type for cell in cells[: index + 1]].count("code"),
+        cell=cell_number(page.notebook, index),
         line=first_line(text, page.notebook, index) + failing - 1,
         source=lines[failing - 1].strip(),
     )
+
+
+def cell_number(notebook: NotebookNode, index: int) -> int:
+    """Return which code cell, counted from 1, is the cell at an index."""
+    return [cell.cell_type for cell in notebook.cells[: index + 1]].count("code")
 
 
 def _failing_line(ran: NotebookNode) -> int:

@@ -10,7 +10,7 @@ from sphinx.application import Sphinx
 
 from robo_genesis.core import tables
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.built import page_record
+from robo_genesis.pipeline.pages.page_index import page_record
 from robo_genesis.site.pages import PageDirective
 
 

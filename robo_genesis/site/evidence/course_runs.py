@@ -15,7 +15,6 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.text import listed
-from robo_genesis.pipeline.pages.built import built_pages
 from robo_genesis.site.course.course_map import MapDirective, named, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import (
@@ -63,13 +62,12 @@ def measured_line(runs: Iterable[PageRun]) -> str:
 
 
 class CourseProcessors(SphinxDirective):
-    """Show the processors of this build's runs, and what a second execution showed."""
+    """Show the processors of this build's runs."""
 
     def run(self) -> list[nodes.Node]:
         """Return a paragraph."""
         runs = all_runs(Path(self.env.srcdir)).values()
-        agreed = built_pages().agreed or [executed_once(runs)]
-        return [nodes.paragraph("", " ".join(agreed))]
+        return [nodes.paragraph("", executed_once(runs))]
 
 
 def executed_once(runs: Iterable[PageRun]) -> str:

@@ -41,8 +41,12 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_folders,
     recorded_status,
 )
-from robo_genesis.pipeline.pages.built import built_pages, measuring_page, page_outputs
-from robo_genesis.pipeline.pages.printed import value_of
+from robo_genesis.pipeline.pages.page_index import (
+    measuring_page,
+    page_index,
+    page_outputs,
+)
+from robo_genesis.pipeline.pages.values import value_of
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.plain_nodes import WRITERS, between, bullets
 from robo_genesis.site.pages import PageRole
@@ -121,7 +125,7 @@ def stored(name: str, compute: Callable[[], T]) -> T:
         name: of the value.
         compute: its result can be pickled.
     """
-    states = built_pages().states
+    states = page_index().states
     if states is None:
         return compute()
     file = states / sha256(name.encode()).hexdigest()

@@ -50,8 +50,8 @@ from robo_genesis.core.shown import find
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
-from robo_genesis.pipeline.pages.bound import accepted_experiment
-from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.pipeline.pages.outputs import accepted_experiment
+from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND

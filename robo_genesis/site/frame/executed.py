@@ -10,9 +10,9 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 from robo_genesis.core.project import EXECUTED_PAGES
-from robo_genesis.pipeline.pages.bound import marked
-from robo_genesis.pipeline.pages.built import executed_notebook
-from robo_genesis.pipeline.pages.folder import code_and_kernel
+from robo_genesis.pipeline.pages.outputs import shown_outputs
+from robo_genesis.pipeline.pages.page_folder import code_and_kernel
+from robo_genesis.pipeline.pages.page_index import executed_notebook
 
 # Of each page that was read, the cells whose outputs but streams `page.show` displayed.
 RECOMPUTED: dict[str, set[int]] = {}
@@ -54,7 +54,8 @@ class ExecutedPage(NotebookClientBase):
         RECOMPUTED[page.as_posix()] = {
             index
             for index, cell in enumerate(self.notebook.cells)
-            if marked(cell) == [out for out in cell.get("outputs", []) if "data" in out]
+            if shown_outputs(cell)
+            == [out for out in cell.get("outputs", []) if "data" in out]
         }
         if "language_info" in executed.metadata:
             self.notebook.metadata["language_info"] = executed.metadata["language_info"]

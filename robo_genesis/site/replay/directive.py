@@ -28,7 +28,7 @@ from robo_genesis.core.markup import filled
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import find_replay
-from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND

@@ -27,7 +27,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
-from robo_genesis.pipeline.pages import built
+from robo_genesis.pipeline.pages import page_index
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
@@ -87,8 +87,8 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
         folder: gets the wheel, the constraints, and a folder for the lab.
         config: of the book.
     """
-    executed = built.executed_notebook(page.docname, page.notebook)
-    run = built.page_outputs(f"{page.lesson}/{page.page}") / BACKEND
+    executed = page_index.executed_notebook(page.docname, page.notebook)
+    run = page_index.page_outputs(f"{page.lesson}/{page.page}") / BACKEND
     name = f"{page.lesson}-{page.page}"
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)

@@ -42,7 +42,7 @@ from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
 from robo_genesis.pipeline.html.address import site_address
-from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.evidence.plain_nodes import bullets
 from robo_genesis.site.figures.explorer import Recorded

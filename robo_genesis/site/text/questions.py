@@ -45,7 +45,7 @@ from robo_genesis.core.tables import comparison_sentence
 from robo_genesis.core.text import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
-from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, COUNTED, measured
 from robo_genesis.site.evidence.plain_nodes import WRITERS, between, html
 from robo_genesis.site.figures.case_labels import label

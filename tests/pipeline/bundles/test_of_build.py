@@ -9,8 +9,8 @@ from nbformat.v4 import new_notebook
 
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
-from robo_genesis.pipeline.pages import bound as shown
-from robo_genesis.pipeline.pages.folder import RECORD
+from robo_genesis.pipeline.pages import outputs
+from robo_genesis.pipeline.pages.page_folder import RECORD
 from robo_genesis.pipeline.pages.results import PageResult
 
 
@@ -33,12 +33,14 @@ def test_an_accepted_page_is_compared_again_when_its_record_changed(
     result, monkeypatch
 ):
     calls = []
-    monkeypatch.setattr(shown, "require_shown", lambda *given: calls.append(given) or 7)
+    monkeypatch.setattr(
+        outputs, "require_shown", lambda *given: calls.append(given) or 7
+    )
     assert [outputs_compared(result, None) for _ in range(2)] == [7, 7]
     assert len(calls) == 1
     (result.folder / RECORD).write_text(os.urandom(16).hex())
     monkeypatch.setattr(
-        shown, "require_shown", Mock(side_effect=BundleRefused("shown", "other"))
+        outputs, "require_shown", Mock(side_effect=BundleRefused("shown", "other"))
     )
     for _ in range(2):  # a refusal is not kept
         with pytest.raises(BundleRefused, match="other"):

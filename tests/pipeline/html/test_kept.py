@@ -19,8 +19,8 @@ from robo_genesis.pipeline.html.kept import State
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import DOCTREES, SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.folder import RECORD
+from robo_genesis.pipeline.pages.page_folder import RECORD
+from robo_genesis.pipeline.pages.page_index import PageIndex
 from robo_genesis.site.frame.incremental import forget_own_pictures
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
@@ -34,19 +34,19 @@ DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
 SOME = State("a", {"one": "1", "two": "2"})
 
 
-def publish(folder: Path, built: BuiltPages, keep: bool = True) -> dict[str, bytes]:
+def publish(folder: Path, built: PageIndex, keep: bool = True) -> dict[str, bytes]:
     """Render a book and return its files."""
     kept_folder = folder / "kept" if keep else None
     sphinx = SphinxProcess(folder / "book", folder / "log")
     return contents(render(sphinx, folder / "staging", built, kept_folder).html)
 
 
-def ran(folder: Path, printed: str) -> BuiltPages:
+def ran(folder: Path, printed: str) -> PageIndex:
     """Return the book's executed page with an output, without a run."""
     (page,) = find_pages(folder / "book")
     (code,) = (c for c in page.notebook.cells if c.cell_type == "code")
     code.outputs = [nbformat.v4.new_output("stream", name="stdout", text=printed)]
-    return BuiltPages.of([as_executed(page, folder / f"run {printed}", [1.0])])
+    return PageIndex.of([as_executed(page, folder / f"run {printed}", [1.0])])
 
 
 def replace(page: Path, *pairs: tuple[str, str]) -> None:
@@ -113,14 +113,14 @@ def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
 def test_the_home_page_is_written_again_only_if_it_shows_a_change(tmp_path):
     book = make_book(tmp_path, text="# Text\n\nWords.\n")
     home = tmp_path / "kept/_build/html/index.html"
-    publish(tmp_path, BuiltPages())
+    publish(tmp_path, PageIndex())
     text = book / "text.md"
     for change, is_written in (("\nMore words.\n", False), ("\n## A heading\n", True)):
         text.write_text(text.read_text() + change)
         before = home.stat().st_mtime_ns
-        found = publish(tmp_path, BuiltPages())
+        found = publish(tmp_path, PageIndex())
         assert (home.stat().st_mtime_ns != before) == is_written
-        assert found == publish(tmp_path, BuiltPages(), keep=False)
+        assert found == publish(tmp_path, PageIndex(), keep=False)
 
 
 NUMBERED = paragraphs(
@@ -134,7 +134,7 @@ NUMBERED = paragraphs(
 
 def test_figures_tables_and_code_with_captions_are_numbered_wherever_they_are(tmp_path):
     (make_book(tmp_path, page=NUMBERED) / "a.svg").write_text(DRAWING)
-    publish(tmp_path, BuiltPages())
+    publish(tmp_path, PageIndex())
     with open(tmp_path / "kept" / DOCTREES / "environment.pickle", "rb") as stream:
         numbers = pickle.load(stream).toc_fignumbers["page"]
     kinds = {"figure": "drawn", "code-block": "code", "table": "rows"}
@@ -145,7 +145,7 @@ def test_the_figures_of_each_page_are_numbered_from_one(tmp_path):
     pages = {name: f"# {name}\n" + 2 * (FIGURE % "") for name in ("one", "two")}
     (make_book(tmp_path, **pages) / "a.svg").write_text(DRAWING)
     for keep in (True, True, False):
-        found = publish(tmp_path, BuiltPages(), keep)
+        found = publish(tmp_path, PageIndex(), keep)
         for name in pages:
             assert re.findall(r"Fig. (\d)", found[f"{name}.html"].decode()) == [
                 "1",
@@ -177,12 +177,12 @@ def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
     book = make_book(tmp_path, text="# Text\n\n{doc}`nowhere`\n")
     for _ in range(2):
         with pytest.raises(ProjectError, match=r"text\.md:3.*nowhere"):
-            publish(tmp_path, BuiltPages())
+            publish(tmp_path, PageIndex())
         assert not (tmp_path / "kept" / kept.STATE).exists()
     replace(book / "text.md", ("{doc}`nowhere`", "Words."))
-    assert publish(tmp_path, BuiltPages())
+    assert publish(tmp_path, PageIndex())
     (tmp_path / "kept" / kept.STATE).unlink()  # as after a kill
-    publish(tmp_path, BuiltPages())
+    publish(tmp_path, PageIndex())
     assert "2 added, 0 changed" in (tmp_path / "log").read_text()
 
 
@@ -194,10 +194,10 @@ def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complet
 
     sphinx = SphinxProcess(make_book(tmp_path, text="# Text\n"), tmp_path / "log")
     with pytest.raises(ValueError, match="refused"):
-        render(sphinx, tmp_path / "staging", BuiltPages(), tmp_path / "kept", refuse)
+        render(sphinx, tmp_path / "staging", PageIndex(), tmp_path / "kept", refuse)
     assert sphinx.process.poll() is not None
     assert not (tmp_path / "kept" / kept.STATE).exists()
-    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages())
+    assert publish(tmp_path, PageIndex()) == publish(tmp_path, PageIndex())
     assert "0 added, 0 changed" in (tmp_path / "log").read_text()
 
 
@@ -209,12 +209,10 @@ def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
     for place in (book, book / "b"):
         place.mkdir(exist_ok=True)
         (place / "a.svg").write_text(DRAWING.replace("9", str(len(place.name))))
-    publish(tmp_path, BuiltPages())
+    publish(tmp_path, PageIndex())
     assert (tmp_path / "kept" / kept.STATE).exists()
     replace(book / "one.md", ("Words.", "![One](a.svg)"))
-    assert publish(tmp_path, BuiltPages()) == publish(
-        tmp_path, BuiltPages(), keep=False
-    )
+    assert publish(tmp_path, PageIndex()) == publish(tmp_path, PageIndex(), keep=False)
     assert not (tmp_path / "kept" / kept.STATE).exists()
 
 

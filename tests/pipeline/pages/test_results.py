@@ -9,7 +9,7 @@ from small_book import executed
 from tiny_book import cell, make_book, notebook, raising
 
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.folder import stored_notebook
+from robo_genesis.pipeline.pages.page_folder import stored_notebook
 from robo_genesis.pipeline.pages.results import GLUED, at_cell, unexpected_outcome
 
 RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}

@@ -7,7 +7,7 @@ import pytest
 
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.pipeline.bundles.status import Status
-from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.site.evidence.course_runs import executed_once, measured_line
 from robo_genesis.site.evidence.ledger_data import PageRun
 

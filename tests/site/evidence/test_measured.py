@@ -7,7 +7,7 @@ import pytest
 
 from robo_genesis.core import project
 from robo_genesis.pipeline.bundles.status import Status
-from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.page_index import PageIndex
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.measured import measured as insert
 from robo_genesis.site.evidence.measured import require_passed, status_line
@@ -56,7 +56,7 @@ def test_an_unknown_value_names_those_there_are(outputs, name, said):
 @pytest.mark.parametrize("spoiled", [None, b"", b"no pickle"])
 def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoiled):
     monkeypatch.setattr(
-        measured, "built_pages", lambda: BuiltPages(states=tmp_path / "states")
+        measured, "page_index", lambda: PageIndex(states=tmp_path / "states")
     )
     calls = []
     first = measured.stored("../l04/lab", lambda: calls.append(1) or "verified")

@@ -4,12 +4,12 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
-from robo_genesis.pipeline.pages.built import (
+from robo_genesis.pipeline.pages.page_folder import NOTEBOOK
+from robo_genesis.pipeline.pages.page_index import (
     LAST_OUTPUTS,
-    BuiltPages,
+    PageIndex,
     executed_notebook,
 )
-from robo_genesis.pipeline.pages.folder import NOTEBOOK
 
 
 @pytest.mark.parametrize(
@@ -29,7 +29,7 @@ def test_a_cell_gets_the_outputs_of_the_cell_with_its_source(
 ):
     ran = [new_code_cell(name, execution_count=k) for k, name in enumerate("abc", 1)]
     nbformat.write(new_notebook(cells=ran), tmp_path / NOTEBOOK)
-    told = BuiltPages(folders={"page": tmp_path}).write(tmp_path / "told")
+    told = PageIndex(folders={"page": tmp_path}).write(tmp_path / "told")
     for name, value in (told | {LAST_OUTPUTS: "1"}).items():
         monkeypatch.setenv(name, value)
     page = new_notebook(cells=[new_code_cell(name) for name in now])

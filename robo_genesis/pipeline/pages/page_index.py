@@ -13,7 +13,12 @@ from pydantic import Field
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.fields import Strict
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.folder import NOTEBOOK, OUTPUTS, Record, read_record
+from robo_genesis.pipeline.pages.page_folder import (
+    NOTEBOOK,
+    OUTPUTS,
+    Record,
+    read_record,
+)
 from robo_genesis.pipeline.pages.results import PageResult
 
 # A variable: if it is set, a page whose code changed is shown with the outputs of its
@@ -21,24 +26,22 @@ from robo_genesis.pipeline.pages.results import PageResult
 LAST_OUTPUTS = "ROBO_GENESIS_LAST_OUTPUTS"
 
 
-class BuiltPages(Strict):
+class PageIndex(Strict):
     """A file that the environment names.
 
     `folders` has the folder in the store of each executed page by name, and `outputs`
     the files that the run of each measuring page left, by `lesson/page`. `states` is a
     folder that keeps the states of runs for the next render; None keeps nothing.
-    `agreed` is what a second execution of the pages showed; see `pipeline.agreement`.
     """
 
     folders: dict[str, Path] = Field(default_factory=dict)
     outputs: dict[str, Path] = Field(default_factory=dict)
     states: Path | None = None
-    agreed: list[str] = Field(default_factory=list)
 
     @classmethod
-    def of(cls, results: Iterable[PageResult], agreed: Sequence[str] = ()) -> Self:
+    def of(cls, results: Iterable[PageResult]) -> Self:
         """Return the pages of a build from their results, of which none failed."""
-        found = cls(agreed=[*agreed])
+        found = cls()
         for result in results:
             found.add(result.page, result.folder)
         return found
@@ -55,9 +58,9 @@ class BuiltPages(Strict):
         return {EXECUTED_PAGES: str(path)}
 
 
-def built_pages() -> BuiltPages:
+def page_index() -> PageIndex:
     """Return the pages that the environment names."""
-    return BuiltPages.model_validate_json(Path(os.environ[EXECUTED_PAGES]).read_bytes())
+    return PageIndex.model_validate_json(Path(os.environ[EXECUTED_PAGES]).read_bytes())
 
 
 def executed_notebook(docname: str, page: NotebookNode) -> NotebookNode:
@@ -71,7 +74,7 @@ def executed_notebook(docname: str, page: NotebookNode) -> NotebookNode:
     Raises:
         KeyError: the page is not executed.
     """
-    executed = nbformat.read(built_pages().folders[docname] / NOTEBOOK, as_version=4)
+    executed = nbformat.read(page_index().folders[docname] / NOTEBOOK, as_version=4)
     if LAST_OUTPUTS in os.environ:
         cells = [cell for cell in page.cells if cell.cell_type == "code"]
         executed.cells = with_last_outputs(cells, executed.cells)
@@ -109,7 +112,7 @@ def page_record(docname: str) -> Record:
     Raises:
         LookupError: the page is not executed.
     """
-    folder = built_pages().folders.get(docname)
+    folder = page_index().folders.get(docname)
     if folder is None:
         raise LookupError(f"{docname} is not executed. Build with `make book`.")
     return read_record(folder)
@@ -117,7 +120,7 @@ def page_record(docname: str) -> Record:
 
 def measuring_page(docname: str) -> str:
     """Return the lesson and page of an executed page: `l04/lab`, or a name without a bundle."""
-    pages, folder = built_pages(), built_pages().folders.get(docname)
+    pages, folder = page_index(), page_index().folders.get(docname)
     return next(
         (n for n, left in pages.outputs.items() if folder in left.parents), docname
     )
@@ -131,4 +134,4 @@ def page_outputs(lesson_page: str) -> Path:
             exist.
     """
     absent = Path(os.environ[EXECUTED_PAGES]).with_name("not executed") / lesson_page
-    return built_pages().outputs.get(lesson_page, absent)
+    return page_index().outputs.get(lesson_page, absent)

@@ -1,15 +1,9 @@
-"""Every output of a page's cells as its bundle keeps it, and the measured numbers among them.
-
-`printed.json` has the outputs of each code cell in their order: text as it is, the
-digest of anything else. The build writes it when the run ends, so a notebook that was
-run by hand has none.
+"""Measured values of a bundle by name, and the numbers in a page that are such values.
 
 A cell with the option `prints: {2: baseline.drop mm}` says that the second decimal
-    number in its
-text is this measured value, in the words of the role `{measured}`.
+number in its text is this value, in the words of the role `{measured}`.
 """
 
-import json
 import re
 from collections.abc import Mapping
 from decimal import Decimal
@@ -18,14 +12,10 @@ from typing import Any
 
 from nbformat import NotebookNode
 
-from robo_genesis.core.files import json_digest
-from robo_genesis.core.project import without_folders
 from robo_genesis.core.text import DIGITS, MICRO, SCALED, SCALES, quoted
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle_files import MANIFEST
-from robo_genesis.evidence.strict_json import write_json
+from robo_genesis.pipeline.pages.book import code_cells
 
-TEXTS = ("text/plain", "text/markdown")
 OPTION = "prints"  # The option of a cell that names the measured values which it prints
 
 DECIMAL = re.compile(r"(?<![\w.])[-+−]?\d+\.\d+(?:e[-+]?\d+)?(?!\.?\d)")
@@ -34,37 +24,6 @@ LOG = re.compile(r"^\[Genesis\].*", re.MULTILINE)
 # Relative difference of a printed value from the recorded one: a float32 has seven
 # digits.
 ROUNDED = 1e-7
-
-
-def outputs_of(executed: NotebookNode) -> list[list[Any]]:
-    """Return the outputs of each code cell in the form in which a bundle keeps them.
-
-    Texts are kept whole; pictures, also drawings, as SHA-256.
-    """
-    cells = (cell for cell in executed.cells if cell.cell_type == "code")
-    return [[_kept(output) for output in cell.get("outputs", [])] for cell in cells]
-
-
-def _kept(output: NotebookNode) -> dict[str, Any]:
-    given = output.get("data", {}).items()
-    data = {kind: of if kind.endswith(TEXTS) else json_digest(of) for kind, of in given}
-    kept = {**output, **({"data": data} if data else {})}
-    return json.loads(without_folders(json.dumps(kept, ensure_ascii=False)))
-
-
-def keep_outputs(folder: Path, executed: NotebookNode) -> None:
-    """Add the outputs of a run to its bundle and to the list of files in the manifest.
-
-    The digests that the run itself stated are left as they are.
-    """
-    write_json(folder / bundle.PRINTED, outputs_of(executed))
-    statement = json.loads((folder / MANIFEST).read_text("utf8"))
-    entry = {
-        "name": bundle.PRINTED,
-        "digest": {"sha256": bundle.sha256(folder / bundle.PRINTED)},
-    }
-    statement["subject"] = [*statement.get("subject", []), entry]
-    write_json(folder / MANIFEST, statement)
 
 
 def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, str]:
@@ -107,11 +66,9 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
     return value, given, origin
 
 
-def declared(page: NotebookNode) -> list[dict[int, str]]:
+def prints(page: NotebookNode) -> list[dict[int, str]]:
     """Return the option `prints` of each code cell of a page, an empty one if it has none."""
-    return [
-        cell.metadata.get(OPTION, {}) for cell in page.cells if cell.cell_type == "code"
-    ]
+    return [cell.metadata.get(OPTION, {}) for cell in code_cells(page)]
 
 
 def contradiction(

@@ -1,0 +1,152 @@
+"""An executed page in its folder: what was run, the outputs, and the files that the run left.
+
+page.json        the page, its code and run, and a digest of each other file
+executed.ipynb   the page's code cells with their outputs
+outputs/         what the run left: `<backend>/`, the evidence bundle, and the page's own files
+"""
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+from pydantic import ValidationError
+
+from robo_genesis.core.files import files_below, replaced
+from robo_genesis.core.project import ENGINE, ProjectError, installed_version
+from robo_genesis.evidence.bundle import sha256
+from robo_genesis.evidence.fields import RunId, Sha256, Strict
+from robo_genesis.pipeline.pages.book import Page, code_cells, code_digest, code_of
+from robo_genesis.pipeline.pages.outputs import keep_outputs
+from robo_genesis.pipeline.pages.results import PageResult, find_bundle
+
+RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
+
+
+class PageRefused(ProjectError):  # noqa: N818 - the word of the domain, as for bundles
+    """A folder is not an executed page as it was stored."""
+
+
+class Record(Strict):
+    """`page.json`: what was executed, with what, and the files that the run left.
+
+    `fingerprint` names everything that decides outputs, `code` is the digest of the
+    page's own code. `engine` is its version, None if it is unknown. `seconds` is the
+    duration of the execution, `cell_seconds` that of each cell with code; `files` maps
+    names to digests.
+    """
+
+    docname: str
+    lesson: str | None
+    page: str | None
+    fingerprint: str
+    code: Sha256
+    run_id: RunId
+    engine: str | None
+    seconds: float
+    cell_seconds: list[float]
+    files: dict[str, Sha256]
+
+
+def write_page(
+    place: Path,
+    page: Page,
+    notebook: NotebookNode,
+    left: Path,
+    run_id: str,
+    seconds: float,
+    cell_seconds: Sequence[float],
+) -> None:
+    """Put an executed page into its place in one move; an older one is replaced.
+
+    Args:
+        place: the page's folder, named by its fingerprint.
+        page: the page that was executed.
+        notebook: its cells with their outputs.
+        left: the folder with the files that the run left; used if the page declares a
+            bundle.
+        run_id: of the run.
+        seconds: how long the execution took.
+        cell_seconds: how long each cell with code took.
+
+    Raises:
+        OSError: the folder cannot be written.
+    """
+    place.parent.mkdir(parents=True, exist_ok=True)
+    with replaced(place) as fresh:
+        fresh.mkdir()
+        code = NotebookNode(notebook | {"cells": code_cells(notebook)})
+        nbformat.write(code, fresh / NOTEBOOK)
+        if page.declares_bundle:
+            shutil.copytree(left, fresh / OUTPUTS)
+            if bundle := find_bundle(fresh / OUTPUTS, run_id):
+                keep_outputs(bundle, notebook)
+        record = Record(
+            docname=page.docname,
+            lesson=page.lesson,
+            page=page.page,
+            fingerprint=place.name,
+            code=code_digest(page),
+            run_id=run_id,
+            engine=installed_version(ENGINE),
+            seconds=round(seconds, 3),
+            cell_seconds=list(cell_seconds),
+            files=_digests(fresh),
+        )
+        (fresh / RECORD).write_text(
+            record.model_dump_json(indent=1) + "\n", encoding="utf8"
+        )
+
+
+def _digests(place: Path) -> dict[str, str]:
+    """Return the SHA-256 of each file by its name, except that of the record."""
+    return {
+        path.relative_to(place).as_posix(): sha256(path)
+        for path in sorted(files_below(place))
+        if path != place / RECORD
+    }
+
+
+def read_record(place: Path) -> Record:
+    """Return what the record of an executed page says.
+
+    Raises:
+        PageRefused: it is missing or not what `write_page` writes.
+    """
+    try:
+        return Record.model_validate_json((place / RECORD).read_bytes())
+    except (OSError, ValidationError) as error:
+        raise PageRefused(
+            f"{place / RECORD} is missing or damaged. Execute the page again.\n{error}"
+        ) from error
+
+
+def read_page(place: Path) -> tuple[Record, NotebookNode]:
+    """Return record and notebook of an executed page whose files are as they were stored.
+
+    Raises:
+        PageRefused: naming each file that is missing, was added or changed.
+    """
+    record, digests = read_record(place), _digests(place)
+    names = {*digests, *record.files}
+    damaged = [n for n in sorted(names) if digests.get(n) != record.files.get(n)]
+    if damaged or record.fingerprint != place.name:
+        raise PageRefused(
+            f"{', '.join(damaged or [RECORD])} changed since {place} was stored."
+        )
+    return record, nbformat.read(place / NOTEBOOK, as_version=4)
+
+
+def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
+    """Return the digests of a notebook's code cells and the name of the kernel that executes them.
+
+    Comments and layout of the cells do not count.
+    """
+    kernel = notebook.metadata.get("kernelspec", {}).get("name")
+    return code_of(notebook).digests, kernel
+
+
+def stored_notebook(result: PageResult) -> NotebookNode:
+    """Return the code cells of a page that was executed, with their outputs."""
+    return nbformat.read(result.folder / NOTEBOOK, as_version=4)

@@ -1,0 +1,243 @@
+"""Execute one page in a clean kernel, and put it into the store if it did not fail."""
+
+import asyncio
+import re
+import tempfile
+import threading
+import time
+import uuid
+from collections.abc import Callable, Mapping
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import nbclient
+from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
+from nbformat import NotebookNode
+
+from robo_genesis.core import project
+from robo_genesis.core.text import ended
+from robo_genesis.pipeline.command import ANSI
+from robo_genesis.pipeline.pages import kernels, results
+from robo_genesis.pipeline.pages.book import Page, code_digest
+from robo_genesis.pipeline.pages.page_folder import (
+    OUTPUTS,
+    PageRefused,
+    Record,
+    write_page,
+)
+from robo_genesis.pipeline.pages.results import Failure, PageResult
+
+# What a warning names in the place of a file: a temporary one with the number of the
+# process.
+CELL_FILE = re.compile(rf"{re.escape(tempfile.gettempdir())}/ipykernel_\d+/\d+\.py")
+
+
+@dataclass(slots=True, eq=False)
+class PageRun:
+    """One run of one page.
+
+    `place` is the page's folder in the store; `scratch` is a temporary folder; `log` is
+    the file that gets what cells and kernel write; `timeout` is in seconds, for one
+    cell; `last` is the record of the last stored run.
+
+    `cell` is the number of the code cell that runs, from 1; 0 while the kernel starts.
+    The page `waits` before its first cell that must run alone until `turn` is set, and
+    is `alone` from there on. `begin` is a time of the monotonic clock [s].
+    """
+
+    page: Page
+    place: Path
+    scratch: Path
+    log: Path
+    timeout: int
+    environment: Mapping[str, str]
+    last: Record | None = None
+    run_id: str = field(default_factory=lambda: uuid.uuid4().hex)
+    begin: float = field(default_factory=time.monotonic)
+    cell: int = 0
+    alone: bool = False
+    waits: bool = False
+    turn: threading.Event = field(default_factory=threading.Event)
+    kernel: kernels.CleanKernelManager | None = None
+
+    def execute(self, on_cell: Callable[[], None]) -> PageResult:
+        """Execute the page in an empty temporary folder; store it unless it failed.
+
+        Args:
+            on_cell: called when a cell has started or waits.
+        """
+        with (
+            tempfile.TemporaryDirectory(dir=self.scratch) as folder,
+            self.log.open("wb", buffering=0) as log,
+        ):
+            seconds, failure = self._execute(Path(folder), log, on_cell)
+        if failure:
+            text = self.log.read_text("utf8", errors="replace")
+            failure = replace(failure, log=results.last_lines(text))
+        left = self.place / OUTPUTS
+        bundle = None if failure else results.find_bundle(left, self.run_id)
+        return PageResult(
+            self.page,
+            "failed" if failure else "executed",
+            seconds,
+            self.run_id,
+            bundle,
+            failure,
+            self.place,
+            self.log,
+        )
+
+    def _execute(
+        self, folder: Path, log: BinaryIO, on_cell: Callable[[], None]
+    ) -> tuple[float, Failure | None]:
+        """Return the seconds that the run took, without waiting, and why it failed."""
+        home, work, outputs = folder / "home", folder / "work", folder / "outputs"
+        for place in (home, work, outputs):
+            place.mkdir()
+        self.kernel = kernel = kernels.CleanKernelManager(home)
+        notebook = deepcopy(self.page.notebook)
+        begins: dict[int, float] = {}
+        seconds: list[float] = []
+        waited = 0.0
+
+        def cell_starts(cell: NotebookNode, cell_index: int) -> None:
+            nonlocal waited
+            asked = time.monotonic()
+            self.cell = results.cell_number(notebook, cell_index)
+            if self.cell == self.page.alone:
+                self.alone = self.waits = True
+                on_cell()
+                self.turn.wait()
+            kernel.busy = True
+            begins[cell_index] = time.monotonic()
+            waited += begins[cell_index] - asked
+
+        def cell_ends(
+            cell: NotebookNode, cell_index: int, execute_reply: object
+        ) -> None:
+            kernel.busy = False
+            seconds.append(round(time.monotonic() - begins[cell_index], 3))
+
+        own = {
+            project.RUN_ID: self.run_id,
+            project.OUTPUTS_DIR: str(outputs),
+            project.PAGE_SHA256: code_digest(self.page),
+            project.PAGE_IMPORTS: " ".join(self.page.code.imports),
+        }
+        begin, error = time.monotonic(), None
+        client = LoggingClient(
+            notebook,
+            km=kernel,
+            timeout=notebook.metadata.get("execution", {}).get("timeout", self.timeout),
+            extra_arguments=kernels.ARGUMENTS,
+            record_timing=False,
+            on_cell_execute=cell_starts,
+            on_cell_executed=cell_ends,
+        )
+        client.page_log = log
+        try:
+            # The engine's compiled parts write past Python: to the log as well.
+            kernel_run = client.async_execute(
+                cleanup_kc=True,
+                env=kernels.clean_environment(home, {**self.environment, **own}),
+                cwd=str(work),
+                stdout=log,
+                stderr=log,
+            )
+            asyncio.run(kernel_run)
+        except Exception as caught:  # also a dead kernel, or one that does not start
+            error = caught
+        elapsed = time.monotonic() - begin - waited
+        left = outputs / str(self.page.lesson) / str(self.page.page)
+        if failure := self._failure(notebook, error, list(begins), left):
+            return elapsed, failure
+        notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = (
+            self.run_id
+        )
+        try:
+            write_page(
+                self.place, self.page, notebook, left, self.run_id, elapsed, seconds
+            )
+        except (PageRefused, OSError, RuntimeError, ValueError) as caught:
+            return elapsed, Failure(
+                "NotStored", f"the executed page cannot be stored: {caught}"
+            )
+        return elapsed, None
+
+    def _failure(
+        self,
+        notebook: NotebookNode,
+        error: Exception | None,
+        started: list[int],
+        left: Path,
+    ) -> Failure | None:
+        """Return why the page failed, None if it did not."""
+        if error is None:
+            return results.unexpected_outcome(
+                self.page, notebook
+            ) or results.missing_bundle(left, self.page, self.run_id)
+        name, message = type(error).__name__, str(error)
+        if isinstance(error, CellExecutionError):
+            name, message = error.ename, error.evalue
+        elif isinstance(error, CellTimeoutError):
+            message = message.splitlines()[0]
+        elif isinstance(error, DeadKernelError) and self.kernel and self.kernel.process:
+            message += f" with {ended(self.kernel.process.wait())}"
+        if not started:
+            return Failure(name, message)
+        return results.at_cell(
+            self.page, started[-1], name, message, notebook.cells[started[-1]]
+        )
+
+
+class LoggingClient(nbclient.NotebookClient):
+    """Writes what cells print to the page's log.
+
+    Printed text loses its colours: a plain `gs.init` writes those of a dark terminal.
+    It becomes one text for each stream, because kernels flush at random moments, with
+    the last state of each line. Text far beyond the limit is dropped, so that no loop
+    fills memory and disk; then the page is refused.
+    """
+
+    page_log: BinaryIO
+
+    def _cleanup_kernel(self) -> None:
+        """Do nothing when Python exits: the build has ended its kernels."""
+
+    def process_message(
+        self, msg: dict[str, Any], cell: NotebookNode, cell_index: int
+    ) -> NotebookNode | None:
+        """Keep one message of the kernel in the notebook, and write its text."""
+        if msg["msg_type"] != "stream":
+            return super().process_message(msg, cell, cell_index)
+        if (
+            sum(len(out.get("text", "")) for out in cell.outputs)
+            > 10 * results.MOST_LETTERS
+        ):
+            return None
+        text = CELL_FILE.sub("cell", ANSI.sub("", msg["content"]["text"]))
+        self.page_log.write(text.encode("utf8", errors="replace"))
+        for out in cell.outputs:
+            if (
+                out.get("name") == msg["content"]["name"]
+                and not self.clear_before_next_output
+            ):
+                out.text = last_states(out.text + text)
+                return out
+        msg["content"]["text"] = last_states(text)
+        output = super().process_message(msg, cell, cell_index)
+        if [out.get("name") for out in cell.outputs[-2:]] == ["stderr", "stdout"]:
+            cell.outputs[-2:] = cell.outputs[:-3:-1]  # their order is random
+        return output
+
+
+def last_states(text: str) -> str:
+    """Return a text with each line as a terminal shows it, after its last carriage return."""
+    lines = (
+        [state for state in line.split("\r") if state] for line in text.split("\n")
+    )
+    return "\n".join(
+        states[-1] if states else "" for states in lines
+    ) + "\r" * text.endswith("\r")
