@@ -28,8 +28,7 @@ def add_lesson(root: Path, lesson: str) -> list[str]:
         Lines for the user: what was written, and what to do next.
 
     Raises:
-        ProjectError: the name is not valid, the lesson exists, or a list has another
-            form.
+        ProjectError: the name is not valid, or the lesson exists.
         OSError: a file cannot be written. A next call names the folders that were made.
     """
     require_new(root, lesson)
@@ -82,24 +81,16 @@ def lesson_files(root: Path, lesson: str) -> dict[Path, str]:
 
 
 def with_chapter(toc: str, lesson: str) -> str:
-    """Return the table of contents with the lesson's pages, in the order of the lessons.
-
-    Raises:
-        ProjectError: it names no lesson.
-    """
+    """Return the table of contents with the lesson's pages, in the order of the lessons."""
     head, *chapters = re.split(f"(?m)^(?={CHAPTER})", f"{toc.rstrip()}\n")
+    folder = f"lessons/{lesson}-new-lesson"
+    new = f"{CHAPTER}{folder}/lecture\n    sections:\n"
+    new += "".join(f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes"))
     lessons = [
         k for k, text in enumerate(chapters) if text.startswith(f"{CHAPTER}lessons/")
     ]
-    if not lessons:
-        raise ProjectError(
-            f"book/_toc.yml has no line `{CHAPTER}lessons/...`. Add one there."
-        )
-    later = [k for k in lessons if chapters[k] > f"{CHAPTER}lessons/{lesson}"]
-    folder = f"lessons/{lesson}-new-lesson"
-    pages = [f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes")]
-    new = "".join([f"{CHAPTER}{folder}/lecture\n    sections:\n", *pages])
-    chapters.insert(min(later, default=lessons[-1] + 1), new)
+    later = [k for k in lessons if chapters[k] > new]
+    chapters.insert(min(later, default=max(lessons, default=-1) + 1), new)
     return "".join([head, *chapters])
 
 

@@ -1,4 +1,4 @@
-"""The refresh report: what another engine version changes in packages, evidence and sentences."""
+"""The refresh report: what another engine version changes in evidence and sentences."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping
@@ -10,8 +10,7 @@ from pathlib import Path
 
 from bs4 import BeautifulSoup
 
-from robo_genesis.core.checks import CheckFailed
-from robo_genesis.core.project import STORE, locked_versions
+from robo_genesis.core.project import STORE
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.document import Document, Part
@@ -46,15 +45,11 @@ BREAK = "\x1e"
 # The ledger lists digests of other pages; the costs are the times of the build itself.
 LEFT_OUT = {Path("evidence", "ledger.html"), Path("performance", "costs.html")}
 
-# What to decide about a page whose run was judged, and about one that ended before.
-JUDGED = (
-    "Rule, if the run obeys mechanics: our check assumes more than the engine documents, for "
-    "example an order of work within a step. Correct the check. Engine, if the run does not: keep "
-    "the pin, and report the run to the engine's developers."
-)
-RAISED = (
-    "Engine, if its interface, a message or its speed changed: adapt the page, or keep the pin and "
-    "report the change. Rule, if the page expects more than the engine documents: correct the page."
+# How to decide about a page that failed or was refused.
+RULE_OR_ENGINE = (
+    "If the run obeys mechanics, our page or check expects more than the engine documents, for "
+    "example an order of work within a step: correct it. If it does not, or if the interface "
+    "changed: adapt the page, or keep the pin and report the change to the engine's developers."
 )
 NOTHING = "Nothing was found here, or the trial failed before."
 
@@ -69,7 +64,6 @@ class EngineBuild:
     """
 
     version: str
-    lock: str
     bundles: dict[str, Path]
     recorded: dict[str, Status]
     site: Path
@@ -79,8 +73,7 @@ class EngineBuild:
 class Refresh:
     """The comparison of two builds of one checkout, each with its engine version.
 
-    `packages` is name → versions in both locks, "" for none; `missing` is
-    lesson/page/backend → why its bundles were not compared; `recorded` is
+    `missing` is lesson/page/backend → why its bundles were not compared; `recorded` is
     lesson/backend → state under both pins; `changed` holds (page, old, new) of each
     changed sentence, see `changed_sentences`. `failed` says what failed, what to do,
     and the last lines of the log; what was not reached is empty then. `pages` is the
@@ -88,7 +81,6 @@ class Refresh:
     """
 
     versions: Pair
-    packages: dict[str, Pair] = field(default_factory=dict)
     comparisons: tuple[BundleComparison, ...] = ()
     missing: dict[str, str] = field(default_factory=dict)
     recorded: dict[str, tuple[Status, Status]] = field(default_factory=dict)
@@ -134,8 +126,7 @@ def read_build(
                 if bundle and current:
                     bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
                     break
-    lock = (root / "requirements.lock").read_text("utf8")
-    return EngineBuild(version, lock, bundles, recorded(root), site)
+    return EngineBuild(version, bundles, recorded(root), site)
 
 
 def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
@@ -152,7 +143,6 @@ def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
     versions = old.version, new.version
     return Refresh(
         versions,
-        changed_packages(old.lock, new.lock),
         tuple(comparisons),
         missing,
         {name: (old.recorded[name], new.recorded[name]) for name in old.recorded},
@@ -167,15 +157,6 @@ def recorded(root: Path) -> dict[str, Status]:
     book = root / "book"
     keys = [folder.parts[-2:] for folder in recorded_folders(book)]
     return {"/".join(key): recorded_status(book, *key, root=root) for key in keys}
-
-
-def changed_packages(old: str, new: str) -> dict[str, Pair]:
-    """Return name → (old, new) version of each package that differs between two locks."""
-    was, now = locked_versions(old), locked_versions(new)
-    names = sorted(was | now)
-    return {
-        n: (was.get(n, ""), now.get(n, "")) for n in names if was.get(n) != now.get(n)
-    }
 
 
 def changed_sentences(
@@ -197,9 +178,8 @@ def changed_sentences(
         before, after = (
             [volatile.sub("…", text) for text in page] for page in (was, now)
         )
-        for tag, a, b, c, d in SequenceMatcher(
-            None, before, after, autojunk=False
-        ).get_opcodes():
+        matcher = SequenceMatcher(None, before, after, autojunk=False)
+        for tag, a, b, c, d in matcher.get_opcodes():
             if tag != "equal":
                 for pair in zip_longest(was[a:b], now[c:d], fillvalue=""):
                     yield name.with_suffix("").as_posix(), *pair
@@ -232,8 +212,8 @@ def summary(refresh: Refresh) -> str:
     """Return the result in one line."""
     result = refresh.failed[0] if refresh.failed else refresh.state
     return (
-        f"{result}; changed packages: {len(refresh.packages)}, changed sentences: "
-        f"{len(refresh.changed)}, recorded bundles that became stale: {len(refresh.stale)}"
+        f"{result}; changed sentences: {len(refresh.changed)}, recorded bundles that became "
+        f"stale: {len(refresh.stale)}"
     )
 
 
@@ -245,49 +225,32 @@ def document(refresh: Refresh) -> Document:
     return Document(title, verdict, list(_parts(refresh)))
 
 
-def _advice(state: str, why: str) -> str:
-    """Return how to decide whether the engine or a rule of ours must change."""
-    return (
-        JUDGED if state == "refused" or why.startswith(CheckFailed.__name__) else RAISED
-    )
-
-
 def _parts(refresh: Refresh) -> Iterator[Part]:
     """Yield the parts of the report.
 
     The part of the pages has one row for each. Rows that are equal are counted there
     and left out below: most of several thousand rows are.
     """
-    old, new = refresh.versions
-    both = refresh.comparisons
     if refresh.failed:
         what, remedy, *lines = refresh.failed
-        named = [("page", "result", "reason", "rule or engine?")]
-        named += [
-            (page, *found, _advice(*found)) for page, found in refresh.pages.items()
-        ]
-        yield Part(what, named, remarks=[remedy])
+        reasons = [(page, *reason) for page, reason in refresh.pages.items()]
+        head = ("page", "result", "reason")
+        yield Part(what, [head, *reasons], remarks=[remedy, RULE_OR_ENGINE])
         yield Part("Last lines of the log", [()], remarks=lines)
-    rows = [
-        (f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one))
-        for one in both
-    ]
+    rows = [("page", "result", "rows")]
+    for one in refresh.comparisons:
+        name = f"{one.new.lesson} {one.new.page}"
+        rows.append((name, one.state, report.verdict(one)))
     rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]
-    yield Part("Pages", [("page", "result", "rows"), *rows], NOTHING)
-    packages = [(name, *versions) for name, versions in refresh.packages.items()]
-    yield Part("Packages", [("package", "old", "new"), *packages], NOTHING)
-    states = [
-        (name, a.state, b.state, b.reason) for name, (a, b) in refresh.recorded.items()
-    ]
-    head = ("bundle", f"under {old}", f"under {new}", "reason")
-    yield Part("Recorded bundles", [head, *states], NOTHING)
-    for one in both:
+    yield Part("Pages", rows, NOTHING)
+    states = [("bundle", "before", "after", "reason")]
+    for name, (was, now) in refresh.recorded.items():
+        states.append((name, was.state, now.state, now.reason))
+    yield Part("Recorded bundles", states, NOTHING)
+    for one in refresh.comparisons:
         table = report.changes(one)
         if one.remarks or len(table) > 1:
             yield Part(report.title(one), table, remarks=one.remarks)
     for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
-        yield Part(
-            f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)]
-        )
-    if not refresh.changed:
-        yield Part("Sentences", [("", "")], NOTHING)
+        sentences = [("old", "new"), *(one[1:] for one in changed)]
+        yield Part(f"Sentences of {page}", sentences)

@@ -1,4 +1,4 @@
-"""The real change of the pin, there and back, in a clone."""
+"""The real change of the pin, in a clone."""
 
 import json
 import re
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from checkout import make, run_in
-from tiny_book import commit, git
+from tiny_book import git
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ROOT
@@ -31,13 +31,6 @@ def clone(tmp_path_factory) -> Path:
     return folder
 
 
-def texts(clone: Path) -> dict[str, bytes]:
-    return {
-        name: (clone / name).read_bytes()
-        for name in ("pyproject.toml", "requirements.lock")
-    }
-
-
 def changed(clone: Path) -> list[str]:
     return git(clone, "status", "--porcelain").split()
 
@@ -52,10 +45,9 @@ def keep(clone: Path, name: str) -> Path:
     return shutil.copytree(built, clone.parent / name / "cpu")
 
 
-def test_there_and_back(clone):
-    before = texts(clone)
+def test_another_version_is_pinned_with_its_evidence(clone):
     refused = make(clone, "repin", "GENESIS=9.9.9", fails=True)
-    assert "No matching distribution found for genesis-world==9.9.9" in refused
+    assert "genesis-world==9.9.9" in refused
     assert changed(clone) == []
 
     make(clone, "book")
@@ -63,34 +55,20 @@ def test_there_and_back(clone):
     make(clone, "repin", f"GENESIS={OTHER}")
     assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
     assert project.engine_pin(clone) == OTHER
-    report = (
-        clone / ".cache/reports" / f"repin-{PIN}-{OTHER}" / "report.md"
-    ).read_text()
+    reports = clone / ".cache/reports" / f"repin-{PIN}-{OTHER}"
+    report = (reports / "report.md").read_text()
     states = dict(re.findall(r"^\| (l\d+ \w+) \| ([a-z ]+) \|", report, re.MULTILINE))
     measuring = [page for page in find_pages(clone / "book") if page.declares_bundle]
     assert states.keys() == {f"{page.lesson} {page.page}" for page in measuring}
     assert NOT_COMPARABLE not in states.values()
     # Cubes of L03 that tumble over an edge differ between versions.
     assert DIFFERS not in [states[f"{lesson} lab"] for lesson in ("l04", "l05", "l06")]
-    assert not re.search(r"\| (failed|FAILED) \|", report)
 
     run_in(clone, "make", "book", BASE)  # in the environment of the new lock
     second = keep(clone, "second")
-    found = compare(first, second)
-    assert found.state in (EQUAL, WITHIN), pages.summary(found)
+    comparison = compare(first, second)
+    assert comparison.state in (EQUAL, WITHIN), pages.summary(comparison)
     assert predicate(second)["engine"]["version"] == OTHER
     assert predicate(second)["evidence_key"] != predicate(first)["evidence_key"]
     for page in (clone / "book/_build/html").rglob("*.html"):
-        html = page.read_text("utf8")
-        assert f"Genesis {PIN}" not in html, page
-        assert f"/v{PIN}" not in html, page
-        assert predicate(first)["run_id"][:8] not in html, page
-
-    commit(clone)
-    run_in(clone, "make", "repin", f"GENESIS={PIN}", BASE)
-    assert texts(clone) == before
-    assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
-    run_in(clone, "make", "book", BASE)
-    third = keep(clone, "third")
-    assert predicate(third)["evidence_key"] == predicate(first)["evidence_key"]
-    assert compare(first, third).state == EQUAL
+        assert f"Genesis {PIN}" not in page.read_text("utf8"), page

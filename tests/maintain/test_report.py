@@ -26,30 +26,23 @@ from robo_genesis.site.evidence.ledger_data import LEDGER
 def builds(pristine, tmp_path) -> tuple[EngineBuild, EngineBuild]:
     """Two builds with one lab each, and a site of one sentence."""
     both = []
-    for version, lock in (("1.0", "a==1\n"), ("9.9.9", "a==1\nb==2\n")):
+    for version in ("1.0", "9.9.9"):
         site, bundle = tmp_path / version / "html", tmp_path / version / "cpu"
         shutil.copytree(pristine, bundle)
         site.mkdir()
         (site / "index.html").write_text("<p>Same.</p>")
-        both.append(EngineBuild(version, lock, {"l04/lab/cpu": bundle}, {}, site))
+        both.append(EngineBuild(version, {"l04/lab/cpu": bundle}, {}, site))
     part("engine", version="9.9.9")(both[1].bundles["l04/lab/cpu"])
     return both[0], both[1]
 
 
 def test_equal_metrics_are_reported_as_such(builds):
     found = compare_builds(*builds)
-    assert (found.state, found.packages, found.changed) == (
-        "equal",
-        {"b": ("", "2")},
-        (),
-    )
+    assert (found.state, found.changed) == ("equal", ())
     text = refresh.document(found).markdown()
-    head = (
-        "# Engine 1.0 → 9.9.9\n\n**Equal; changed packages: 1, changed sentences: 0, "
-    )
-    assert text.startswith(head)
+    assert text.startswith("# Engine 1.0 → 9.9.9\n\n**Equal; changed sentences: 0, ")
     assert "| l04 lab | equal | Equal. Rows: " in text
-    assert text.count("Nothing was found here") == 2
+    assert "Nothing was found here" in text
 
 
 def test_a_bundle_that_one_build_lacks_or_that_is_damaged_is_not_comparable(builds):
@@ -69,7 +62,6 @@ def test_a_refused_build_has_the_bundles_of_its_executed_pages(
 ):
     root, left = tmp_path / "root", tmp_path / "left"
     book = make_book(root, lab=lab("cpu"), other=lab("cpu").replace("l04", "l02"))
-    (root / "requirements.lock").write_text("a==1\n")
     shutil.copy(project.ROOT / "pyproject.toml", root)
     shutil.copytree(builds[1].bundles["l04/lab/cpu"], left / "cpu")
     run_id = json.loads((left / "cpu" / "manifest.json").read_text())["predicate"][
