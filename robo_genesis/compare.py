@@ -18,8 +18,7 @@ from pathlib import Path
 
 from robo_genesis.core.text import printable
 from robo_genesis.evidence import report
-from robo_genesis.evidence.bundle import Predicate
-from robo_genesis.evidence.bundle_files import MANIFEST
+from robo_genesis.evidence.bundle import MANIFEST, Manifest
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import (
@@ -80,7 +79,7 @@ def bundle_folder(given: str, opened: ExitStack) -> Path:
     return path
 
 
-def reasons(mine: Predicate, other: Predicate) -> Iterator[str]:
+def reasons(mine: Manifest, other: Manifest) -> Iterator[str]:
     """Yield what differs between two runs and may explain different numbers."""
     facts = [
         (

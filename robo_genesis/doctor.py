@@ -195,7 +195,7 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     from robo_genesis.evidence.bundle import read_manifest
 
     with ExitStack() as opened:
-        run = read_manifest(bundle_folder(bundle, opened)).predicate
+        run = read_manifest(bundle_folder(bundle, opened))
     engine, backend, host = run.engine, run.backend, run.host
     versions = [
         engine.version,

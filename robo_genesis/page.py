@@ -25,8 +25,9 @@ from robo_genesis.core.project import RUN_ID, cache_folders, nothing_compiled
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources
-from robo_genesis.sim import session, visual_shape
+from robo_genesis.sim import session
 from robo_genesis.sim.camera import frames as cameras
+from robo_genesis.sim.visual_shape import Part
 
 # What a reader's own notebook prints; a page that a command executes does not.
 FIRST_START = """\
@@ -106,6 +107,7 @@ class LessonPage:
         self.readings: dict[str, Mapping[str, float]] = {}
         self.frames: dict[str, np.ndarray] = {}
         self.joints: Any = None
+        self._shape: Sequence[Part] = ()
         self.links: Sequence[str] = list(self._declared.links)
         names = getattr(self._declared.readings.get(FUNCTIONS), "units", ())
         self._written = dict.fromkeys(names, 0)
@@ -141,9 +143,9 @@ class LessonPage:
         if self.render:
             self.frames[name] = cameras.capture(camera)
 
-    def write_shape(self, parts: Sequence[visual_shape.Part]) -> None:
-        """Write the geometry that the page's replay draws."""
-        visual_shape.write_shape(self.folder, parts)
+    def write_shape(self, parts: Sequence[Part]) -> None:
+        """Keep the geometry that the page's replay draws; `finish` writes it to the bundle."""
+        self._shape = parts
 
     def show(self, function: Callable[..., Any], *arguments: Any) -> None:
         """Show a measured table, text or figure: a function of the experiment.
@@ -220,7 +222,7 @@ class LessonPage:
         experiment = self.experiment
         self._show(shown.CHECKS)
         renderer = cameras.read_renderer(scene) if self.render else None
-        folder = self._recorder.write(experiment, renderer)
+        folder = self._recorder.write(experiment, renderer, self._shape)
         files = sum(path.is_file() for path in folder.rglob("*"))
         print(
             f"{files} files in {self._recorder.lesson}/{self._recorder.page}/{folder.name}"

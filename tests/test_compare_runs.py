@@ -8,7 +8,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from spoilers import both, metrics, modules, part, predicate, seal
+from spoilers import both, facts, metrics, modules, part, seal
 
 from robo_genesis.compare import main
 from robo_genesis.core.project import ROOT
@@ -39,7 +39,7 @@ def test_an_equal_run_agrees_with_the_archive_and_with_the_folder(
 def test_the_site_s_own_run_is_not_taken_for_a_student_s(mine, archive, capsys):
     for change, named in (
         (seal, True),
-        (both(predicate(run_id="0" * 32), seal), False),
+        (both(facts(run_id="0" * 32), seal), False),
     ):
         change(mine)
         assert main([str(mine), archive]) == 0
@@ -76,8 +76,8 @@ DIFFERS = "Your run differs from the site's"
                 "The backends differ: cuda and cpu",
             ),
         ),
-        (predicate(page="lecture"), 2, ("Give two bundles of the same page",)),
-        (predicate(seed=1), 2, ("cannot be compared",)),
+        (facts(page="lecture"), 2, ("Give two bundles of the same page",)),
+        (facts(seed=1), 2, ("cannot be compared",)),
     ],
 )
 def test_what_differs_and_what_may_explain_it_is_said(

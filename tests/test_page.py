@@ -210,7 +210,7 @@ def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(
     assert lines[-2] == "functions 4 of 4"
     assert lines[-3].endswith("files in l02/lab/cpu")
     manifest = json.loads((page.folder / "cpu" / "manifest.json").read_text())
-    assert manifest["predicate"]["run_id"] == RUN_ID
+    assert manifest["run_id"] == RUN_ID
     page.readings["body"] = {"mass": 2 * spec.BASELINE.mass}
     with pytest.raises(CheckFailed, match=r"L02 CHECK: FAILED \[mass\]"):
         page.finish(None)

@@ -23,7 +23,7 @@ WRITE_BUNDLE = """\
 import json, os, pathlib
 folder = pathlib.Path(os.environ["ROBO_GENESIS_OUTPUTS_DIR"], "l04", "lab", "cpu")
 folder.mkdir(parents=True)
-manifest = {"predicate": {"run_id": os.environ["ROBO_GENESIS_RUN_ID"]}}
+manifest = {"run_id": os.environ["ROBO_GENESIS_RUN_ID"]}
 (folder / "manifest.json").write_text(json.dumps(manifest))"""
 
 # A cell that leaves what a recording looks at, as if it had run on this backend.
@@ -45,7 +45,7 @@ facts = dict(
     warnings=["Approximating tendon."],
     git=dict(commit="0123456789abcdef", dirty=True),
 )
-(folder / "manifest.json").write_text(json.dumps(dict(predicate=facts)))
+(folder / "manifest.json").write_text(json.dumps(facts))
 (folder / "log.txt").write_text("new")"""
 
 LAB_FRONT = "robo_genesis: {lesson: l04, page: lab}\n"
@@ -93,7 +93,7 @@ def accept(folder: Path, run_id: str) -> SimpleNamespace:
     """Replace the verification of evidence, which needs the engine's records."""
     text = (folder / "manifest.json").read_text()
     manifest = json.loads(text, object_hook=lambda fields: SimpleNamespace(**fields))
-    assert manifest.predicate.run_id == run_id
+    assert manifest.run_id == run_id
     return manifest
 
 

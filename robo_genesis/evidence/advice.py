@@ -1,6 +1,6 @@
 """What a refusal means for somebody who recorded a bundle at home, and what to do."""
 
-from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.bundle import Manifest
 
 LOCK = "Install the course's versions: pip install -r requirements.lock. Then run the page again."
 OWN = "Your bundle answers your own question and is not evidence for the course's page."
@@ -44,19 +44,17 @@ BY_CHANGE = {
 }
 
 
-def advice(
-    code: str, changes: tuple[str, ...], predicate: Predicate | None
-) -> list[str]:
+def advice(code: str, changes: tuple[str, ...], manifest: Manifest | None) -> list[str]:
     """Return sentences that say what a refusal means and what to do; none for a damaged bundle.
 
     Args:
         code: of the refusal.
         changes: for `stale`, what changed, as in `BY_CHANGE`.
-        predicate: of the bundle, None if it cannot be read.
+        manifest: of the bundle, None if it cannot be read.
     """
     if code != "stale":
         return [BY_CODE[code]] if code in BY_CODE else []
     texts = BY_CHANGE
-    if predicate is not None and predicate.source.page is None:
-        texts = BY_CHANGE | {"page": RUN_BY_HAND.format(lesson=predicate.lesson)}
+    if manifest is not None and manifest.source.page is None:
+        texts = BY_CHANGE | {"page": RUN_BY_HAND.format(lesson=manifest.lesson)}
     return [texts[change] for change in changes]

@@ -1,200 +1,194 @@
 """The evidence bundle: one folder with all that a page measured on one backend.
 
-manifest.json   in-toto Statement: every other file with its sha256, one strict predicate
+manifest.json   what ran where, what the checks found, and the SHA-256 of each other file
 metrics.json    value, unit, class and source array of each metric; null = not observed
 arrays.json     the joint behind each DOF; dims, dtype, unit and long name of every array
 arrays/<case>.npz
 frames/*.png    camera frames only
+shape.npz       the visual geometry, if the page wrote one
 log.txt         the engine's own log
 printed.json    what the page's cells put out; none of a notebook that was run by hand
 """
 
 import hashlib
-import re
+import json
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
-import rfc8785
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from robo_genesis.core.text import LONGEST_SHOWN
-from robo_genesis.evidence import fields
+from robo_genesis.core.files import json_digest
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
-from robo_genesis.evidence.strict_json import read_json
-from robo_genesis.sim.camera.frames import Renderer
 
-STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
-PREDICATE_TYPE = "urn:robo-genesis:evidence:v2"
-SCHEMA_VERSION = 2
-PRINTED = "printed.json"
+SCHEMA_VERSION = 3
+MANIFEST, METRICS, ARRAYS = "manifest.json", "metrics.json", "arrays.json"
+PRINTED, LOG = "printed.json", "log.txt"
 KEYED = ("schema_version", "lesson", "page", "source", "parameters", "seed")
 KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
 
-
 Value = TypeVar("Value")
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
+BackendName = Literal["cpu", "cuda", "amdgpu", "metal"]
 
 
-class Digest(fields.Strict):
-    """The digest of one file."""
+class Strict(BaseModel):
+    """A frozen record that refuses unknown fields and converts no types."""
 
-    sha256: fields.Sha256
-
-
-class Subject(fields.Strict):
-    """One file of the bundle; the name is relative to the folder of the bundle."""
-
-    name: fields.Line
-    digest: Digest
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, strict=True, allow_inf_nan=False
+    )
 
 
-class EngineRecord(fields.Strict):
+class EngineRecord(Strict):
     """The engine that computed the runs."""
 
-    version: fields.Line
-    quadrants_version: fields.Line
-    precision: fields.Line
+    version: str
+    quadrants_version: str
+    precision: str
     files_match_wheel: bool
 
 
-class BackendRecord(fields.Strict):
+class BackendRecord(Strict):
     """The backend: requested, found after `gs.init`, and found again at the end of the run."""
 
     requested: Literal["auto", "cpu"]
-    actual: Literal["cpu", "cuda", "amdgpu", "metal"]
-    actual_at_end: Literal["cpu", "cuda", "amdgpu", "metal"]
-    arch: fields.Line
-    torch_device: fields.Line
-    torch_version: fields.Line
-    hip_version: fields.Line | None
-    cuda_version: fields.Line | None
-    device_name: fields.Line
-    driver: fields.Line | None
+    actual: BackendName
+    actual_at_end: BackendName
+    arch: str
+    torch_device: str
+    torch_version: str
+    hip_version: str | None
+    cuda_version: str | None
+    device_name: str
+    driver: str | None
 
 
-class RenderRecord(fields.Strict):
+class RenderRecord(Strict):
     """The renderer of the frames; with mode `skip`, the other fields are None."""
 
     mode: Literal["camera", "skip"]
-    vendor: fields.Line | None
-    renderer: fields.Line | None
-    software: bool | None
+    vendor: str | None = None
+    renderer: str | None = None
+    software: bool | None = None
 
 
-class HostRecord(fields.Strict):
+class HostRecord(Strict):
     """The machine and its packages."""
 
-    os: fields.Line
-    machine: fields.Line
-    cpu: fields.Line
-    cores: int = Field(ge=1, lt=2**31)
-    python: fields.Line
-    packages: dict[fields.Line, fields.Line]
+    os: str
+    machine: str
+    cpu: str
+    cores: int
+    python: str
+    packages: dict[str, str]
 
 
-class GitRecord(fields.Strict):
+class GitRecord(Strict):
     """State of the checkout."""
 
-    commit: str = Field(pattern="^([0-9a-f]{40}|[0-9a-f]{64})$")
+    commit: str
     dirty: bool
 
 
-class SourceRecord(fields.Strict):
+class SourceRecord(Strict):
     """Digests of the syntax of what computed: code cells and modules; and of data files."""
 
-    page: fields.Sha256 | None
-    modules: dict[fields.Line, fields.Sha256]
+    page: Sha256 | None
+    modules: dict[str, Sha256]
 
 
-class CheckRecord(fields.Strict):
+class CheckRecord(Strict):
     """Outcome of one named check: what it found, and whether it passed when it was recorded."""
 
-    name: fields.Line
+    name: str
     passed: bool
-    found: dict[fields.Line, fields.Found]
+    found: dict[str, bool | int | float | str | None]
 
 
-class Predicate(fields.Strict):
-    """The circumstances and outcomes of the run."""
+class Manifest(Strict):
+    """The circumstances and outcomes of a run. `files` has the digest of each other file."""
 
     schema_version: int
-    lesson: fields.Line
-    page: fields.Line
-    run_id: fields.RunId
-    started: fields.Timestamp
-    ended: fields.Timestamp
-    command: fields.LongLine
+    lesson: str
+    page: str
+    run_id: RunId
+    started: str
+    ended: str
+    command: str
     engine: EngineRecord
     backend: BackendRecord
     render: RenderRecord
     host: HostRecord
-    environment: dict[fields.Line, fields.LongLine]
-    parameters: dict[fields.Line, Any]
+    environment: dict[str, str]
+    parameters: dict[str, Any]
     seed: int
     checks: list[CheckRecord]
-    warnings: list[fields.Message]
+    warnings: list[str]
     git: GitRecord | None
     source: SourceRecord
-    evidence_key: fields.Sha256
+    evidence_key: Sha256
+    files: dict[str, Sha256]
+
+    @property
+    def passed(self) -> str:
+        """How many checks passed: `14 of 14`."""
+        return f"{sum(check.passed for check in self.checks)} of {len(self.checks)}"
 
 
-class Manifest(fields.Strict):
-    """`manifest.json`, in the shape of an in-toto Statement."""
-
-    type_: Literal["https://in-toto.io/Statement/v1"] = Field(alias="_type")
-    subject: list[Subject]
-    predicate_type: Literal["urn:robo-genesis:evidence:v2"] = Field(
-        alias="predicateType"
-    )
-    predicate: Predicate
-
-
-class Metric(fields.Strict):
+class Metric(Strict):
     """One number of `metrics.json`; null means not observed."""
 
     value: int | float | None
-    unit: fields.Line
+    unit: str
     kind: Literal["exact", "value", "performance"] = Field(alias="class")
-    source: list[fields.Line] = Field(alias="from")
+    source: list[str] = Field(alias="from")
 
 
-class Variable(fields.Strict):
+class Variable(Strict):
     """One array of `arrays.json`. `unit` is a list if each DOF has its own unit."""
 
-    dims: list[fields.Line]
+    dims: list[str]
     shape: list[int]
-    dtype: fields.Line
-    unit: fields.Line | list[fields.Line]
-    long_name: fields.Line
+    dtype: str
+    unit: str | list[str]
+    long_name: str
 
 
-class CaseArrays(fields.Strict):
+class CaseArrays(Strict):
     """The arrays of one case."""
 
-    file: fields.Line
-    note: fields.Line
-    variables: dict[fields.Line, Variable]
+    file: str
+    note: str
+    variables: dict[str, Variable]
 
 
-class JointRecord(fields.Strict):
+class JointRecord(Strict):
     """The joint of one DOF of the arrays; a limit is null if the model has none."""
 
-    name: fields.Line
-    type_: fields.Line = Field(alias="type")
-    dof_idx_local: fields.Index
-    q_idx_local: fields.Index
+    name: str
+    type_: Literal["REVOLUTE", "PRISMATIC"] = Field(alias="type")
+    dof_idx_local: int
+    q_idx_local: int
     lower: float | None
     upper: float | None
-    unit: fields.Line
+    unit: str
 
 
-class Arrays(fields.Strict):
+class Arrays(Strict):
     """`arrays.json`: labels of the dimensions, the joints, and the arrays of each case."""
 
-    coords: dict[fields.Line, list[fields.Line]]
+    coords: dict[str, list[str]]
     joints: list[JointRecord]
-    cases: dict[fields.Line, CaseArrays]
+    cases: dict[str, CaseArrays]
+
+
+class _Version(BaseModel):
+    """The version of a manifest of any form; those before the third are 0 here."""
+
+    schema_version: int = 0
 
 
 def sha256(path: Path) -> str:
@@ -202,28 +196,53 @@ def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def evidence_key(predicate: dict[str, Any]) -> str:
-    """Return the SHA-256 of what decides the results of a bundle, as canonical JSON (RFC 8785).
+def evidence_key(facts: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of what decides the results of a bundle.
 
     It covers schema, lesson and page, the code that computes, engine versions,
     parameters, seed and precision. It does not cover commit, time, host, driver or
     prose.
 
-    Raises:
-        rfc8785.CanonicalizationError: JSON cannot hold a value, which `read_json` never
-            returns.
+    Args:
+        facts: the fields of a manifest as JSON values.
     """
-    engine = {name: predicate["engine"][name] for name in KEYED_OF_ENGINE}
-    keyed = {name: predicate[name] for name in KEYED} | {"engine": engine}
-    return hashlib.sha256(rfc8785.dumps(keyed)).hexdigest()
+    engine = {name: facts["engine"][name] for name in KEYED_OF_ENGINE}
+    return json_digest({name: facts[name] for name in KEYED} | {"engine": engine})
 
 
-def render_record(drawn: Renderer | None) -> dict[str, Any]:
-    """Return what a manifest says about the renderer of its frames, None without a camera."""
-    if drawn is None:
-        return {"mode": "skip", "vendor": None, "renderer": None, "software": None}
-    facts = {"vendor": drawn.vendor, "renderer": drawn.name, "software": drawn.software}
-    return {"mode": "camera"} | facts
+def list_files(folder: Path) -> dict[str, str]:
+    """Return the digest of each file of a bundle but the manifest, by name."""
+    return {
+        path.relative_to(folder).as_posix(): sha256(path)
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path != folder / MANIFEST
+    }
+
+
+def check_files(folder: Path, manifest: Manifest) -> None:
+    """Require that the files are exactly the listed ones, with the listed digests.
+
+    Raises:
+        BundleRefused: `files` or `digest`, with the names.
+    """
+    present, listed = list_files(folder), manifest.files
+    for what, names in (
+        ("listed, but absent", listed.keys() - present),
+        ("not listed", present.keys() - listed),
+    ):
+        expect("files", MANIFEST, f"list of files that are {what},", sorted(names), [])
+    for name, digest in listed.items():
+        expect("digest", name, "sha256", present[name], digest)
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write a value as UTF-8, one item on each line.
+
+    Raises:
+        TypeError, ValueError: JSON cannot hold it.
+    """
+    text = json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False)
+    path.write_text(f"{text}\n", "utf8")
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -231,78 +250,49 @@ def read_manifest(folder: Path) -> Manifest:
 
     Raises:
         BundleRefused: `older-schema` for a version that this form replaced, `schema`
-            for any other version; both are raised first, because the fields of another
-            version are unknown. `missing-file`, `bad-json` or `bad-schema` otherwise.
+            for a later one; `missing-file` or `bad-schema` otherwise.
     """
-    found = read_json(folder, "manifest.json")
-    _check_version(found)
-    return _validated(Manifest, found, "manifest.json")
-
-
-def _check_version(found: Any) -> None:
-    """Refuse another version of the form. An older one is `stale`, any other is unknown."""
-    statement = found if isinstance(found, dict) else {}
-    predicate = statement.get("predicate")
-    stated = predicate.get("schema_version") if isinstance(predicate, dict) else None
-    versions = [stated] if type(stated) is int else []  # True is not a version
-    if isinstance(kind := statement.get("predicateType"), str):
-        named = re.fullmatch(r"urn:robo-genesis:evidence:v(\d{1,9})", kind)
-        versions.append(int(named[1]) if named else -1)
-    valid = all(version in range(SCHEMA_VERSION + 1) for version in versions)
-    for version in versions:
-        if not valid:
-            expect(
-                "schema",
-                "manifest.json",
-                "version of its form",
-                version,
-                SCHEMA_VERSION,
-            )
-        expect(
-            "older-schema",
-            "manifest.json",
-            "version of its form",
-            version,
-            SCHEMA_VERSION,
-        )
+    version = _read(_Version, folder, MANIFEST).schema_version
+    code = "older-schema" if version < SCHEMA_VERSION else "schema"
+    expect(code, MANIFEST, "version of its form", version, SCHEMA_VERSION)
+    return _read(Manifest, folder, MANIFEST)
 
 
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
-    content = read_json(folder, "metrics.json")
-    return _validated(
-        dict[fields.Line, dict[fields.Line, Metric]], content, "metrics.json"
-    )
+    return _read(dict[str, dict[str, Metric]], folder, METRICS)
+
+
+def read_arrays(folder: Path) -> Arrays:
+    """Return the description of the arrays of a bundle."""
+    return _read(Arrays, folder, ARRAYS)
+
+
+def read_printed(folder: Path) -> list[list[dict[str, Any]]]:
+    """Return what each code cell of the page put out."""
+    return _read(list[list[dict[str, Any]]], folder, PRINTED)
 
 
 def by_full_name(metrics: Mapping[str, Mapping[str, Value]]) -> dict[str, Value]:
     """Return metrics by `group.name`."""
     return {
-        f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()
+        f"{group}.{name}": metric
+        for group, named in metrics.items()
+        for name, metric in named.items()
     }
-
-
-def read_arrays(folder: Path) -> Arrays:
-    """Return the description of the arrays of a bundle."""
-    return _validated(Arrays, read_json(folder, "arrays.json"), "arrays.json")
-
-
-def read_printed(folder: Path) -> list[list[dict[str, Any]]]:
-    """Return what each code cell of the page put out."""
-    return _validated(
-        list[list[dict[fields.Line, Any]]], read_json(folder, PRINTED), PRINTED
-    )
 
 
 _adapter = cache(TypeAdapter[Any])
 
 
-def _validated(form: Any, value: Any, file: str) -> Any:
+def _read(form: Any, folder: Path, name: str) -> Any:
     try:
-        return _adapter(form).validate_python(value)
+        return _adapter(form).validate_json((folder / name).read_bytes())
+    except OSError as error:
+        message = f"{name} cannot be read in {folder.name}: {error.strerror}. {AGAIN}"
+        raise BundleRefused("missing-file", message) from error
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(map(str, (file, *first["loc"])))[:LONGEST_SHOWN]
-        raise BundleRefused(
-            "bad-schema", f"{place}: {first['msg']}. {AGAIN}"
-        ) from error
+        place = ".".join(map(str, (name, *first["loc"])))
+        message = f"{place}: {first['msg']}. {AGAIN}"
+        raise BundleRefused("bad-schema", message) from error

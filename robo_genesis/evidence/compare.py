@@ -6,8 +6,8 @@ from pathlib import Path
 
 from robo_genesis.core.comparison import differences
 from robo_genesis.core.text import quoted
-from robo_genesis.evidence import bundle, bundle_files, rows
-from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence import bundle, rows
+from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import PageSpecification, Section, Side, worst
 from robo_genesis.evidence.trace_files import read_any_trace
@@ -25,8 +25,8 @@ class BundleComparison:
     cannot be compared; there are no sections then. Sections are sorted, worst first.
     """
 
-    old: Predicate
-    new: Predicate
+    old: Manifest
+    new: Manifest
     folders: tuple[str, str]
     axis: str
     obstacles: tuple[str, ...]
@@ -77,7 +77,7 @@ def compare(old: Path, new: Path) -> BundleComparison:
             the two are of different pages.
     """
     a, b = read_side(old), read_side(new)
-    was, now = a.manifest.predicate, b.manifest.predicate
+    was, now = a.manifest, b.manifest
     spec = specification(now.lesson, now.page)
     if (was.lesson, was.page) != (now.lesson, now.page):
         raise BundleRefused(
@@ -127,9 +127,8 @@ def read_side(folder: Path) -> Side:
             one; the message begins with the folder.
     """
     try:
-        present = bundle_files.scan(folder)
         manifest = bundle.read_manifest(folder)
-        bundle_files.check_files(folder, present, manifest)
+        bundle.check_files(folder, manifest)
         metrics, arrays = bundle.read_metrics(folder), bundle.read_arrays(folder)
         traces = {case: read_any_trace(folder, arrays, case) for case in arrays.cases}
     except BundleRefused as refusal:
@@ -137,7 +136,7 @@ def read_side(folder: Path) -> Side:
     return Side(str(folder), manifest, metrics, arrays, traces)
 
 
-def axes(old: Predicate, new: Predicate) -> list[str]:
+def axes(old: Manifest, new: Manifest) -> list[str]:
     """Return each axis in which two bundles differ, with both values."""
     engines = [
         f"{p.engine.version} (quadrants {p.engine.quadrants_version})"
@@ -148,7 +147,7 @@ def axes(old: Predicate, new: Predicate) -> list[str]:
     return [f"{axis} {was} → {now}" for axis, (was, now) in named if was != now]
 
 
-def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
+def _obstacles(old: Manifest, new: Manifest) -> Iterator[str]:
     was_asked, is_asked = (
         {
             "The seed": p.seed,
@@ -167,7 +166,7 @@ def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
         yield f"Two axes differ: {' and '.join(differing)}. Change one at a time."
 
 
-def _notes(old: Predicate, new: Predicate) -> Iterator[str]:
+def _notes(old: Manifest, new: Manifest) -> Iterator[str]:
     if old.run_id == new.run_id:
         yield "Both have the same run id. One is a copy of the other, or was edited."
     changed = [name for name, *_ in differences(old.source.modules, new.source.modules)]

@@ -1,23 +1,24 @@
 """Read the experiment of a bundle from its files."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 import numpy as np
+from PIL import Image, UnidentifiedImageError
 
 from robo_genesis.core.experiment import Experiment, MeasuringPage
-from robo_genesis.core.scene import CAMERA_RES
-from robo_genesis.evidence import trace_files
+from robo_genesis.core.trace import TraceError
 from robo_genesis.evidence.bundle import (
-    Arrays,
+    ARRAYS,
+    METRICS,
     Manifest,
     Metric,
-    Predicate,
     read_arrays,
 )
-from robo_genesis.evidence.picture_file import read_picture
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
+from robo_genesis.evidence.trace_files import describe, read_joints, read_run
 from robo_genesis.lessons import find_page
+from robo_genesis.sim.camera.frames import FrameError, require_frame
 
 
 def from_bundle(
@@ -29,63 +30,36 @@ def from_bundle(
     engine are part of it: the experiment computes its own metrics and checks.
 
     Raises:
-        BundleRefused: `cases`, `labels`, `metrics`, `frames`, or as `read_run`.
+        BundleRefused: `cases` for other runs than the declared ones, `labels` if
+            arrays.json does not describe them, `metrics`, `frames`, or as `read_run`.
     """
-    predicate = manifest.predicate
-    page, rendered = (
-        find_page(predicate.lesson, predicate.page),
-        predicate.render.mode == "camera",
-    )
+    page = find_page(manifest.lesson, manifest.page)
+    rendered = manifest.render.mode == "camera"
     arrays = read_arrays(folder)
-    check_cases(folder, arrays, page)
-    check_labels(arrays, page)
-    kinds = {name: run.kind or page.kind for name, run in page.runs.items()}
+    expect("cases", ARRAYS, "list of cases", sorted(arrays.cases), sorted(page.runs))
+    joints = read_joints(arrays) if page.joints else None
+    dofs = arrays.coords.get("dof", [])
+    expect("labels", ARRAYS, "list of DOFs", dofs, list(page.joints))
+    traces = {
+        name: read_run(folder, name, run.kind or page.kind)
+        for name, run in page.runs.items()
+    }
+    links = list(page.links) or arrays.coords.get("link", [])
+    notes = {name: run.note for name, run in page.runs.items()}
+    try:
+        described = describe(traces, joints, links, notes).model_dump()
+    except TraceError as error:
+        raise BundleRefused("labels", f"{ARRAYS}: {error} {AGAIN}") from error
+    expect_equal("labels", ARRAYS, "{}", arrays.model_dump(), described)
     return Experiment(
         page=page,
-        traces={
-            n: trace_files.read_run(folder, arrays, n, of) for n, of in kinds.items()
-        },
-        links=arrays.coords["link"],
-        frames=read_frames(folder, predicate, page.frames),
+        traces=traces,
+        links=links,
+        frames=read_frames(folder, page.frames if rendered else ()),
         rendered=rendered,
-        joints=trace_files.read_joints(arrays) if page.joints else None,
+        joints=joints,
         readings=readings(metrics, page, rendered),
     )
-
-
-def check_cases(folder: Path, arrays: Arrays, page: MeasuringPage) -> None:
-    """Require the declared runs with their notes, and no others.
-
-    Raises:
-        BundleRefused: `cases`.
-    """
-    found = {name: case.note for name, case in arrays.cases.items()}
-    declared = {name: run.note for name, run in page.runs.items()}
-    expect_equal("cases", "arrays.json", "note of the case {}", found, declared)
-    present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
-    expect("cases", "arrays/", "list of archives", present, sorted(declared))
-
-
-def check_labels(arrays: Arrays, page: MeasuringPage) -> None:
-    """Require the declared labels of the axes.
-
-    Raises:
-        BundleRefused: `labels`.
-    """
-    found = dict(arrays.coords)
-    if not page.links:
-        links = found.get("link", [])
-        expect(
-            "labels",
-            "arrays.json",
-            "number of different links",
-            len(set(links)),
-            len(links),
-        )
-    labels = {"link": list(page.links) or found.get("link")}
-    if page.joints:
-        labels["dof"] = list(page.joints)
-    expect("labels", "arrays.json", "coords", found, labels)
 
 
 def readings(
@@ -97,56 +71,52 @@ def readings(
         BundleRefused: `metrics` if a group lacks a value or has another one, or if a
             value is beyond its limits or a count that is not an integer.
     """
-    found = {}
+    reported = {}
     for group, declared in page.groups(rendered).items():
-        recorded = metrics.get(group, {}).items()
         values = {
-            name: metric.value for name, metric in recorded if metric.value is not None
+            name: metric.value
+            for name, metric in metrics.get(group, {}).items()
+            if metric.value is not None
         }
         what = f"list of values in {group}"
-        expect("metrics", "metrics.json", what, sorted(values), sorted(declared.units))
-        wrong = [
-            name for name, value in values.items() if not declared.possible(name, value)
-        ]
-        expect(
-            "metrics",
-            "metrics.json",
-            f"list of impossible values in {group}",
-            wrong,
-            [],
-        )
-        found[group] = values
-    return found
+        expect("metrics", METRICS, what, sorted(values), sorted(declared.units))
+        for name, value in values.items():
+            possible = declared.possible(name, value)
+            what = f"whether {group}.{name} = {value} is possible"
+            expect("metrics", METRICS, what, possible, True)
+        reported[group] = values
+    return reported
 
 
-def read_frames(
-    folder: Path, predicate: Predicate, names: Iterable[str]
-) -> dict[str, np.ndarray]:
-    """Return the camera frames by name, each of this run.
+def write_frame(path: Path, frame: np.ndarray) -> None:
+    """Write a camera frame, shape (height, width, 3) uint8, as PNG.
+
+    Raises:
+        FrameError: the frame is not usable.
+    """
+    require_frame(frame)
+    Image.fromarray(frame).save(path)
+
+
+def read_frames(folder: Path, names: Collection[str]) -> dict[str, np.ndarray]:
+    """Return the camera frames of a bundle by name, each (height, width, 3) uint8.
 
     Args:
         folder: the bundle.
-        predicate: of its manifest.
-        names: the frames of a run with a camera.
+        names: those that it must have, and no others.
 
     Raises:
         BundleRefused: `frames`.
     """
-    present = sorted(path.name for path in (folder / "frames").glob("*"))
-    with_camera = predicate.render.mode == "camera"
-    expected = sorted(f"{name}.png" for name in names) if with_camera else []
-    what = f"list of frames with render mode {predicate.render.mode}"
-    expect("frames", "frames/", what, present, expected)
+    present = sorted(path.stem for path in (folder / "frames").glob("*"))
+    expect("frames", "frames/", "list of frames", present, sorted(names))
     frames = {}
     for name in present:
-        file = f"frames/{name}"
+        file = f"frames/{name}.png"
         try:
-            run_id, pixels = read_picture(folder / file, CAMERA_RES)
-        except ValueError as error:
-            message = (
-                f"{file}: expected a camera frame of size {CAMERA_RES}. {error} {AGAIN}"
-            )
-            raise BundleRefused("frames", message) from error
-        expect("frames", file, "its run_id", run_id, predicate.run_id)
-        frames[Path(name).stem] = pixels
+            with Image.open(folder / file) as picture:
+                frames[name] = np.asarray(picture)
+            require_frame(frames[name])
+        except (OSError, UnidentifiedImageError, FrameError) as error:
+            raise BundleRefused("frames", f"{file}: {error} {AGAIN}") from error
     return frames

@@ -7,7 +7,7 @@ import math
 import os
 import platform
 import uuid
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from datetime import UTC, datetime
@@ -19,13 +19,12 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import replaced
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle_files import list_files
-from robo_genesis.evidence.picture_file import write_picture
-from robo_genesis.evidence.strict_json import write_json
+from robo_genesis.evidence.reader import write_frame
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.sim import session
 from robo_genesis.sim.backends import driver_version
 from robo_genesis.sim.camera.frames import Renderer
+from robo_genesis.sim.visual_shape import Part, write_shape
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
@@ -98,8 +97,18 @@ class Recorder:
         }
         return [{"what": name, "value": value} for name, value in found.items()]
 
-    def write(self, experiment: Experiment, renderer: Renderer | None) -> Path:
+    def write(
+        self,
+        experiment: Experiment,
+        renderer: Renderer | None,
+        shape: Sequence[Part] = (),
+    ) -> Path:
         """Write the bundle to a temporary folder, then move it to its place in one step.
+
+        Args:
+            experiment: what the page measured.
+            renderer: of the camera frames, None without a camera.
+            shape: the geometry that the page's replay draws.
 
         Raises:
             RecordError: the experiment has other runs than the page declares, or values
@@ -111,32 +120,38 @@ class Recorder:
         require_complete(experiment)
         with replaced(self.folder) as following:
             following.mkdir(parents=True)
-            self._write_files(following, experiment, renderer)
+            self._write_files(following, experiment, shape)
+            facts = self._facts(experiment, renderer)
+            key = bundle.evidence_key(facts)
+            more = {"evidence_key": key, "files": bundle.list_files(following)}
+            manifest = bundle.Manifest.model_validate(facts | more)
+            bundle.write_json(following / bundle.MANIFEST, manifest.model_dump())
         return self.folder
 
     def _write_files(
-        self, folder: Path, run: Experiment, renderer: Renderer | None
+        self, folder: Path, run: Experiment, shape: Sequence[Part]
     ) -> None:
         notes = {name: declared.note for name, declared in run.page.runs.items()}
-        arrays = write_traces(folder, run.traces, run.joints, list(run.links), notes)
-        write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
-        write_json(folder / "metrics.json", run.records())
+        write_traces(folder, run.traces, run.joints, run.links, notes)
+        bundle.write_json(folder / bundle.METRICS, run.records())
         for name, frame in run.frames.items():
             (folder / "frames").mkdir(exist_ok=True)
-            write_picture(folder / "frames" / f"{name}.png", frame, self.run_id)
-        (folder / "log.txt").write_text(self.engine.log.text(), encoding="utf-8")
-        statement = {
-            "_type": bundle.STATEMENT_TYPE,
-            "subject": list_files(folder),
-            "predicateType": bundle.PREDICATE_TYPE,
-            "predicate": self._predicate(run, renderer),
-        }
-        bundle.Manifest.model_validate(statement)
-        write_json(folder / "manifest.json", statement)
+            write_frame(folder / "frames" / f"{name}.png", frame)
+        if shape:
+            write_shape(folder, shape)
+        (folder / bundle.LOG).write_text(self.engine.log.text(), encoding="utf-8")
 
-    def _predicate(self, run: Experiment, renderer: Renderer | None) -> dict[str, Any]:
-        backend = self.engine.backend
-        predicate: dict[str, Any] = {
+    def _facts(self, run: Experiment, renderer: Renderer | None) -> dict[str, Any]:
+        """Return the fields of the manifest but the key and the files."""
+        engine, backend = self.engine, self.engine.backend
+        keyed = {name: getattr(engine, name) for name in bundle.KEYED_OF_ENGINE}
+        drawn = (
+            {"mode": "camera", "vendor": renderer.vendor, "renderer": renderer.name}
+            | {"software": renderer.software}
+            if renderer
+            else {"mode": "skip"}
+        )
+        return {
             "schema_version": bundle.SCHEMA_VERSION,
             "lesson": self.lesson,
             "page": self.page,
@@ -144,47 +159,45 @@ class Recorder:
             "started": self.started,
             "ended": _now(),
             "command": os.environ.get(project.COMMAND, "notebook run by hand"),
-            "engine": {
-                name: getattr(self.engine, name) for name in bundle.KEYED_OF_ENGINE
-            }
-            | {"files_match_wheel": self._match.result()},
+            "engine": keyed | {"files_match_wheel": self._match.result()},
             "backend": asdict(backend)
             | {"actual_at_end": session.probe(backend.requested).actual}
             | {"driver": driver_version(backend.actual)},
-            "render": bundle.render_record(renderer),
+            "render": drawn,
             "host": host_record(
                 backend.device_name if backend.actual == "cpu" else None
             ),
             "environment": {
                 name: project.without_home(value)
-                for name, value in self.engine.switches.items()
+                for name, value in engine.switches.items()
             },
             "parameters": run.page.parameters(),
-            "seed": self.engine.seed,
+            "seed": engine.seed,
             "checks": [check.record() for check in run.outcomes()],
-            "warnings": self.engine.log.warnings,
+            "warnings": engine.log.warnings,
             "git": git_record(),
             "source": self._source,
         }
-        return predicate | {"evidence_key": bundle.evidence_key(predicate)}
 
 
 def require_complete(run: Experiment) -> None:
     """Raise RecordError unless an experiment has the declared runs and only finite numbers."""
-    found, declared = sorted(run.traces), sorted(run.page.runs)
-    if found != declared:
+    present, required = sorted(run.traces), sorted(run.page.runs)
+    if present != required:
         raise RecordError(
-            f"The page has the runs {', '.join(found) or 'none'}; its declaration names "
-            f"{', '.join(declared)}. Run each declared case, or correct the declaration."
+            f"The page has the runs {', '.join(present) or 'none'}; its declaration names "
+            f"{', '.join(required)}. Run each declared case, or correct the declaration."
         )
     values = {
-        name: of["value"] for name, of in bundle.by_full_name(run.records()).items()
+        name: metric["value"]
+        for name, metric in bundle.by_full_name(run.records()).items()
     }
     odd = [name for name, value in values.items() if not math.isfinite(value or 0)]
-    for group, of in run.page.groups(run.rendered).items():
-        given = run.readings[group].items()
+    for group, declared in run.page.groups(run.rendered).items():
         odd += [
-            f"{group}.{name}" for name, value in given if not of.possible(name, value)
+            f"{group}.{name}"
+            for name, value in run.readings[group].items()
+            if not declared.possible(name, value)
         ]
     if odd:
         raise RecordError(

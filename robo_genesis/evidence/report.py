@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import astuple
 
 from robo_genesis.core.text import printable
-from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.compare import BundleComparison
 from robo_genesis.evidence.document import Cells, Document, Part
 from robo_genesis.evidence.rows import DIFFERS, EQUAL, INCONCLUSIVE, SEVERITY, Row
@@ -88,8 +88,8 @@ def _origin(comparison: BundleComparison) -> list[Cells]:
     return [("", "old", "new"), *rows]
 
 
-def _facts(predicate: Predicate) -> dict[str, str]:
-    engine, backend, git = predicate.engine, predicate.backend, predicate.git
+def _facts(manifest: Manifest) -> dict[str, str]:
+    engine, backend, git = manifest.engine, manifest.backend, manifest.git
     dirty = " with changes" if git and git.dirty else ""
     return {
         "engine": f"{engine.version}, quadrants {engine.quadrants_version}",
@@ -97,8 +97,8 @@ def _facts(predicate: Predicate) -> dict[str, str]:
         "backend": f"{backend.actual} (requested: {backend.requested})",
         "device": backend.device_name,
         "torch": backend.torch_version,
-        "host": f"{predicate.host.os}, {predicate.host.cpu}",
-        "measured": predicate.started,
-        "run": predicate.run_id,
+        "host": f"{manifest.host.os}, {manifest.host.cpu}",
+        "measured": manifest.started,
+        "run": manifest.run_id,
         "commit": f"{git.commit}{dirty}" if git else "unknown",
     }

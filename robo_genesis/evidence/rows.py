@@ -82,7 +82,7 @@ class Side:
     @property
     def checks(self) -> dict[str, bool]:
         """Whether each check passed."""
-        return {check.name: check.passed for check in self.manifest.predicate.checks}
+        return {check.name: check.passed for check in self.manifest.checks}
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +163,7 @@ def _joint_text(joint: JointRecord) -> str:
 
 def invariants(old: Side, new: Side) -> Iterator[Row]:
     """Every check passed on both sides, and the engine was the published one."""
-    wheels = [side.manifest.predicate.engine.files_match_wheel for side in (old, new)]
+    wheels = [side.manifest.engine.files_match_wheel for side in (old, new)]
     passed = {n: [old.checks[n], new.checks[n]] for n in old.checks if n in new.checks}
     for name, both in (passed | {"engine files match the wheel": wheels}).items():
         here, there = ("passed" if one else "FAILED" for one in both)

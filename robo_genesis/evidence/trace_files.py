@@ -6,7 +6,9 @@ has no joints, of free bodies.
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeVar
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -19,112 +21,120 @@ from robo_genesis.core.trace import (
     Trace,
     TraceError,
 )
-from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
-from robo_genesis.evidence.npz_archive import read_archive, write_archive
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
-from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
+from robo_genesis.evidence.bundle import (
+    ARRAYS,
+    Arrays,
+    CaseArrays,
+    JointRecord,
+    Variable,
+    write_json,
+)
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect_equal
+from robo_genesis.sim.arm.joints import JointMap
 
 Kind = TypeVar("Kind", bound=TimeSeries)
 
 
-def dof_units(name: str, types: Sequence[str]) -> list[str]:
-    """Return the unit of each DOF in one array, by its name, from the types of the joints."""
-    positions = [POSITION_UNIT[kind] for kind in types]
-    if name.startswith(("q_", "target")):
-        return positions
+def dof_units(name: str, joints: JointMap | None) -> list[str]:
+    """Return the unit of each DOF in one array, by its name; none for free bodies."""
+    if joints is None:
+        return []
     if "qd" in name:
-        return [f"{unit}/s" for unit in positions]
-    return [EFFORT_UNIT[kind] for kind in types]
+        return [f"{unit}/s" for unit in joints.position_units]
+    is_position = name.startswith(("q_", "target"))
+    return [*(joints.position_units if is_position else joints.effort_units)]
 
 
 def write_traces(
     folder: Path,
     traces: Mapping[str, TimeSeries],
     joints: JointMap | None,
-    links: list[str],
-    notes: Mapping[str, str] | None = None,
+    links: Sequence[str],
+    notes: Mapping[str, str] = MappingProxyType({}),
 ) -> Arrays:
-    """Write `arrays/<case>.npz` for every trace and return the content of `arrays.json`.
+    """Write `arrays/<case>.npz` for every trace, and `arrays.json`; see `describe`."""
+    (folder / "arrays").mkdir()
+    described = describe(traces, joints, links, notes)
+    for case, trace in traces.items():
+        named = {
+            stored.name: getattr(trace, field)
+            for field, stored in trace.arrays().items()
+        }
+        np.savez(folder / described.cases[case].file, allow_pickle=False, **named)
+    write_json(folder / ARRAYS, described.model_dump(by_alias=True))
+    return described
+
+
+def describe(
+    traces: Mapping[str, TimeSeries],
+    joints: JointMap | None,
+    links: Sequence[str],
+    notes: Mapping[str, str],
+) -> Arrays:
+    """Return the content of `arrays.json`.
 
     Args:
-        folder: of the bundle.
         traces: by case.
         joints: of the DOFs, None for free bodies.
         links: the labels of the axis of links.
         notes: by case, how its arrays differ from their long names; most cases need
             none.
+
+    Raises:
+        TraceError: an array has another number of DOFs or links than there are labels.
     """
-    (folder / "arrays").mkdir()
-    types, cases = joints.types if joints else (), {}
+    coords = {"link": list(links)} | ({"dof": list(joints.names)} if joints else {})
+    cases = {}
     for case, trace in traces.items():
-        cases[case] = described = _description(
-            case, trace, types, (notes or {}).get(case, "")
-        )
-        values = {
-            of.name: getattr(trace, field) for field, of in trace.arrays().items()
-        }
-        write_archive(folder / described.file, values)
-    coords = {"dof": list(joints.names)} if joints else {}
+        variables = {}
+        for field, stored in trace.arrays().items():
+            array = getattr(trace, field)
+            variables[stored.name] = Variable(
+                dims=list(stored.dims),
+                shape=list(array.shape),
+                dtype=str(array.dtype),
+                unit=stored.unit or dof_units(stored.name, joints),
+                long_name=stored.long_name,
+            )
+            for dim, count in zip(stored.dims, array.shape, strict=True):
+                if len(coords.get(dim, range(count))) != count:
+                    raise TraceError(
+                        f"{case}: {stored.name} has {count} of {dim}, expected "
+                        f"{', '.join(coords[dim])}."
+                    )
+        note = notes.get(case, "")
+        file = f"arrays/{case}.npz"
+        cases[case] = CaseArrays(file=file, note=note, variables=variables)
     records = joint_records(joints) if joints else []
-    return Arrays(coords=coords | {"link": links}, joints=records, cases=cases)
-
-
-def _description(
-    case: str, trace: TimeSeries, types: Sequence[str], note: str
-) -> CaseArrays:
-    """Return the entry of `arrays.json` of one run, whose joints have these types."""
-    variables = {}
-    for field, of in trace.arrays().items():
-        array = getattr(trace, field)
-        variables[of.name] = Variable(
-            dims=list(of.dims),
-            shape=list(array.shape),
-            dtype=str(array.dtype),
-            unit=dof_units(of.name, types) if of.unit is None else of.unit,
-            long_name=of.long_name,
-        )
-    return CaseArrays(file=f"arrays/{case}.npz", note=note, variables=variables)
+    return Arrays(coords=coords, joints=records, cases=cases)
 
 
 def joint_records(joints: JointMap) -> list[JointRecord]:
-    """Return a record of each joint, in the order of the map.
-
-    Raises:
-        ValueError: a limit is not a number.
-    """
+    """Return a record of each joint, in the order of the map."""
     return [
-        JointRecord(
-            name=name,
-            type=joints.types[k],
-            dof_idx_local=int(joints.dofs_idx_local[k]),
-            q_idx_local=int(joints.qs_idx_local[k]),
-            lower=None if joints.lower[k] == -np.inf else float(joints.lower[k]),
-            upper=None if joints.upper[k] == np.inf else float(joints.upper[k]),
-            unit=joints.position_units[k],
+        JointRecord.model_validate(
+            {
+                "name": name,
+                "type": joints.types[k],
+                "dof_idx_local": int(joints.dofs_idx_local[k]),
+                "q_idx_local": int(joints.qs_idx_local[k]),
+                "lower": _finite(joints.lower[k]),
+                "upper": _finite(joints.upper[k]),
+                "unit": joints.position_units[k],
+            }
         )
         for k, name in enumerate(joints.names)
     ]
 
 
-def read_joints(arrays: Arrays) -> JointMap:
-    """Return the recorded joint map after comparing it with the labels of the arrays.
+def _finite(limit: float) -> float | None:
+    """Return a limit as JSON can hold it, None if the model has none."""
+    return None if np.isinf(limit) else float(limit)
 
-    Raises:
-        BundleRefused: `labels` if names, types or units contradict each other.
-    """
-    joints, file = arrays.joints, "arrays.json joints"
-    expect(
-        "labels",
-        file,
-        "list of names",
-        [j.name for j in joints],
-        arrays.coords.get("dof", []),
-    )
-    for joint in joints:
-        unit = POSITION_UNIT.get(joint.type_, "that of another type")
-        expect(
-            "labels", file, f"unit of {joint.name}, {joint.type_},", joint.unit, unit
-        )
+
+def read_joints(arrays: Arrays) -> JointMap:
+    """Return the recorded joint map."""
+    joints = arrays.joints
     return JointMap(
         names=tuple(joint.name for joint in joints),
         types=tuple(joint.type_ for joint in joints),
@@ -136,53 +146,42 @@ def read_joints(arrays: Arrays) -> JointMap:
 
 
 def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Any:
-    """Return one run of the kind that a bundle describes; see `read_run`.
-
-    Verification does not use it, because a bundle must not choose the kind of its own
-    runs.
-    """
+    """Return one run of the kind whose arrays a bundle describes; see `read_run`."""
     names = {*arrays.cases[case].variables}
     kinds = (Demonstrations, Episodes, Trace, ContactTrace, BodyTrace)
-    kind = next(
-        (of for of in kinds if {one.name for one in of.arrays().values()} <= names),
-        Trace,
+    fitting = (
+        kind
+        for kind in kinds
+        if {stored.name for stored in kind.arrays().values()} <= names
     )
-    return read_run(folder, arrays, case, kind)
+    return read_run(folder, case, next(fitting, Trace))
 
 
-def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
-    """Return one run of a kind; `arrays.json` must be the description that `write_traces` gives.
+def read_run(folder: Path, case: str, kind: type[Kind]) -> Kind:
+    """Return one run.
 
     Args:
         folder: of the bundle.
-        arrays: its description.
         case: the name of the run.
         kind: a class of `core/trace.py`.
 
     Raises:
-        BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the
-            arrays do not form one run.
+        BundleRefused: `bad-array` if the archive cannot be read, or has other arrays;
+            `bad-trace` if they do not form one run.
     """
-    described, fields, place = arrays.cases[case], kind.arrays(), f"arrays.json {case}"
-    expect("path", place, "file", described.file, f"arrays/{case}.npz")
-    types = read_joints(arrays).types if arrays.joints else ()
-    dtypes = {of.name: of.dtype for of in fields.values()}
-    expect(
-        "labels", place, "list of arrays", sorted(described.variables), sorted(dtypes)
-    )
-    values = read_archive(folder / described.file, described.file, dtypes)
+    file = f"arrays/{case}.npz"
     try:
-        trace = kind(**{field: values[of.name] for field, of in fields.items()})
+        with np.load(folder / file, allow_pickle=False) as archive:
+            arrays = dict(archive)
+    except (OSError, ValueError, BadZipFile) as error:
+        message = f"{file}: {error}, expected an archive of arrays of numbers. {AGAIN}"
+        raise BundleRefused("bad-array", message) from error
+    found = {name: str(array.dtype) for name, array in arrays.items()}
+    expected = {stored.name: stored.dtype for stored in kind.arrays().values()}
+    expect_equal("bad-array", file, "type of {}", found, expected)
+    try:
+        return kind(
+            **{field: arrays[stored.name] for field, stored in kind.arrays().items()}
+        )
     except TraceError as error:
-        raise BundleRefused(
-            "bad-trace", f"{described.file}: {error} {AGAIN}"
-        ) from error
-    expected = _description(case, trace, types, described.note)
-    axes = [zip(of.dims, of.shape, strict=True) for of in expected.variables.values()]
-    lengths = {dim: n for pairs in axes for dim, n in pairs if dim in ("dof", "link")}
-    labels = {
-        axis: len(names) for axis, names in arrays.coords.items() if axis in lengths
-    }
-    expect("labels", place, "number of labels", labels, lengths)
-    expect_equal("labels", place, "{}", described.model_dump(), expected.model_dump())
-    return trace
+        raise BundleRefused("bad-trace", f"{file}: {error} {AGAIN}") from error

@@ -113,8 +113,8 @@ def missing_for_release(book: Path, labs: Mapping[str, Path | None]) -> list[str
         line for lesson, at in labs.items() for line in _required(book, lesson, at)
     ]
     for path in recorded_folders(book):
-        manifest = recorded_status(book, *path.parts[-2:], labs=labs).manifest
-        if manifest and (not manifest.predicate.git or manifest.predicate.git.dirty):
+        manifest = recorded_status(book, *path.parts[-2:]).manifest
+        if manifest and (not manifest.git or manifest.git.dirty):
             lines.append(
                 f"{path.relative_to(book)} was not recorded from a commit. Commit first, "
                 "then record again."
@@ -130,7 +130,7 @@ def _required(book: Path, lesson: str, folder: Path | None) -> Iterator[str]:
     status = bundle_status(folder, lesson, "lab", book=book)
     hardware = find_lesson(lesson).spec.MINIMUM_HARDWARE
     if hardware != status.backend:
-        status = recorded_status(book, lesson, hardware, labs={lesson: folder})
+        status = recorded_status(book, lesson, hardware)
     if status.state != "verified":
         yield (
             f"{lesson} requires evidence of its minimum hardware, {hardware}, which is "

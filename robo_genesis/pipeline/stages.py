@@ -13,7 +13,7 @@ from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle, settle_below
 from robo_genesis.core.git import require_history, unclean
 from robo_genesis.pipeline import npm, up_to_date
-from robo_genesis.pipeline.bundles.of_build import verify_results
+from robo_genesis.pipeline.bundles.page_bundles import verify_results
 from robo_genesis.pipeline.bundles.status import refused_records
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
@@ -211,7 +211,7 @@ def _require_evidence(
         str(result.page.lesson) for result in measuring
     )
     labs |= {str(r.page.lesson): r.bundle for r in measuring if r.page.page == "lab"}
-    if refused := refused_records(build.book, labs):
+    if refused := refused_records(build.book):
         raise BuildError("\n".join(refused))
     if build.release:
         if problems := unclean(build.root) + missing_for_release(build.book, labs):
@@ -243,7 +243,7 @@ def _summary(
     """Return the facts that a build ends with, one line for each lab."""
     lines = [*about]
     for page in (result.page for result in results if result.page.page == "lab"):
-        facts = manifests[page.docname].predicate
+        facts = manifests[page.docname]
         renderer = facts.render.renderer or "SKIP: no camera frames"
         lines.append(
             f"Lesson {page.lesson}: engine {facts.engine.version}, backend requested "
@@ -251,7 +251,7 @@ def _summary(
             f"render {facts.render.mode} ({renderer})"
         )
     lines.append(f"Pages: {executed} executed, {len(results) - executed} reused.")
-    measured = sum(len(manifest.predicate.checks) for manifest in manifests.values())
+    measured = sum(len(manifest.checks) for manifest in manifests.values())
     lines.append(
         f"Checks passed: {measured} on what was measured, {checked} on the site."
     )

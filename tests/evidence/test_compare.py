@@ -13,13 +13,12 @@ from spoilers import (
     changed_at,
     check,
     drop_case,
+    facts,
     joint,
     manifest,
     modules,
-    pad,
     part,
     pop,
-    predicate,
     put,
     rewrite,
     seal,
@@ -40,7 +39,7 @@ def other(folder, tmp_path) -> Path:
     return Path(shutil.copytree(folder, tmp_path / "other" / "cpu"))
 
 
-same = predicate()  # A change of nothing
+same = facts()  # A change of nothing
 
 
 @pytest.fixture
@@ -99,17 +98,17 @@ def test_the_axis_names_what_differs(compared, spoiler, axis):
     [
         (same, "Both have the same run id. One is a copy of the other, or was edited."),
         (
-            predicate(environment={"QD_DEBUG": "1", "GS_ENABLE_ZEROCOPY": "0"}),
+            facts(environment={"QD_DEBUG": "1", "GS_ENABLE_ZEROCOPY": "0"}),
             "The switches of the engine differ: none; QD_DEBUG=1, GS_ENABLE_ZEROCOPY=0.",
         ),
         (modules(metrics="0" * 64), "The code differs and may be the cause: metrics."),
-        (predicate(warnings=["New one."]), "Engine warning gained: New one."),
+        (facts(warnings=["New one."]), "Engine warning gained: New one."),
         (
-            predicate(warnings=["New one."]),
+            facts(warnings=["New one."]),
             "Engine warning lost: Approximating tendon.",
         ),
         (part("backend", device_name="another CPU"), "The devices differ."),
-        (predicate(git=None), "The new bundle was not recorded from a clean checkout."),
+        (facts(git=None), "The new bundle was not recorded from a clean checkout."),
     ],
 )
 def test_circumstances_are_noted_and_are_not_a_difference(compared, spoiler, note):
@@ -122,7 +121,7 @@ def test_circumstances_are_noted_and_are_not_a_difference(compared, spoiler, not
     ("spoiler", "obstacle"),
     [
         (part("parameters", stepped_joint="joint2"), "parameters.stepped_joint"),
-        (predicate(seed=1), "The seed differs: 0 and 1"),
+        (facts(seed=1), "The seed differs: 0 and 1"),
         (part("engine", precision="64"), "The precision differs: 32 and 64"),
         (
             part("backend", actual_at_end="cuda"),
@@ -223,7 +222,7 @@ LACKING = ("present", "missing")
         (without_g3, without_g3, "Coverage", {"case G3": ("missing", "missing")}),
         (
             same,
-            pop("manifest.json", "predicate", "checks", -1),
+            pop("manifest.json", "checks", -1),
             "Coverage",
             {"check functions": LACKING},
         ),
@@ -340,14 +339,13 @@ def test_a_case_may_have_no_bound_and_its_largest_difference_is_named(
 @pytest.mark.parametrize(
     ("spoiler", "said"),
     [
-        (pad("log.txt"), "too-big: {}: log.txt: number of bytes is"),
         (write(METRICS, "{}"), "digest: {}: metrics.json: sha256 is"),
         (
-            both(predicate(lesson="l02"), seal),
+            both(facts(lesson="l02"), seal),
             "is of l04/lab, {} of l02/lab. Give two bundles",
         ),
         (
-            both(predicate(lesson="l99"), seal),
+            both(facts(lesson="l99"), seal),
             "lesson: Lesson 'l99' does not exist. Choices: l01",
         ),
     ],
@@ -385,7 +383,7 @@ ODD = "\x1b[2J\nEqual. Rows: \u202e"
     [
         manifest(lambda m: m.update({ODD: 1})),
         part("parameters", **{ODD: {ODD: 1}}),
-        predicate(warnings=["New one.\nEqual. Rows: 9"]),
+        facts(warnings=["New one.\nEqual. Rows: 9"]),
     ],
 )
 def test_nothing_of_a_bundle_controls_the_terminal(
@@ -413,7 +411,7 @@ def test_performance_is_shown_and_decides_nothing(compared):
 def test_the_report_is_worst_first_and_keeps_words_as_words(compared):
     unlike = compared(
         UPGRADED,
-        predicate(warnings=["<b>1 | 2</b>\n# see https://example.org"]),
+        facts(warnings=["<b>1 | 2</b>\n# see https://example.org"]),
         value("G1", "final_error", lambda v: v + 0.0002),
         value("G2", "final_error", lambda v: v + 0.02),
         value("G1", "overshoot", 0.0),
@@ -450,7 +448,7 @@ alike = both(value("G1", "peak_speed", 3.0), value("G2", "peak_speed", 3.0))
         (same, faster(0.0001), 0, "Within tolerance. Rows: "),
         (same, faster(0.1), 1, "Differs. Rows: "),
         (alike, alike, 1, "Inconclusive. Rows: "),
-        (same, predicate(seed=1), 2, "Not comparable."),
+        (same, facts(seed=1), 2, "Not comparable."),
     ],
 )
 def test_the_exit_status_and_the_report(

@@ -18,9 +18,7 @@ def sound(request, tmp_path_factory, engine, experiments) -> dict[str, Path]:
         for page, r in experiments.items()
     }
     for page, folder in folders.items():
-        checks = {
-            check.name: check.passed for check in verify_bundle(folder).predicate.checks
-        }
+        checks = {check.name: check.passed for check in verify_bundle(folder).checks}
         assert checks == {
             check.__name__: True for check in experiments[page].page.checks
         }

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from bundles import written
-from spoilers import METRICS, predicate, put, seal
+from spoilers import METRICS, facts, put, seal
 
 from robo_genesis.core import project
 from robo_genesis.evidence import bundle
@@ -31,7 +31,7 @@ def refused(folder) -> str:
 def accepted_then_refused(engine, outputs, lesson, page, run, spoil) -> str:
     """Require that the bundle of a run is accepted, and return the refusal once it is spoiled."""
     folder = written(engine, outputs, lesson, page, run)
-    assert all(check.passed for check in verify_bundle(folder).predicate.checks)
+    assert all(check.passed for check in verify_bundle(folder).checks)
     spoil(folder)
     return refused(folder)
 
@@ -55,16 +55,16 @@ def judged_again(folder, monkeypatch, judgements):
     with monkeypatch.context() as context:
         for module, name, value, _ in judgements:
             context.setattr(module, name, value)
-        found = manifest.predicate.model_dump()
+        found = manifest.model_dump()
         of_page = (found["lesson"], found["page"], project.ROOT, project.BOOK)
         key = bundle.evidence_key(found | evidence_key.question(*of_page))
         status = bundle_status(folder)
-    assert key == manifest.predicate.evidence_key
+    assert key == manifest.evidence_key
     assert (status.state, status.code) == ("failed", "failed")
     failed = {check for *_, check in judgements}
     assert set(re.findall(r" \[(\w+)\] ", status.reason)) == failed
-    claimed = [record.model_dump() for record in manifest.predicate.checks]
+    claimed = [record.model_dump() for record in manifest.checks]
     for record in claimed:
         record["passed"] = record["name"] not in failed
-    predicate(checks=claimed)(folder)
-    assert all(record.passed for record in verify_bundle(folder).predicate.checks)
+    facts(checks=claimed)(folder)
+    assert all(record.passed for record in verify_bundle(folder).checks)

@@ -35,8 +35,8 @@ def changed(clone: Path) -> list[str]:
     return git(clone, "status", "--porcelain").split()
 
 
-def predicate(bundle: Path) -> dict:
-    return json.loads((bundle / "manifest.json").read_text())["predicate"]
+def facts(bundle: Path) -> dict:
+    return json.loads((bundle / "manifest.json").read_text())
 
 
 def keep(clone: Path, name: str) -> Path:
@@ -68,7 +68,7 @@ def test_another_version_is_pinned_with_its_evidence(clone):
     second = keep(clone, "second")
     comparison = compare(first, second)
     assert comparison.state in (EQUAL, WITHIN), pages.summary(comparison)
-    assert predicate(second)["engine"]["version"] == OTHER
-    assert predicate(second)["evidence_key"] != predicate(first)["evidence_key"]
+    assert facts(second)["engine"]["version"] == OTHER
+    assert facts(second)["evidence_key"] != facts(first)["evidence_key"]
     for page in (clone / "book/_build/html").rglob("*.html"):
         assert f"Genesis {PIN}" not in page.read_text("utf8"), page

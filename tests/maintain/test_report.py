@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from spoilers import metrics, part, predicate, seal
+from spoilers import facts, metrics, part, seal
 from tiny_book import lab, make_book
 
 from robo_genesis.core import project
@@ -64,9 +64,7 @@ def test_a_refused_build_has_the_bundles_of_its_executed_pages(
     book = make_book(root, lab=lab("cpu"), other=lab("cpu").replace("l04", "l02"))
     shutil.copy(project.ROOT / "pyproject.toml", root)
     shutil.copytree(builds[1].bundles["l04/lab/cpu"], left / "cpu")
-    run_id = json.loads((left / "cpu" / "manifest.json").read_text())["predicate"][
-        "run_id"
-    ]
+    run_id = json.loads((left / "cpu" / "manifest.json").read_text())["run_id"]
     [page] = [page for page in find_pages(book) if page.docname == "lab"]
     place = root / ".cache" / "pages" / "lab" / "0123"
     how = {"run_id": run_id, "seconds": 1.0, "cell_seconds": [1.0]}
@@ -84,7 +82,7 @@ def test_a_refused_build_has_the_bundles_of_its_executed_pages(
 def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(builds):
     folder = builds[1].bundles["l04/lab/cpu"]
     metrics(lambda m: m["G3"]["overshoot"].update(value=1.0))(folder)
-    predicate(warnings=["Something new."])(folder)
+    facts(warnings=["Something new."])(folder)
     seal(folder)
     found = compare_builds(*builds)
     assert found.state == "differs"

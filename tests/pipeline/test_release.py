@@ -5,8 +5,7 @@ from argparse import Namespace
 from pathlib import Path
 
 import pytest
-from spoilers import predicate, seal
-from test_status import spoil_stale
+from spoilers import facts, older_compiler, seal
 from tiny_book import commit, git
 
 from robo_genesis.core.project import BOOK, ProjectError
@@ -104,7 +103,7 @@ def test_lacking_evidence_is_named(folder, book, monkeypatch, hardware, has_lab,
     assert missing_for_release(book, {"l04": folder}) == []
     monkeypatch.setattr(l04, "MINIMUM_HARDWARE", hardware)
     if hardware == "cpu":
-        spoil_stale(folder)
+        older_compiler(folder)
     [line] = missing_for_release(book, {"l04": folder if has_lab else None})
     assert line.startswith(said)
 
@@ -112,7 +111,7 @@ def test_lacking_evidence_is_named(folder, book, monkeypatch, hardware, has_lab,
 @pytest.mark.parametrize(("dirty", "stops"), [(False, False), (True, True)])
 def test_a_recording_of_a_changed_tree_stops_a_release(folder, book, dirty, stops):
     recorded = shutil.copytree(folder, book / "evidence" / "l04" / "cpu")
-    predicate(git={"commit": "1" * 40, "dirty": dirty})(recorded)
+    facts(git={"commit": "1" * 40, "dirty": dirty})(recorded)
     seal(recorded)
     lines = missing_for_release(book, {"l04": folder})
     assert [line.partition(" was")[0] for line in lines] == ["evidence/l04/cpu"] * stops

@@ -27,7 +27,7 @@ def root(tmp_path, monkeypatch) -> Path:
         "book/evidence/l04/amdgpu/manifest.json",
         "book/course_map.yml",
         "robo_genesis/lessons/l04/spec.py",
-        "robo_genesis/evidence/manifest_rules.py",
+        "robo_genesis/evidence/recompute.py",
         "build_scripts/book.py",
     ):
         (root / name).parent.mkdir(parents=True, exist_ok=True)

@@ -56,8 +56,7 @@ def all_bundles(book: Path) -> Iterator[tuple[str, Status]]:
     """Yield (place, status) of the recorded bundles, then of the last build's."""
     for folder in recorded_folders(book):
         lesson, backend = folder.parts[-2:]
-        labs = {lesson: built(book, lesson)}
-        yield f"{lesson} recorded", recorded_status(book, lesson, backend, labs=labs)
+        yield f"{lesson} recorded", recorded_status(book, lesson, backend)
     for folder in recorded_folders(book / PUBLISHED):
         lesson = folder.parent.name
         yield f"{lesson} built", bundle_status(folder, lesson, "lab")
@@ -70,21 +69,17 @@ def built(book: Path, lesson: str) -> Path:
 
 def one_bundle(folder: Path, book: Path) -> tuple[Status, list[str]]:
     """Return the status of one bundle, and lines for the person who recorded it."""
-    manifest, reference = None, None
-    with suppress(BundleRefused, OSError):
-        manifest = read_manifest(folder)
-    run = manifest.predicate if manifest else None
-    if run and run.page == RECORDED_PAGE and built(book, run.lesson).is_dir():
-        reference = built(book, run.lesson)
-    runs = [reference] if reference else []
-    status = bundle_status(folder, book=book, cpu_runs=runs)
-    lines = []
+    status, lines, run = bundle_status(folder, book=book), [], None
+    with suppress(BundleRefused):
+        run = read_manifest(folder)
     if status.code:
-        stale = changes(manifest, book) if manifest and status.code == "stale" else []
+        stale = changes(run, book) if run and status.code == "stale" else []
         kinds = tuple(dict.fromkeys(kind for kind, _ in stale))
         lines = [f"What this means: {text}" for text in advice(status.code, kinds, run)]
-    if reference and folder.resolve() != reference.resolve():
-        lines += compared(reference, folder)
+    if run and run.page == RECORDED_PAGE:
+        reference = built(book, run.lesson)
+        if reference.is_dir() and folder.resolve() != reference.resolve():
+            lines += compared(reference, folder)
     return status, lines
 
 
@@ -101,7 +96,7 @@ def line(place: str, status: Status) -> str:
     """Return one bundle's line."""
     text = status.reason
     if not text and status.manifest:
-        run = status.manifest.predicate
+        run = status.manifest
         text = (
             f"run {run.run_id[:8]} of {run.started[:10]}, Genesis {run.engine.version}"
         )

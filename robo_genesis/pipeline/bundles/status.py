@@ -1,15 +1,11 @@
 """The state of evidence; only this module decides it."""
 
-import os
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 from robo_genesis.core import project
 from robo_genesis.core.checks import FAILED
 from robo_genesis.core.comparison import HELD, outcome
-from robo_genesis.evidence import copies
 from robo_genesis.evidence.bundle import (
     Manifest,
     by_full_name,
@@ -91,30 +87,19 @@ class Status:
         """The text beside the badge: how the bundle was made, or why there is none."""
         if self.manifest is None:
             return self.summary or self.reason
-        predicate, render = self.manifest.predicate, self.manifest.predicate.render
-        by_make = predicate.command.startswith("make ")
+        run, renderer = self.manifest, self.manifest.render.renderer
+        by_make = run.command.startswith("make ")
         kernel = "Lab in a clean notebook kernel" if by_make else "Lab run by hand"
-        passed = sum(check.passed for check in predicate.checks)
-        camera = (
-            f"camera frames by {render.renderer}"
-            if render.mode == "camera"
-            else "camera SKIP"
-        )
+        camera = f"camera frames by {renderer}" if renderer else "camera SKIP"
         more = f" {self.summary}" if self.summary else ""
         return (
-            f"{kernel}, Genesis {predicate.engine.version}, "
-            f"{passed} of {len(predicate.checks)} checks passed, {camera}, "
-            f"measured {predicate.started[:10]}.{more}"
+            f"{kernel}, Genesis {run.engine.version}, {run.passed} checks passed, {camera}, "
+            f"measured {run.started[:10]}.{more}"
         )
 
 
 def recorded_status(
-    book: Path,
-    lesson: str,
-    backend: str,
-    *,
-    labs: Mapping[str, Path | None] = MappingProxyType({}),
-    root: Path = project.ROOT,
+    book: Path, lesson: str, backend: str, *, root: Path = project.ROOT
 ) -> Status:
     """Return the state of the recorded bundle of a lab on a backend; see `bundle_status`.
 
@@ -122,21 +107,13 @@ def recorded_status(
         book: the folder of the pages.
         lesson: of the lab.
         backend: names the folder of the bundle.
-        labs: by lesson, the bundle of a build's lab, of which it must not be a copy,
-            nor of the recorded run on the CPU.
         root: the checkout, for pin, lock and modules.
     """
     absent = (
         f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
     )
     folder = book / "evidence" / lesson / backend
-    if folder.parent.is_symlink():
-        reason = f"evidence/{lesson} is a link, expected a folder. Replace the link."
-        return Status("refused", backend, reason, None, "path", UNREADABLE)
-    runs = [folder.with_name("cpu"), *([lab] if (lab := labs.get(lesson)) else [])]
-    return bundle_status(
-        folder, lesson, RECORDED_PAGE, absent, book, root=root, cpu_runs=runs
-    )
+    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root)
 
 
 def bundle_status(
@@ -147,7 +124,6 @@ def bundle_status(
     book: Path = project.BOOK,
     *,
     root: Path = project.ROOT,
-    cpu_runs: Sequence[Path] = (),
     once: bool = False,
 ) -> Status:
     """Return the state of the bundle in a folder that is named after its backend.
@@ -159,31 +135,26 @@ def bundle_status(
         absent: the reason if there is no bundle.
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
-        cpu_runs: bundles of CPU runs, of which one of an accelerator must not be a
-            copy.
         once: see `verify_bundle`.
 
     Raises:
         ProjectError, PageError: the checkout itself cannot be read.
     """
     backend = folder.name
-    if not os.path.lexists(folder):
+    if not folder.exists():
         return Status("missing", backend, absent, None)
     try:
         manifest = verify_bundle(
             folder, lesson=lesson, page=page, root=root, book=book, once=once
         )
-        copies.require_own_run(folder, cpu_runs)
     except BundleRefused as refusal:
         code, reason = refusal.code, str(refusal)
         summary = SUMMARIES.get(code, UNREADABLE)
-        if code in ("stale", FAILED):  # both are sound
+        if code == "stale":
+            summary = why_stale(read_manifest(folder), book, root)
+        elif code == FAILED:
             refused = read_manifest(folder)
-            about = f"{refused.predicate.lesson}/{refused.predicate.page}"
-            if code == "stale":
-                summary = why_stale(refused, book, root)
-            else:
-                reason += contradicted(book, about, reason)
+            reason += contradicted(book, f"{refused.lesson}/{refused.page}", reason)
         state = STATE_OF_CODE.get(code, "refused")
         return Status(state, backend, reason, None, code, summary)
     lines = not_shown(folder, manifest)
@@ -196,11 +167,9 @@ def bundle_status(
 def not_shown(folder: Path, manifest: Manifest) -> list[str]:
     """Return a line for each claimed ordering that an accepted bundle does not show."""
     numbers, lines = by_full_name(read_metrics(folder)), []
-    for claimed in specification(
-        manifest.predicate.lesson, manifest.predicate.page
-    ).relations:
-        (first, second), metric, claim, _ = claimed
-        held, values = outcome(numbers, claimed)
+    for relation in specification(manifest.lesson, manifest.page).relations:
+        (first, second), metric, claim, _ = relation
+        held, values = outcome(numbers, relation)
         if held != HELD:
             lines.append(
                 f"{metric} {claim} in {second} than in {first} is {held} ({values})"
@@ -216,8 +185,8 @@ def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
     """
-    found = changes(manifest, book, root)
-    text = "; ".join(text for _, text in found) or "it answers an older question"
+    text = "; ".join(text for _, text in changes(manifest, book, root))
+    text = text or "it answers an older question"
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -228,37 +197,27 @@ def changes(
 
     The kinds are those of `advice.BY_CHANGE`.
     """
-    found = changed(manifest, root, book) or []
+    differing = changed(manifest, root, book)
     return [
-        (kind, words.format(here, there, page=manifest.predicate.page))
+        (kind, words.format(here, there, page=manifest.page))
         for start, (kind, words) in CHANGES.items()
-        for path, here, there in [of for of in found if of[0].startswith(start)][:1]
+        for path, here, there in [d for d in differing if d[0].startswith(start)][:1]
     ]
 
 
 def recorded_folders(book: Path) -> list[Path]:
-    """Return the recorded bundles of a book: `evidence/<lesson>/<backend>`.
-
-    Anything with the name of a backend counts, so that a file or link is refused rather
-    than overlooked.
-    """
+    """Return the recorded bundles of a book: `evidence/<lesson>/<backend>`."""
     return [
         path
         for path in sorted((book / "evidence").glob("*/[!.]*"))
-        if path.is_dir() or path.is_symlink() or path.name in BACKENDS
+        if path.is_dir() or path.name in BACKENDS
     ]
 
 
-def refused_records(book: Path, labs: Mapping[str, Path | None]) -> list[str]:
-    """Return a line for each recorded bundle of a book with which a build must not continue.
-
-    Args:
-        book: the folder of the pages.
-        labs: see `recorded_status`.
-    """
+def refused_records(book: Path) -> list[str]:
+    """Return a line for each recorded bundle of a book with which a build must not continue."""
     return [
         f"{path.relative_to(book)}: the recorded bundle is {status.state}: {status.reason}"
         for path in recorded_folders(book)
-        if (status := recorded_status(book, *path.parts[-2:], labs=labs)).state
-        not in PASSING
+        if (status := recorded_status(book, *path.parts[-2:])).state not in PASSING
     ]

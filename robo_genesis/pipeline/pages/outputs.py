@@ -27,10 +27,9 @@ from robo_genesis.core.files import json_digest
 from robo_genesis.core.project import without_folders
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle_files import MANIFEST
+from robo_genesis.evidence.bundle import MANIFEST, write_json
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.pipeline.pages import values
 from robo_genesis.pipeline.pages.book import Page, code_cells
 
@@ -64,11 +63,10 @@ def _record(output: NotebookNode) -> dict[str, Any]:
 def keep_outputs(folder: Path, executed: NotebookNode) -> None:
     """Add the outputs of a run to its bundle and to the list of files in the manifest."""
     write_json(folder / bundle.PRINTED, outputs_of(executed))
-    statement = json.loads((folder / MANIFEST).read_text("utf8"))
-    digest = {"sha256": bundle.sha256(folder / bundle.PRINTED)}
-    entry = {"name": bundle.PRINTED, "digest": digest}
-    statement["subject"] = [*statement.get("subject", []), entry]
-    write_json(folder / MANIFEST, statement)
+    manifest = json.loads((folder / MANIFEST).read_text("utf8"))
+    digest = bundle.sha256(folder / bundle.PRINTED)
+    manifest["files"] = manifest.get("files", {}) | {bundle.PRINTED: digest}
+    write_json(folder / MANIFEST, manifest)
 
 
 def require_shown(

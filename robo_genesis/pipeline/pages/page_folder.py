@@ -15,8 +15,7 @@ from pydantic import ValidationError
 
 from robo_genesis.core.files import files_below, replaced
 from robo_genesis.core.project import ENGINE, ProjectError, installed_version
-from robo_genesis.evidence.bundle import sha256
-from robo_genesis.evidence.fields import RunId, Sha256, Strict
+from robo_genesis.evidence.bundle import RunId, Sha256, Strict, sha256
 from robo_genesis.pipeline.pages.book import Page, code_cells, code_digest, code_of
 from robo_genesis.pipeline.pages.outputs import keep_outputs
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle

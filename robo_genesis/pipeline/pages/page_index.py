@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from pydantic import Field
 
 from robo_genesis.core.project import EXECUTED_PAGES
-from robo_genesis.evidence.fields import Strict
+from robo_genesis.evidence.bundle import Strict
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.page_folder import (
     NOTEBOOK,

@@ -114,7 +114,7 @@ def find_bundle(left: Path, run_id: str) -> Path | None:
     """
     for manifest in sorted(left.glob("*/manifest.json")):
         try:
-            found = json.loads(manifest.read_text("utf8"))["predicate"]["run_id"]
+            found = json.loads(manifest.read_text("utf8"))["run_id"]
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             continue
         if found == run_id:
@@ -129,7 +129,7 @@ def missing_bundle(left: Path, page: Page, run_id: str) -> Failure | None:
     wanted = f"{page.lesson}/{page.page}/<backend>/manifest.json"
     return Failure(
         "BundleMissing",
-        f"the front matter declares a bundle, but the run left no {wanted} with predicate.run_id "
+        f"the front matter declares a bundle, but the run left no {wanted} with run_id "
         f"{run_id}. Write one to {OUTPUTS_DIR} with {RUN_ID}, "
         "or remove `robo_genesis` from the front matter.",
     )

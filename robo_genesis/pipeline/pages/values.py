@@ -42,7 +42,7 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
     found: Mapping[str, Mapping[str, Any]] = bundle.read_metrics(folder)
     kind, by = "metric", "."
     if ":" in name:
-        checks = bundle.read_manifest(folder).predicate.checks
+        checks = bundle.read_manifest(folder).checks
         kind, by, found = "finding", ":", {check.name: check.found for check in checks}
     group, _, label = name.partition(by)
     if label not in found.get(group, {}):

@@ -18,10 +18,13 @@ from robo_genesis.core.files import (
 from robo_genesis.core.git import require_history
 from robo_genesis.core.project import BACKEND, RENDER
 from robo_genesis.core.text import printable
-from robo_genesis.evidence.bundle_files import MANIFEST
+from robo_genesis.evidence.bundle import MANIFEST
 from robo_genesis.evidence.recorder import git_record
 from robo_genesis.evidence.refusals import BundleRefused, expect
-from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
+from robo_genesis.pipeline.bundles.page_bundles import (
+    outputs_compared,
+    require_contract,
+)
 from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
@@ -165,13 +168,11 @@ def _kept(
     """Return the outcome of a lab whose bundle is accepted as it is, None if it needs a run."""
     lesson = str(page.lesson)
     place = recording.evidence / lesson / backend
-    runs, book, root = [place.with_name("cpu")], recording.book, recording.root
-    status = bundle_status(
-        place, lesson, RECORDED_PAGE, book=book, root=root, cpu_runs=runs
-    )
+    book, root = recording.book, recording.root
+    status = bundle_status(place, lesson, RECORDED_PAGE, book=book, root=root)
     if status.manifest is None:
         return None
-    facts = status.manifest.predicate
+    facts = status.manifest
     if facts.git and facts.git.dirty and (now := git_record()) and not now["dirty"]:
         return None  # a release refuses it, and now it can be recorded from a commit
     again = f"LESSON={lesson} records it again"
@@ -243,17 +244,16 @@ def _run(
     assert result.bundle is not None  # a lab without a bundle has failed
     try:
         manifest = recording.verify(result.bundle, result.run_id)
-        facts = manifest.predicate
-        require_contract(facts, contract)
+        require_contract(manifest, contract)
         outputs_compared(result, manifest)
-        expect("command", "manifest.json", "command", facts.command, COMMAND)
+        expect("command", MANIFEST, "command", manifest.command, COMMAND)
     except BundleRefused as error:
         raise project.ProjectError(
             f"The bundle of this run is refused: {error}"
         ) from error
-    require_expected(recording, facts.backend.actual)
+    require_expected(recording, manifest.backend.actual)
     progress("verify", page.docname, "accepted")
-    return result.bundle, facts
+    return result.bundle, manifest
 
 
 def require_expected(recording: Recording, actual: str) -> None:

@@ -48,11 +48,11 @@ def measured_line(runs: Iterable[PageRun]) -> str:
         runs: of this build, and recorded ones, which are left out.
     """
     own = [run for run in runs if not run.recorded]
-    accepted = [run.predicate for run in own if run.predicate]
+    accepted = [run.manifest for run in own if run.manifest]
     if not accepted:
         return NONE_ACCEPTED
-    engines = sorted({predicate.engine.version for predicate in accepted})
-    dates = sorted({predicate.started[:10] for predicate in accepted})
+    engines = sorted({manifest.engine.version for manifest in accepted})
+    dates = sorted({manifest.started[:10] for manifest in accepted})
     when = f"on {dates[0]}" if len(dates) == 1 else f"from {dates[0]} to {dates[-1]}"
     line = f"Measured on {READABLE[BACKEND]} with Genesis {listed(engines)} {when}."
     lacking = len(own) - len(accepted)
@@ -72,9 +72,7 @@ class CourseProcessors(SphinxDirective):
 
 def executed_once(runs: Iterable[PageRun]) -> str:
     """Return the processors of this build's runs; recorded runs are left out."""
-    found = {
-        run.predicate.host.cpu for run in runs if run.predicate and not run.recorded
-    }
+    found = {run.manifest.host.cpu for run in runs if run.manifest and not run.recorded}
     return (
         f"Each page was executed once, on {listed(sorted(found))}."
         if found

@@ -68,13 +68,13 @@ def run_block(docname: str, run: PageRun) -> nodes.Node:
     """Return a run's facts and its bundle, or why it is missing and the command that creates it."""
     block = nodes.container(ids=[run_anchor(run.key)], classes=["run-block"])
     block += paragraph(nodes.strong("", run.page), " ", badge_node(run.status))
-    if run.status.summary or run.predicate is None:
+    if run.status.summary or run.manifest is None:
         block += paragraph(run.status.summary or run.status.reason)
-    if run.predicate is None:
+    if run.manifest is None:
         block += nodes.literal_block(run.command, run.command, language="console")
         return block
-    facts: dict[str, Cell] = {**ledger_data.facts(run.status.backend, run.predicate)}
-    facts["evidence key"] = _digest(run.predicate.evidence_key)
+    facts: dict[str, Cell] = {**ledger_data.facts(run.status.backend, run.manifest)}
+    facts["evidence key"] = _digest(run.manifest.evidence_key)
     name = ledger_data.archive_name(run)
     facts["bundle"] = _link(
         name, relative_uri(f"{docname}.html", f"{DOWNLOADS}/{name}")
@@ -113,13 +113,13 @@ def _of_runs(runs: Sequence[PageRun]) -> list[Cell]:
 
 
 def _of_run(run: PageRun) -> list[str | nodes.Node]:
-    badge, predicate = badge_node(run.status), run.predicate
-    if predicate is None:
+    badge, manifest = badge_node(run.status), run.manifest
+    if manifest is None:
         return ["–", badge, *"–––"]
-    facts = ledger_data.facts(run.status.backend, predicate)
+    facts = ledger_data.facts(run.status.backend, manifest)
     link = _link(facts["run"], f"#{run_anchor(run.key)}")
     more = (facts[name] for name in ("started (UTC)", "checks passed"))
-    return [link, badge, predicate.engine.version, *more]
+    return [link, badge, manifest.engine.version, *more]
 
 
 def run_anchor(key: str) -> str:
@@ -155,7 +155,7 @@ def write_downloads(app: Sphinx, exception: Exception | None) -> None:
         if item.data is not None:
             write_whole(folder / item.file, item.data)
     for run in all_runs(Path(app.srcdir)).values():
-        if run.predicate is not None:
+        if run.manifest is not None:
             write_whole(
                 folder / ledger_data.archive_name(run), ledger_data.archive(run.folder)
             )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core.files import derived
-from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.html.archive import write_zip
 
@@ -55,9 +55,9 @@ class PageRun:
         return "$ make book"
 
     @property
-    def predicate(self) -> Predicate | None:
-        """The predicate of the accepted manifest, None where there is none."""
-        return self.status.manifest.predicate if self.status.manifest else None
+    def manifest(self) -> Manifest | None:
+        """The accepted manifest, None where there is none."""
+        return self.status.manifest
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,28 +93,27 @@ def provenance(kind: str, runs: Sequence[PageRun]) -> str:
     """
     if kind in UNMEASURED:
         return UNMEASURED[kind]
-    lacking = [run.status.badge for run in runs if run.predicate is None]
+    lacking = [run.status.badge for run in runs if run.manifest is None]
     if lacking:
         return f"No accepted evidence: {', '.join(lacking)}."
     origins = (
         f"on {run.status.backend} · Genesis {accepted.engine.version} · run {accepted.run_id[:8]}"
         for run in runs
-        if (accepted := run.predicate)
+        if (accepted := run.manifest)
     )
     return f"{PRINTED if kind == 'printed' else MEASURED} {' and '.join(origins)}"
 
 
-def facts(backend: str, predicate: Predicate) -> dict[str, str]:
+def facts(backend: str, manifest: Manifest) -> dict[str, str]:
     """Return the facts of an accepted run that the ledger shows."""
-    checks = predicate.checks
     return {
-        "run": predicate.run_id[:8],
+        "run": manifest.run_id[:8],
         "backend": backend,
-        "device": predicate.backend.device_name,
-        "engine": f"Genesis {predicate.engine.version}",
-        "started (UTC)": predicate.started[:19].replace("T", " "),
-        "command": predicate.command,
-        "checks passed": f"{sum(check.passed for check in checks)} of {len(checks)}",
+        "device": manifest.backend.device_name,
+        "engine": f"Genesis {manifest.engine.version}",
+        "started (UTC)": manifest.started[:19].replace("T", " "),
+        "command": manifest.command,
+        "checks passed": manifest.passed,
     }
 
 
@@ -138,8 +137,8 @@ def sha256(data: bytes) -> str:
 
 def archive_name(run: PageRun) -> str:
     """Return the file name of a run's bundle."""
-    assert run.predicate is not None
-    return f"{run.key.replace('/', '-')}-{run.predicate.run_id[:8]}.zip"
+    assert run.manifest is not None
+    return f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
 
 
 def archive(folder: Path) -> bytes:

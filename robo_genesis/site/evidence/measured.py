@@ -76,16 +76,16 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         BundleRefused: the bundle cannot be read.
     """
     folder = page_outputs(lesson_page) / BACKEND
-    predicate = bundle.read_manifest(folder).predicate
+    manifest = bundle.read_manifest(folder)
     origin = (
-        f"Measured by {lesson_page} on {BACKEND}, Genesis {predicate.engine.version}, "
+        f"Measured by {lesson_page} on {BACKEND}, Genesis {manifest.engine.version}, "
     )
-    origin += f"run {predicate.run_id[:8]}, {predicate.started[:10]}"
+    origin += f"run {manifest.run_id[:8]}, {manifest.started[:10]}"
     if name == "engine":
-        return predicate.engine.version, origin
+        return manifest.engine.version, origin
     name, _, unit = name.partition(" ")
     of_camera = name.partition(".")[0] in find_page(*lesson_page.split("/")).with_camera
-    if of_camera and predicate.render.mode != "camera":
+    if of_camera and manifest.render.mode != "camera":
         return "SKIP: no camera", origin
     value, given, source = value_of(folder, name, "" if unit in COUNTED else unit)
     if unit in COUNTED:
@@ -157,10 +157,9 @@ def recorded_runs(book: Path, lesson: str) -> tuple[PageRun, ...]:
     """Return the recorded runs of a lesson's lab, the reference first, recorded or not."""
     folder, name = book / "evidence" / lesson, f"{lesson}/{RECORDED_PAGE}"
     recorded = (path.name for path in recorded_folders(book) if path.parent == folder)
-    labs = {lesson: page_run(book, lesson).folder}
 
     def run(backend: str) -> PageRun:
-        status = recorded_status(book, lesson, backend, labs=labs)
+        status = recorded_status(book, lesson, backend)
         return PageRun(name, folder / backend, status, recorded=True)
 
     backends = dict.fromkeys((REFERENCE, *recorded))
@@ -190,7 +189,7 @@ def badge_node(status: Status) -> nodes.Node:
 def state_words(status: Status) -> str:
     """Return the state of a run in a few words; only an accepted run counts as measured."""
     if status.state == "verified" and status.manifest is not None:
-        engine = status.manifest.predicate.engine.version
+        engine = status.manifest.engine.version
         return f"Measured on {READABLE.get(status.backend, status.backend)} with Genesis {engine}"
     return f"{READABLE.get(status.backend, status.backend)} run: {status.state}"
 
@@ -247,7 +246,7 @@ def require_passed(lesson_page: str, check: str) -> None:
         ValueError: the check failed, or the page has no bundle that can be read.
     """
     folder = page_outputs(lesson_page) / BACKEND
-    found = {c.name: c for c in bundle.read_manifest(folder).predicate.checks}
+    found = {c.name: c for c in bundle.read_manifest(folder).checks}
     if check not in found:
         raise LookupError(
             f"{lesson_page} has no check {check!r}. Choices: {', '.join(found)}."

@@ -17,7 +17,7 @@ from sphinx.environment import BuildEnvironment
 from robo_genesis.core import project, shown
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.text import listed
-from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.rows import DIFFERS
@@ -55,13 +55,13 @@ class Evidence(PageDirective):
         """Return the panel of one backend."""
         lesson, folder, status = run.lesson, run.folder, run.status
         panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
-        if run.predicate is None or status.state != "verified":
+        if run.manifest is None or status.state != "verified":
             panel += withheld(run)
             panel += self.parse_text_to_nodes(RECORDING)
             return panel
         panel["evidence_runs"] = (run.key,)
         panel += paragraph(nodes.strong("", "Reference run."), f" {status.sentence}")
-        panel += backend_facts(run.predicate)
+        panel += backend_facts(run.manifest)
         run_shown = (
             f"{lesson}-{status.backend}",
             folder,
@@ -74,7 +74,7 @@ class Evidence(PageDirective):
         here = page_run(Path(self.env.srcdir), lesson)
         found = comparison(here.folder, folder)
         panel += nodes.container("", *found, evidence_runs=(here.key, run.key))
-        panel += nodes.raw("", warnings_html(run.predicate.warnings), format="html")
+        panel += nodes.raw("", warnings_html(run.manifest.warnings), format="html")
         return panel
 
 
@@ -102,10 +102,10 @@ def withheld(run: PageRun) -> list[nodes.Node]:
     ]
 
 
-def backend_facts(predicate: Predicate) -> nodes.Node:
+def backend_facts(manifest: Manifest) -> nodes.Node:
     """Return the facts of a run's backend as a table."""
-    backend = predicate.backend
-    pairs = (f"{name}={value}" for name, value in predicate.environment.items())
+    backend = manifest.backend
+    pairs = (f"{name}={value}" for name, value in manifest.environment.items())
     switches = [nodes.literal("", pair) for pair in pairs]
     facts = {
         "device": backend.device_name,
@@ -113,10 +113,10 @@ def backend_facts(predicate: Predicate) -> nodes.Node:
         "Torch": backend.torch_version,
         "HIP, CUDA": f"{backend.hip_version or '–'}, {backend.cuda_version or '–'}",
         "driver": backend.driver or "–",
-        "renderer": predicate.render.renderer or "SKIP",
+        "renderer": manifest.render.renderer or "SKIP",
         "engine switches": switches or "none set",
-        "recorded": predicate.started[:10],
-        "run": predicate.run_id[:8],
+        "recorded": manifest.started[:10],
+        "run": manifest.run_id[:8],
     }
     return table(("what", "value"), list(facts.items()), classes=AS_NEEDED)
 

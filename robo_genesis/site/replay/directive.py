@@ -208,7 +208,7 @@ def shape_file(lesson: str, thing: str) -> Path:
     Raises:
         ValueError: there is no such file.
     """
-    shape = page_outputs(f"{lesson}/{SHAPE_PAGE}") / visual_shape.FILE
+    shape = page_outputs(f"{lesson}/{SHAPE_PAGE}") / BACKEND / visual_shape.FILE
     if not shape.is_file():
         raise ValueError(
             f"{lesson} wrote no shape of its {thing}. A cell of its {SHAPE_PAGE} must call "
@@ -236,7 +236,7 @@ def origin_html(
         env: of the page that shows it.
         credit: of the shape, None for shapes of the scene itself.
     """
-    run, up = bundle.read_manifest(folder).predicate, replay_folder(env)
+    run, up = bundle.read_manifest(folder), replay_folder(env)
     files = {"name": name, "notice": NOTICE, "licence": VIEWER_LICENCE}
     return filled(
         Path(__file__).with_name("origin.html"), run=run, up=up, credit=credit, **files

@@ -99,8 +99,8 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
     )
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(config.torch_index, student.name)
-    predicate = bundle.read_manifest(run).predicate
-    origin = partial(origin_of, page, predicate, commands, config)
+    manifest = bundle.read_manifest(run)
+    origin = partial(origin_of, page, manifest, commands, config)
     needed = {
         project.ENGINE: project.engine_pin(),
         project.COURSE: package_facts()["version"],
@@ -152,7 +152,7 @@ def package_facts() -> dict[str, str]:
 
 def origin_of(
     page: Page,
-    ran: bundle.Predicate,
+    ran: bundle.Manifest,
     commands: Iterable[str],
     config: Config,
     kind: str,

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 from lessons.lesson_bundles import judged_again, refused
-from spoilers import ARRAYS, in_archive, pop, predicate
+from spoilers import ARRAYS, facts, in_archive, pop
 
 from robo_genesis.evidence.compare import compare
 from robo_genesis.lessons.l03 import spec, study_spec
@@ -43,11 +43,11 @@ SPOILED = {
         "start",
         changed("baseline", "link_pos_m", lambda a: a[:, 0, 1].__iadd__(0.01)),
     ),
-    "contacts that were never read": ("lab", "labels", without_contacts),
+    "contacts that were never read": ("lab", "bad-array", without_contacts),
     "the lecture's parameters": (
         "lab",
         "stale",
-        predicate(parameters=spec.parameters() | study_spec.parameters("lecture")),
+        facts(parameters=spec.parameters() | study_spec.parameters("lecture")),
     ),
     "a cube that turns without turning": (
         "lecture",

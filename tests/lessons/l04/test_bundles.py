@@ -14,7 +14,7 @@ from robo_genesis.lessons.l04 import spec, study_spec
     [
         (
             case("MuJoCo_Euler_G2_substeps_2", note=""),
-            "cases: .*note of the case MuJoCo",
+            "labels: .*MuJoCo_Euler_G2_substeps_2.note",
         ),
         (pop(METRICS, "readings", "inertia_Genesis"), "metrics: .*inertia_G"),
     ],

@@ -26,7 +26,7 @@ def html(tmp_path_factory):
     The lab's bundle is a manifest that says it was verified, and nothing more.
     """
     folder = tmp_path_factory.mktemp("render")
-    said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
+    said = WRITE_BUNDLE.replace('{"run_id"', '{"state": "verified", "run_id"')
     page, lab = (
         cell("print('measured ' + '7')"),
         notebook(cell(said), front=CLAIMS + LAB),

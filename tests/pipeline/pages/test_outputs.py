@@ -18,9 +18,9 @@ from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raisin
 from robo_genesis.core import shown
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle import write_json
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.pages import LAB
 from robo_genesis.pipeline.pages.book import Page, find_pages

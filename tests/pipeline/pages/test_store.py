@@ -20,7 +20,7 @@ from tiny_book import (
     seal,
 )
 
-from robo_genesis.pipeline.bundles import of_build
+from robo_genesis.pipeline.bundles import page_bundles
 from robo_genesis.pipeline.pages import store
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.page_folder import PageRefused
@@ -95,11 +95,11 @@ def test_a_damaged_page_is_refused_by_the_name_of_its_file(sound, place, spoil, 
 def test_a_stored_page_whose_bundle_is_refused_is_executed_by_the_next_build(
     sound, place, monkeypatch
 ):
-    monkeypatch.setattr(of_build, "require_contract", lambda *given: None)
+    monkeypatch.setattr(page_bundles, "require_contract", lambda *given: None)
     [page] = find_pages(sound / "book")
     result = store.stored_result(page, place)
-    assert of_build.verify_results(accept, [result], lambda *_: None)[1] == []
-    [line] = of_build.verify_results(refuse, [result], lambda *_: None)[1]
+    assert page_bundles.verify_results(accept, [result], lambda *_: None)[1] == []
+    [line] = page_bundles.verify_results(refuse, [result], lambda *_: None)[1]
     assert line.endswith("The next build executes the page again.")
     with pytest.raises(PageRefused):
         store.stored_result(page, place)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from unittest.mock import Mock
 
 import pytest
-from spoilers import both, older_compiler, on, own_run_id, part, predicate, seal
+from spoilers import both, facts, older_compiler, on, part, seal
 from tiny_book import accept, cell, lab, make_book, notebook, old_bundle, refuse
 
 from robo_genesis.core.project import ProjectError
@@ -60,9 +60,7 @@ def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(
         names = {path.name for path in place.iterdir()}
         assert names == {"log.txt", "manifest.json", "printed.json"}
         assert old.read_text() == "new"
-        run_ids.append(
-            json.loads((place / "manifest.json").read_text())["predicate"]["run_id"]
-        )
+        run_ids.append(json.loads((place / "manifest.json").read_text())["run_id"])
     assert run_ids[0] != run_ids[1]
     stages = re.findall(r"^\[.*\] (\w+)", said, re.MULTILINE)
     assert list(dict.fromkeys(stages)) == [
@@ -313,7 +311,7 @@ def test_an_accepted_bundle_is_kept_and_named_unless_its_lesson_is_given(
     labs, recorded
 ):
     place = recorded()
-    run_id = json.loads((place / "manifest.json").read_text())["predicate"]["run_id"]
+    run_id = json.loads((place / "manifest.json").read_text())["run_id"]
     status, ran, said = labs()
     assert (status, ran) == (0, ["l02", "l03"])
     (line,) = (
@@ -329,7 +327,7 @@ def test_an_accepted_bundle_is_kept_and_named_unless_its_lesson_is_given(
     assert labs(lesson="l04")[1] == ["l04"]
 
 
-CLEAN, DIRTY = both(predicate(git=None), seal), both(part("git", dirty=True), seal)
+CLEAN, DIRTY = both(facts(git=None), seal), both(part("git", dirty=True), seal)
 
 
 @pytest.mark.parametrize(
@@ -364,12 +362,6 @@ def test_a_bundle_that_is_not_accepted_for_this_backend_is_recorded_again(
     monkeypatch.setattr(recording, "git_record", lambda: git)
     recorded(spoil, left_by)
     assert labs(asked)[1] == ["l02", "l03", *["l04"] * again]
-
-
-def test_a_copy_of_the_cpu_s_run_is_recorded_again(labs, recorded, folder, tmp_path):
-    shutil.copytree(folder, tmp_path / "kept" / "l04" / "cpu")
-    recorded(both(own_run_id, seal))
-    assert labs()[1] == ["l02", "l03", "l04"]
 
 
 def test_an_accepted_run_that_does_not_show_the_claims_is_kept(

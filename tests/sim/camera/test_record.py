@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
-from robo_genesis.evidence.picture_file import read_picture, write_picture
+from robo_genesis.evidence.reader import read_frames, write_frame
 from robo_genesis.sim.camera import geometry as cameras
 from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.views import View
@@ -34,9 +34,10 @@ def recorded(view, rendered=True):
 def test_a_recorded_view_differs_in_the_rounding_of_its_depth_alone(tmp_path, view):
     run = recorded(view)
     assert tuple(run.frames) == view_record.frame_names("world")
+    (tmp_path / "frames").mkdir()
     for name, frame in run.frames.items():
-        write_picture(tmp_path / "frame.png", frame, "run")
-        _, run.frames[name] = read_picture(tmp_path / "frame.png", CAMERA_RES)
+        write_frame(tmp_path / "frames" / f"{name}.png", frame)
+    run.frames = read_frames(tmp_path, run.frames)
     found = view_record.view_of(run, "world")
     for name in ("intrinsics", "transform", "rgb", "segmentation"):
         assert (getattr(found, name) == getattr(view, name)).all()

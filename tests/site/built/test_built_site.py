@@ -136,7 +136,7 @@ def test_every_value_and_array_has_a_tolerance(site):
 
 
 def without_tolerance(side: Side) -> list[str]:
-    declared = find_lesson(side.manifest.predicate.lesson).spec.TOLERANCES.keys()
+    declared = find_lesson(side.manifest.lesson).spec.TOLERANCES.keys()
     units = {
         name: {metric.unit}
         for name, metric in side.numbers.items()

@@ -20,10 +20,9 @@ def accepted(outputs):
     def run(
         version="1.4.5", started="2026-11-22T10:00", backend="cpu", recorded=False
     ) -> PageRun:
-        engine = manifest.predicate.engine.model_copy(update={"version": version})
+        engine = manifest.engine.model_copy(update={"version": version})
         changed = {"engine": engine, "started": started}
-        predicate = manifest.predicate.model_copy(update=changed)
-        shown = manifest.model_copy(update={"predicate": predicate})
+        shown = manifest.model_copy(update=changed)
         return PageRun(
             "l04/lab", Path(), Status("verified", backend, "", shown), recorded
         )

@@ -79,8 +79,8 @@ def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoil
 def test_the_line_of_an_accepted_run_alone_has_its_engine_and_no_markup(
     state, backend, words
 ):
-    predicate = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
-    status = Status(state, backend, "", SimpleNamespace(predicate=predicate))
+    manifest = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
+    status = Status(state, backend, "", manifest)
     assert (
         status_line([status])
         == f'<span class="status-word state-{state}">{words}</span>'
@@ -96,7 +96,7 @@ def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
     with pytest.raises(ValueError, match=r"manifest\.json is not in"):
         require_passed("l04/elsewhere", "control_law")
     failed = SimpleNamespace(name="sag", passed=False, found={"sag_m": 0.1})
-    manifest = SimpleNamespace(predicate=SimpleNamespace(checks=[failed]))
+    manifest = SimpleNamespace(checks=[failed])
     monkeypatch.setattr(measured.bundle, "read_manifest", lambda folder: manifest)
     with pytest.raises(ValueError, match=r"the check sag of l04/lab found .*0\.1"):
         require_passed("l04/lab", "sag")

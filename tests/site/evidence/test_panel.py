@@ -9,7 +9,7 @@ import pytest
 from bundles import engine_on, written
 from docutils import nodes
 from docutils.utils import new_document
-from spoilers import edit, on, part, predicate
+from spoilers import edit, facts, on, part
 from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core import project
@@ -59,10 +59,10 @@ def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
     fields = ("device_name", "torch_version", "hip_version", "cuda_version", "driver")
     part("backend", **dict.fromkeys(fields, attack))(folder)
     part("render", renderer=attack)(folder)
-    predicate(environment={"GS_LOG": attack})(folder)
+    facts(environment={"GS_LOG": attack})(folder)
     status = Status("stale", attack, "", None, "stale", attack)
     run = PageRun("l04/lab", tmp_path / attack[:3], status, recorded=True)
-    table = sphinx_panel.backend_facts(bundle.read_manifest(folder).predicate)
+    table = sphinx_panel.backend_facts(bundle.read_manifest(folder))
     withheld = nodes.container("", *sphinx_panel.withheld(run))
     assert [block.astext().count(attack) for block in (table, withheld)] == [7, 4]
     made = {n.tagname for of in (table, withheld) for n in of.findall(nodes.Element)}
@@ -72,7 +72,7 @@ def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
 def write_shape(folder, tmp_path):
     """Let this build's lecture have the shape of a bundle's links."""
     parts = [box(link) for link in bundle.read_arrays(folder).coords["link"]]
-    visual_shape.write_shape(tmp_path / "l04" / "lecture", parts)
+    visual_shape.write_shape(tmp_path / "l04" / "lecture" / "cpu", parts)
 
 
 def test_what_a_run_says_reaches_no_parser(tmp_path, record, monkeypatch):

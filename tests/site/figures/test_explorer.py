@@ -14,7 +14,7 @@ from without_sphinx import Panel, box, rows_of
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.core.trace import Trace
-from robo_genesis.evidence.picture_file import write_picture
+from robo_genesis.evidence.reader import write_frame
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.geometry import intrinsics, rays
@@ -228,7 +228,7 @@ def picture(tmp_path, folder) -> nodes.Node:
     view = View(K, TRANSFORM, CAMERA_RES, (0.1, 20.0), rgb, depth, numbers)
     (tmp_path / "frames").mkdir()
     for name, frame in view_record.frames("world", view).items():
-        write_picture(tmp_path / "frames" / f"{name}.png", frame, "run")
+        write_frame(tmp_path / "frames" / f"{name}.png", frame)
     data = {
         "size": CAMERA_RES,
         "K": K.tolist(),

@@ -25,7 +25,6 @@ from robo_genesis import lessons as registry
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import read_any_trace, write_traces
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.panel import response
@@ -43,8 +42,7 @@ def dropped(folder, monkeypatch, tmp_path, built):
     """A bundle of two falls, of a lesson that declares them and wrote its shape."""
     shutil.rmtree(folder / "arrays")
     traces = {"high": falling(2.0, STEPS), "low": falling(1.0, STEPS)}
-    arrays = write_traces(folder, traces, None, [*LINKS])
-    write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
+    write_traces(folder, traces, None, LINKS)
     spec = registry.find_lesson("l04").spec
     lesson = Lesson(spec, {}, {}, {"drops": DROPPED})
     monkeypatch.setattr(registry, "LESSONS", (*registry.LESSONS, LESSON))
@@ -55,7 +53,7 @@ def dropped(folder, monkeypatch, tmp_path, built):
     )
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
     visual_shape.write_shape(
-        tmp_path / LESSON / "lecture", [box("box"), visual_shape.floor(1.0)]
+        tmp_path / LESSON / "lecture" / "cpu", [box("box"), visual_shape.floor(1.0)]
     )
     return folder
 
@@ -129,7 +127,7 @@ def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(
 
 
 def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_path):
-    (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
+    (tmp_path / LESSON / "lecture" / "cpu" / visual_shape.FILE).unlink()
     with pytest.raises(ValueError, match="l99 wrote no shape of its box") as caught:
         replay_block(Panel(tmp_path / "book"), KEY, dropped)
     assert "page.write_shape(l99.read_shape(entity)) after scene.build()" in str(

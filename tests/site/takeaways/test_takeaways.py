@@ -18,8 +18,7 @@ from sphinx.errors import ConfigError
 
 from robo_genesis.core import project, text, trace
 from robo_genesis.core.trace import Episodes
-from robo_genesis.evidence import bundle, fields, npz_archive, trace_files
-from robo_genesis.evidence.strict_json import write_json
+from robo_genesis.evidence import bundle, trace_files
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways import files
 from robo_genesis.site.takeaways.directive import codespace, require_address
@@ -94,14 +93,13 @@ def test_a_kept_table_is_of_one_state_of_all_its_code(
     run, own, keys = tmp_path / "run", tmp_path / "own", []
     for folder in (run, own):
         folder.mkdir()
-    described = write_traces(run, {"G2": traces["G2"]}, joints, LINKS)
-    write_json(run / "arrays.json", described.model_dump(by_alias=True))
+    write_traces(run, {"G2": traces["G2"]}, joints, LINKS)
     monkeypatch.setattr(
         files, "derived", lambda kind, inputs, make: keys.append(inputs) or make()
     )
     ((_, table, _),) = files._arrays(run, own)
     assert next(csv.reader(table.open()))[0] == "t [s]"
-    for module in (files, trace_files, fields, bundle, npz_archive, trace, text):
+    for module in (files, trace_files, bundle, trace, text):
         assert Path(module.__file__).read_bytes() in keys[0], module.__name__
 
 

@@ -8,43 +8,30 @@ import pytest
 from nbformat.v4 import new_notebook
 
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
+from robo_genesis.pipeline.bundles import page_bundles
+from robo_genesis.pipeline.bundles.page_bundles import (
+    outputs_compared,
+    require_contract,
+)
 from robo_genesis.pipeline.pages import outputs
 from robo_genesis.pipeline.pages.page_folder import RECORD
 from robo_genesis.pipeline.pages.results import PageResult
 
 
-@pytest.fixture
-def result(tmp_path, monkeypatch):
-    """A page in a store, whose notebook is not read."""
-    folder = tmp_path / "cache" / "pages" / "page" / "fingerprint"
-    folder.mkdir(parents=True)
-    (folder / RECORD).write_text(os.urandom(16).hex())
-    monkeypatch.setattr(
-        "robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda of: None
-    )
-    page = SimpleNamespace(notebook=new_notebook())
-    return PageResult(
-        page, "reused", 0.0, "run", folder / "outputs" / "cpu", folder=folder
-    )
-
-
 def test_an_accepted_page_is_compared_again_when_its_record_changed(
-    result, monkeypatch
+    tmp_path, monkeypatch
 ):
-    calls = []
-    monkeypatch.setattr(
-        outputs, "require_shown", lambda *given: calls.append(given) or 7
-    )
+    (tmp_path / RECORD).write_text(os.urandom(16).hex())
+    monkeypatch.setattr(page_bundles, "stored_notebook", lambda result: None)
+    page = SimpleNamespace(notebook=new_notebook())
+    result = PageResult(page, "reused", 0.0, "run", tmp_path / "cpu", folder=tmp_path)
+    compare = Mock(side_effect=[7, BundleRefused("shown", "other"), 8])
+    monkeypatch.setattr(outputs, "require_shown", compare)
     assert [outputs_compared(result, None) for _ in range(2)] == [7, 7]
-    assert len(calls) == 1
-    (result.folder / RECORD).write_text(os.urandom(16).hex())
-    monkeypatch.setattr(
-        outputs, "require_shown", Mock(side_effect=BundleRefused("shown", "other"))
-    )
-    for _ in range(2):  # a refusal is not kept
-        with pytest.raises(BundleRefused, match="other"):
-            outputs_compared(result, None)
+    (tmp_path / RECORD).write_text(os.urandom(16).hex())
+    with pytest.raises(BundleRefused, match="other"):  # a refusal is not kept
+        outputs_compared(result, None)
+    assert outputs_compared(result, None) == 8
 
 
 @pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])

@@ -45,7 +45,7 @@ def verify_results(
             continue
         try:
             manifest = verify(result.bundle, result.run_id)
-            require_contract(manifest.predicate, contract)
+            require_contract(manifest, contract)
             compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
             progress(
@@ -88,21 +88,19 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     return int(derived_value("shown", inputs, compare))
 
 
-def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
+def require_contract(manifest: Manifest, contract: Mapping[str, str]) -> None:
     """Raise BundleRefused if a bundle's backend or camera is not the requested one.
 
     A page that declares no camera must have none.
 
     Args:
-        predicate: the predicate of the bundle's manifest.
+        manifest: of the bundle.
         contract: the variables that requested it.
     """
     remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
     backend, render = contract[BACKEND], contract[RENDER]
-    camera = render == "1" and find_page(predicate.lesson, predicate.page).camera
+    camera = render == "1" and find_page(manifest.lesson, manifest.page).camera
     mode = "camera" if camera else "skip"
-    found = predicate.backend.requested
+    found = manifest.backend.requested
     expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
-    expect(
-        "frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy
-    )
+    expect("frames", "manifest.json", "render.mode", manifest.render.mode, mode, remedy)
