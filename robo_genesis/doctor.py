@@ -36,19 +36,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.text import ended, printable
 
-WIDTH, INDENT = (
-    72,
-    28,
-)  # Characters of a row, which fits 80 columns, and before what was found
+# Characters of a row, which fits 80 columns, and before what was found.
+WIDTH, INDENT = 72, 28
 REPORT_FORMAT = 4
-MARK = (
-    "\x1e"  # Begins a report among the other output of the process that runs the steps
-)
+# Begins a report among the other output of the process that runs the steps.
+MARK = "\x1e"
 STEPS_PROCESS = "from robo_genesis import doctor; doctor.send_reports()"
 MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
 
@@ -65,19 +62,21 @@ def table(steps: Sequence[Mapping[str, str]]) -> str:
     than `WIDTH`.
     """
     text, verdict = "", f"all {len(steps)} steps pass"
+    indent = f"\n{' ' * INDENT}"
     for number, step in enumerate(steps, start=1):
-        text += f"{number:2}/{len(steps):<2}  {step['step']:{INDENT - 18}}  "
-        if step["state"] == "not run" and verdict.startswith("all"):
+        name, state = step["step"], step["state"]
+        text += f"{number:2}/{len(steps):<2}  {name:{INDENT - 18}}  "
+        if state == "not run" and verdict.startswith("all"):
             return text
-        wrap = textwrap.TextWrapper(
-            WIDTH - INDENT, break_long_words=False, break_on_hyphens=False
+        lines = textwrap.wrap(
+            step["found"],
+            WIDTH - INDENT,
+            break_long_words=False,
+            break_on_hyphens=False,
         )
-        found = f"\n{' ' * INDENT}".join(map(printable, wrap.wrap(step["found"])))
-        text += f"{step['state']:7}  {found}".rstrip() + "\n"
-        if step["state"] == "broken":
-            verdict = (
-                f"step {number}, {step['step']}, is broken; fix it and run this again"
-            )
+        text += f"{state:7}  {indent.join(map(printable, lines))}".rstrip() + "\n"
+        if state == "broken":
+            verdict = f"step {number}, {name}, is broken; fix it and run this again"
     return f"{text}\nDOCTOR: {verdict}\n"
 
 
@@ -133,7 +132,7 @@ def reports() -> Iterator[dict[str, Any]]:
     report.
     """
     report = report_of([{"step": "version", "state": "not run", "found": ""}])
-    said = deque[str](maxlen=3)
+    last_lines = deque[str](maxlen=3)
     with subprocess.Popen(
         [sys.executable, "-c", STEPS_PROCESS],
         stdout=subprocess.PIPE,
@@ -147,36 +146,30 @@ def reports() -> Iterator[dict[str, Any]]:
             if mark:
                 yield (report := json.loads(sent))
             elif text.strip():
-                said.append(text.strip())
+                last_lines.append(text.strip())
     left = [step for step in report["steps"] if step["state"] == "not run"]
     if left and not report["broken"]:
-        left[0] |= {"state": "broken", "found": ending(process.returncode, said)}
+        status, last = process.returncode, last_lines
+        if status >= 0:
+            words = (
+                f"{last[-1] if last else f'Status {status}'}. {project.import_advice()}"
+            )
+        else:
+            folders = " and ".join(project.cache_folders().values())
+            words = f"Ended by {ended(status, folders)}. {' '.join(last)}"
+        left[0] |= {"state": "broken", "found": words}
         yield report | {"broken": left[0]["step"]}
-
-
-def ending(status: int, said: Sequence[str]) -> str:
-    """Return how a process ended too early, and what to do.
-
-    Args:
-        status: as `subprocess` gives it, negative for a signal.
-        said: the last lines of the process.
-    """
-    if status >= 0:
-        return f"{said[-1] if said else f'Status {status}'}. {project.import_advice()}"
-    folders = " and ".join(project.cache_folders().values())
-    return f"Ended by {ended(status, folders)}. {' '.join(said)}"
 
 
 def machine(engine: Any) -> dict[str, str]:
     """Return the facts that the manifest of a run has too; fewer if the engine did not start."""
-    versions = [project.installed_version(name) for name in PACKAGES[:3]]
-    found = [*versions, platform.python_version(), platform.platform()]
+    versions = [
+        project.installed_version(name) or "not installed" for name in PACKAGES[:3]
+    ]
+    facts = [*versions, platform.python_version(), platform.platform()]
     if engine:
-        found += [engine.backend.actual, engine.backend.device_name]
-    return {
-        name: value or "not installed"
-        for name, value in zip(FACTS, found, strict=False)
-    }
+        facts += [engine.backend.actual, engine.backend.device_name]
+    return dict(zip(FACTS, facts, strict=False))
 
 
 def shareable(text: str) -> str:
@@ -211,35 +204,17 @@ def read_report(file: str) -> dict[str, Any]:
     """Return a saved report.
 
     Raises:
-        ValueError: the file is not a report of this format, or of no complete
-            examination.
+        ValueError: the file is not a report of this format.
     """
-    from pydantic import AfterValidator, BaseModel, ValidationError
-
-    from robo_genesis.sim.diagnosis import STEPS, StepResult
-
-    def complete(steps: list[StepResult]) -> list[StepResult]:
-        names, states = [step.__name__ for step in STEPS], [one.state for one in steps]
-        done = states.index("broken") + 1 if "broken" in states else len(names)
-        in_order = [one.step for one in steps] == names[: max(done, len(steps))]
-        if not in_order or "not run" in states[:done]:
-            raise ValueError(f"not every step was done: {', '.join(names)}")
-        return steps
-
-    class Report(BaseModel):
-        format: Literal[4]
-        steps: Annotated[list[StepResult], AfterValidator(complete)]
-        machine: dict[str, str]
-
     try:
-        return Report.model_validate_json(Path(file).read_bytes()).model_dump()
-    except OSError as error:
-        problem = str(error)
-    except ValidationError as error:
-        first = error.errors()[0]
-        problem = f"{'.'.join(map(str, ('report', *first['loc'])))}: {first['msg']}"
+        report = json.loads(Path(file).read_text("utf8"))
+        if report["format"] == REPORT_FORMAT:
+            return report
+        problem = f"its format is {report['format']}, expected {REPORT_FORMAT}"
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        problem = f"{type(error).__name__}: {error}"
     raise ValueError(
-        f"{file!r} cannot be read as a report: {problem}; a report is a file that --json wrote; "
+        f"{file!r} cannot be read as a report, which --json writes: {problem}; "
         f"make a new one with {MAKE_REPORT}"
     )
 

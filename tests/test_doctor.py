@@ -75,40 +75,27 @@ def assert_broken(steps_run, capsys, step, *words):
 
 
 @pytest.mark.parametrize(
-    ("step", "change", "spoiled", "words"),
+    ("step", "spoiled", "words"),
     [
         (
             "version",
-            "setattr",
             (project, "installed_version", lambda package: "0.0.1"),
             ("genesis-world 0.0.1", "pip install -r"),
         ),
-        (
-            "libraries",
-            "setattr",
-            (ctypes, "CDLL", fail),
-            ("libGL.so.1", "apt install libegl1"),
-        ),
+        ("libraries", (ctypes, "CDLL", fail), ("libGL.so.1", "apt install libegl1")),
         (
             "model_file",
-            "setattr",
             (franka, "FRANKA_MJCF", "xml/no_robot.xml"),
             ("no model 'xml/no_robot.xml'", "pip install"),
-        ),
-        (
-            "backend",
-            "setenv",
-            ("ROBO_GENESIS_BACKEND", "banana"),
-            ("ROBO_GENESIS_BACKEND='banana' is not valid. Choose one of: auto, cpu.",),
         ),
     ],
 )
 def test_a_broken_machine_is_found(
-    steps_run, capsys, monkeypatch, step, change, spoiled, words
+    steps_run, capsys, monkeypatch, step, spoiled, words
 ):
     if step == "model_file":  # comes after the start of the engine
         monkeypatch.setattr(session, "start", lambda contract: ENGINE)
-    getattr(monkeypatch, change)(*spoiled)
+    monkeypatch.setattr(*spoiled)
     assert_broken(steps_run, capsys, step, *words)
 
 
@@ -149,58 +136,23 @@ def scene(lab, monkeypatch):
 BLIND = SimpleNamespace(render=lambda **_: [np.zeros(course.FRAME_SHAPE, np.uint8)])
 UNREACHABLE = np.where(np.equal(franka.JOINT_NAMES, "joint4"), 1.0, franka.Q_START)
 NOT_FINITE = (np.full(9, np.nan),) * 6
+WEAK = replace(BASELINE, effort_limit=np.full(9, 0.5))
+
+
+FAULTS = [
+    ("build", None, "build", fail, ("OSError: no such library", "--json")),
+    ("render", None, "camera", BLIND, ("empty picture",)),
+    ("names", franka, "JOINT_NAMES", ("joint1", "elbw"), ("Joint 'elbw'", "Available: joint1")),
+    ("names", franka, "MODEL_COUNTS", franka.MODEL_COUNTS | {"links": 12}, ("'links': 11",)),
+    ("target", diagnosis, "BASELINE", replace(BASELINE, q_target=UNREACHABLE), ("is 1 rad",)),
+    ("reset", diagnosis, "BASELINE", replace(BASELINE, dt=0.02), ("dt=0.02", "Restart")),
+    ("stamps", joint_control, "read", lambda robot, *of: NOT_FINITE, ("q is not finite",)),
+    ("saturation", diagnosis, "BASELINE", WEAK, ("120 of 120 samples", "Check limit")),
+]  # fmt: skip
 
 
 @pytest.mark.engine
-@pytest.mark.parametrize(
-    ("step", "module", "name", "value", "words"),
-    [
-        ("build", None, "build", fail, ("OSError: no such library", "--json")),
-        ("render", None, "camera", BLIND, ("empty picture",)),
-        (
-            "names",
-            franka,
-            "JOINT_NAMES",
-            ("joint1", "elbw"),
-            ("Joint 'elbw'", "Available: joint1"),
-        ),
-        (
-            "names",
-            franka,
-            "MODEL_COUNTS",
-            franka.MODEL_COUNTS | {"links": 12},
-            ("'links': 11", "'links': 12"),
-        ),
-        (
-            "target",
-            diagnosis,
-            "BASELINE",
-            replace(BASELINE, q_target=UNREACHABLE),
-            ("q_target[joint4] is 1 rad", "none is clipped"),
-        ),
-        (
-            "reset",
-            diagnosis,
-            "BASELINE",
-            replace(BASELINE, dt=0.02),
-            ("dt=0.02", "Restart"),
-        ),
-        (
-            "stamps",
-            joint_control,
-            "read",
-            lambda robot, *of: NOT_FINITE,
-            ("q is not finite", "reset"),
-        ),
-        (
-            "saturation",
-            diagnosis,
-            "BASELINE",
-            replace(BASELINE, effort_limit=np.full(9, 0.5)),
-            ("120 of 120 samples", "Check limit"),
-        ),
-    ],
-)
+@pytest.mark.parametrize(("step", "module", "name", "value", "words"), FAULTS)
 def test_a_broken_step_is_found(
     steps_run, capsys, monkeypatch, scene, step, module, name, value, words
 ):
@@ -241,10 +193,6 @@ def test_the_report_has_stable_fields_and_names_no_user(steps_run, capsys, monke
     assert found["format"] == doctor.REPORT_FORMAT == 4
     assert found["versions"]["genesis-world"] == "0.0.1"
     assert found["environment"]["GS_FOLDER"] == "~/cache"
-    main([])
-    assert (
-        sys.executable in capsys.readouterr().out
-    )  # what is not shared has whole folders
 
 
 @pytest.mark.parametrize(
@@ -304,49 +252,23 @@ def started(folder, changed=None, python=sys.executable):
 
 GENESIS, MINUTES = "genesis.py", "The first start of the engine takes minutes.\n"
 DIES = "import os, signal\nos.kill(os.getpid(), signal.{})".format
+OLD = {"q/quadrants-0.9.dist-info/METADATA": "Name: quadrants\nVersion: 0.9"}
+CACHE = "QD_OFFLINE_CACHE_FILE_PATH"
+MACHINES = [
+    ({"__EGL_VENDOR_LIBRARY_DIRS": "."}, {}, "libraries", "of 0 devices libegl-mesa0 __EGL_"),
+    ({"PYOPENGL_PLATFORM": "osmesa"}, {}, "libraries", "PYOPENGL_PLATFORM='osmesa' unset"),
+    ({"HOME": None}, {}, "backend", "HOME export"),
+    ({CACHE: "f/x"}, {"f": ""}, "backend", CACHE),
+    ({"ROBO_GENESIS_BACKEND": "µ", "PYTHONIOENCODING": "ascii"}, {}, "backend", "\\xb5 auto, cpu"),
+    ({"PYTHONPATH": "q"}, OLD, "version", "quadrants== installed is 0.9"),
+    ({}, {GENESIS: "import genesis\ngenesis.cpu"}, "backend", "genesis.py rename"),
+    ({}, {"random.py": "raise SystemExit"}, "version", "random.py rename"),
+    ({}, {GENESIS: DIES("SIGKILL")}, "backend", "SIGKILL memory"),
+    ({}, {GENESIS: DIES("SIGBUS")}, "backend", "SIGBUS disk kernels"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("changed", "files", "step", "words"),
-    [
-        (
-            {"__EGL_VENDOR_LIBRARY_DIRS": "."},
-            {},
-            "libraries",
-            "of 0 devices libegl-mesa0 __EGL_",
-        ),
-        (
-            {"PYOPENGL_PLATFORM": "osmesa"},
-            {},
-            "libraries",
-            "PYOPENGL_PLATFORM='osmesa' unset",
-        ),
-        ({"HOME": None}, {}, "backend", "HOME export"),
-        (
-            {"QD_OFFLINE_CACHE_FILE_PATH": "f/x"},
-            {"f": ""},
-            "backend",
-            "QD_OFFLINE_CACHE_FILE_PATH",
-        ),
-        ({"GS_CACHE_FILE_PATH": "f"}, {"f": ""}, "backend", "GS_CACHE_FILE_PATH"),
-        (
-            {"PYTHONIOENCODING": "ascii", "ROBO_GENESIS_BACKEND": "µ"},
-            {},
-            "backend",
-            "\\xb5",
-        ),
-        (
-            {"PYTHONPATH": "q"},
-            {"q/quadrants-0.9.dist-info/METADATA": "Name: quadrants\nVersion: 0.9"},
-            "version",
-            "quadrants== installed is 0.9",
-        ),
-        ({}, {GENESIS: "import genesis\ngenesis.cpu"}, "backend", "genesis.py rename"),
-        ({}, {"random.py": "raise SystemExit"}, "version", "random.py rename"),
-        ({}, {GENESIS: DIES("SIGKILL")}, "backend", "SIGKILL memory"),
-        ({}, {GENESIS: DIES("SIGBUS")}, "backend", "SIGBUS disk kernels"),
-    ],
-)
+@pytest.mark.parametrize(("changed", "files", "step", "words"), MACHINES)
 def test_a_machine_with_one_fault_is_named_with_its_step(
     tmp_path, changed, files, step, words
 ):
@@ -407,63 +329,18 @@ def test_a_machine_or_its_report_is_compared(
     assert steps_run == ran  # a saved report needs no step
 
 
-@pytest.mark.parametrize(
-    ("here", "rows"),
-    [
-        ({"engine": "2" * 50, "backend": "a\x1b"}, ["2" * 50, "a\\x1b"]),
-        ({"engine": "1", "backend": "cpu"}, ["equal"] * 2),
-        ({"engine": "1"}, ["equal", "unknown: the engine did not start"]),
-    ],
-)
-def test_each_fact_of_a_machine_is_compared(here, rows):
-    head, *lines, _ = doctor.differences(here, {"engine": "1", "backend": "cpu"})
-    assert [line[head.index("this machine") :] for line in lines] == rows
-
-
-SOUND = {"format": 4, "steps": rows(*["ok"] * len(NAMES)), "machine": {"engine": "1"}}
 SAVED = ["--report", "report.json"]
-NEW = f"make a new one with {doctor.MAKE_REPORT}"
 
 
 @pytest.mark.parametrize(
     ("report", "arguments", "words"),
     [
-        (
-            None,
-            SAVED,
-            ("'report.json' cannot be read as a report: ", "No such file", NEW),
-        ),
-        ("no JSON", SAVED, ("Invalid JSON", NEW)),
-        (SOUND | {"format": 3}, SAVED, ("format",)),
-        (
-            SOUND | {"steps": rows("ok")},
-            SAVED,
-            ("report.steps", "step was done: version, libr"),
-        ),
-        (
-            SOUND | {"steps": rows("ok", *["not run"] * 10)},
-            SAVED,
-            ("not every step was done",),
-        ),
-        (SOUND | {"steps": rows("odd")}, SAVED, ("steps.0.state",)),
-        (SOUND | {"machine": {"engine": 1}}, SAVED, ("machine.engine",)),
-        (
-            None,
-            ["--like", "nowhere"],
-            ("'nowhere' is neither a folder nor a zip archive",),
-        ),
-        (
-            None,
-            ["--like", ""],
-            ("'' has no manifest.json; expected a run's folder, as out",),
-        ),
-        (
-            None,
-            ["--like", "other.zip"],
-            ("'other.zip' has no manifest.json; expected a ", ", or"),
-        ),
+        (None, SAVED, ("'report.json' cannot be read as a report", "No such file")),
+        ("no JSON", SAVED, (f"make a new one with {doctor.MAKE_REPORT}",)),
+        ('{"format": 3}', SAVED, ("its format is 3, expected 4",)),
+        (None, ["--like", "nowhere"], ("'nowhere' is neither a folder nor a zip",)),
+        (None, ["--like", "other.zip"], ("'other.zip' has no manifest.json",)),
         (None, ["--json", "--like", ""], ("--json is alone: compare",)),
-        (None, ["--json", "--report", ""], ("--json is alone",)),
     ],
 )
 def test_what_cannot_be_read_or_compared_is_refused_before_the_first_step(
@@ -472,8 +349,7 @@ def test_what_cannot_be_read_or_compared_is_refused_before_the_first_step(
     monkeypatch.chdir(tmp_path)
     zipfile.ZipFile("other.zip", "w").close()
     if report is not None:
-        text = report if isinstance(report, str) else json.dumps(report)
-        (tmp_path / "report.json").write_text(text)
+        (tmp_path / "report.json").write_text(report)
     with pytest.raises(SystemExit) as ended:
         main(arguments)
     error = capsys.readouterr().err

@@ -18,7 +18,6 @@ from robo_genesis.core import project
 from robo_genesis.core.project import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
 from robo_genesis.sim.backends import BACKENDS, contradictions
-from robo_genesis.sim.compiler import spare_repeated_work
 from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 
 # Valid values of the variables of the contract; the first is the default.
@@ -215,7 +214,6 @@ def import_engine() -> Any:
     """Import Genesis, or raise EngineError: what is missing, and the command that installs it."""
     if sys.platform == "linux":
         require_libraries()
-    spare_repeated_work()
     try:
         return importlib.import_module("genesis")
     except ImportError as error:

@@ -18,7 +18,6 @@ told = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text())
 __version__ = told["version"]
 version = types.SimpleNamespace(hip=told["hip"], cuda=told["cuda"])
 cuda = types.SimpleNamespace(
-    is_available=lambda: told["count"] > 0,
     device_count=lambda: told["count"],
     get_device_properties=lambda index: types.SimpleNamespace(
         name="a card", gcnArchName="gfx942:sramecc+:xnack-"),
@@ -142,7 +141,7 @@ def test_an_amd_machine_is_fine(machine, expected):
     assert found == {
         "devices": "may open kfd renderD128",
         "driver": "amdgpu 6.16",
-        "card": "gfx942",
+        "card": "gfx_target_version 90402",
         "linker": f"{machine.root}/opt/rocm/llvm/bin/ld.lld",
         "visibility": "no variable hides a card",
         "torch": "2.13.0+rocm7.1, built for HIP 7.1.2",
@@ -154,114 +153,33 @@ def test_an_amd_machine_is_fine(machine, expected):
 
 
 M, EVERY = Synthetic, ("ROCR", "HIP", "CUDA")
-RAISES = "raise RuntimeError('HIP error: out of memory\\nmore')"
+CRASH = {"kernel": "os.kill(os.getpid(), 11)"}
+NO_CODE = "for gfx1100, expected gfx942. If the sum below fails, install Torch with it"
 
 
-@pytest.mark.parametrize(
-    ("change", "given", "step", "state", "words"),
-    [
-        (
-            M.removed,
-            ["dev/kfd", "dev/dri/renderD128"],
-            "devices",
-            "broken",
-            "/dev/kfd and /dev/dri/renderD* missing, expected both. Load the driver",
-        ),
-        (
-            M.close,
-            ["kfd"],
-            "devices",
-            "broken",
-            "open renderD128, expected kfd and a renderD",
-        ),
-        (M.close, ["renderD128"], "devices", "broken", "usermod -aG render,video"),
-        (
-            M.removed,
-            ["sys/module/amdgpu/version"],
-            "driver",
-            "ok",
-            "amdgpu of the kernel ",
-        ),
-        (M.card, [0], "card", "broken", "names no card"),
-        (M.card, [90010], "card", "ok", "gfx90a"),
-        (M.card, [120001], "card", "ok", "gfx1201"),
-        (
-            M.removed,
-            [LLD],
-            "linker",
-            "broken",
-            "in llvm/bin of ROCM_PATH (unset) or /opt/rocm",
-        ),
-        (M.variables, ["1", "ROCR"], "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
-        (M.variables, ["1", "HIP"], "visibility", "warning", "set it alone"),
-        (M.variables, ["0", *EVERY], "visibility", "warning", "set it alone"),
-        (M.variables, ["", "HIP"], "visibility", "broken", "is set and empty"),
-        (
-            M.variables,
-            ["1", *EVERY],
-            "visibility",
-            "broken",
-            "in all three hides the card",
-        ),
-        (
-            M.told,
-            CUDA,
-            "torch",
-            "broken",
-            "built for CUDA 13.0, expected a build for amdgpu",
-        ),
-        (
-            M.told,
-            {"count": 0},
-            "device",
-            "broken",
-            "Torch finds no device, expected one.",
-        ),
-        (
-            M.told,
-            {"codes": ["gfx1100"]},
-            "device_code",
-            "warning",
-            "for gfx1100, expected gfx942. Install Torch with it: torch[device-gfx942]",
-        ),
-        (
-            M.told,
-            {"codes": [], "kernel": RAISES},
-            "device_code",
-            "broken",
-            "no card, expected",
-        ),
-        (
-            M.loaded,
-            [OWN, OTHER],
-            "hip_runtime",
-            "warning",
-            f"2 are loaded: {OWN}, {OTHER}; expected Torch's. Link {RUNTIME} in a folder to {OWN}",
-        ),
-        (
-            M.removed,
-            [f"lib/{RUNTIME}"],
-            "hip_runtime",
-            "broken",
-            "opens, cannot be loaded",
-        ),
-        (
-            M.told,
-            {"kernel": RAISES},
-            "kernel",
-            "broken",
-            "an answer: RuntimeError: HIP error: out of memory. Repair that environment",
-        ),
-        (
-            M.told,
-            {"kernel": "os.kill(os.getpid(), 11)"},
-            "kernel",
-            "broken",
-            "killed by SIGSEGV",
-        ),
-        (M.told, {"numbers": [1, 2, 3]}, "kernel", "broken", "is 14, expected 140"),
-    ],
-)
+FAULTS = [
+    (M.removed, ["dev/kfd"], "devices", "broken", "Load the driver"),
+    (M.removed, ["dev/dri/renderD128"], "devices", "broken", "Load the driver"),
+    (M.close, ["kfd"], "devices", "broken", "open renderD128, expected kfd and a renderD"),
+    (M.close, ["renderD128"], "devices", "broken", "usermod -aG render,video"),
+    (M.removed, ["sys/module/amdgpu/version"], "driver", "ok", "amdgpu of the kernel "),
+    (M.card, [0], "card", "broken", "names no card"),
+    (M.removed, [LLD], "linker", "broken", "in llvm/bin of ROCM_PATH (unset)"),
+    (M.variables, ["1", "ROCR"], "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
+    (M.variables, ["1", "HIP"], "visibility", "warning", "set it alone"),
+    (M.variables, ["", "HIP"], "visibility", "broken", "an empty one hides every card"),
+    (M.variables, ["1", *EVERY], "visibility", "warning", "all three with an index but 0"),
+    (M.told, CUDA, "torch", "broken", "for CUDA 13.0, expected a build for amdgpu"),
+    (M.told, {"count": 0}, "device", "broken", "Torch finds no device, expected one."),
+    (M.told, {"codes": ["gfx1100"]}, "device_code", "warning", NO_CODE),
+    (M.loaded, [OWN, OTHER], "hip_runtime", "warning", f"{OTHER} are loaded; expected Torch's"),
+    (M.removed, [f"lib/{RUNTIME}"], "hip_runtime", "broken", "opens, cannot be loaded"),
+    (M.told, CRASH, "kernel", "broken", "an answer: SIGSEGV"),
+    (M.told, {"numbers": [1, 2, 3]}, "kernel", "broken", "is 14, expected 140"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "given", "step", "state", "words"), FAULTS)
 def test_one_thing_that_is_wrong_is_named_with_the_fix(
     machine, change, given, step, state, words
 ):
@@ -330,11 +248,6 @@ def test_a_torch_for_the_cpu_alone_is_named(machine, expected, wanted):
     ("torch", "said"),
     [
         ("raise ImportError('libamdhip64.so')", "ImportError: libamdhip64.so"),
-        ("import os; os._exit(3)", "status 3"),
-        (
-            "import os, sys; sys.stderr.write('a\\nb\\n'); sys.stderr.flush(); os._exit(1)",
-            "r: b.",
-        ),
         ("import time; print('hangs', flush=True); time.sleep(60)", "no answer in 1 s"),
     ],
 )
