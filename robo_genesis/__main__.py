@@ -79,18 +79,10 @@ def evidence_rocm(options: Namespace) -> int:
 
 
 def compare(options: Namespace) -> int:
-    """Compare two bundles and write a report."""
+    """Compare two bundles, such as the site's and your own."""
     from robo_genesis.evidence import report
-    from robo_genesis.evidence.compare import compare as compare_bundles
-    from robo_genesis.evidence.rows import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
 
-    comparison = compare_bundles(options.old, options.new)
-    runs = [run.run_id[:8] for run in (comparison.old, comparison.new)]
-    folder = options.report or CACHE / "reports" / "-".join(["compare", *runs])
-    print(report.summary(comparison))
-    print(f"Report: {report.document(comparison).write(folder)}")
-    statuses = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}
-    return statuses.get(comparison.state, 0)
+    return report.print_comparison(options.old, options.new, options.report)
 
 
 def lesson(options: Namespace) -> Sequence[str]:
@@ -218,8 +210,8 @@ COMMANDS: dict[Callable[..., Any], tuple[str, dict[str, dict[str, Any]]]] = {
     compare: (
         "compared",
         {
-            "old": {"type": Path, "help": "folder of a bundle"},
-            "new": {"type": Path, "help": "folder of a bundle"},
+            "old": {"type": Path, "help": "folder or archive of a bundle"},
+            "new": {"type": Path, "help": "likewise"},
             "--report": {"type": Path, "help": "folder of the report"},
         },
     ),

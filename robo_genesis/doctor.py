@@ -33,7 +33,6 @@ import textwrap
 import zipfile
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -184,11 +183,11 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     Raises:
         BundleRefused: there is no bundle, or its manifest cannot be read.
     """
-    from robo_genesis.compare import bundle_folder
     from robo_genesis.evidence.bundle import read_manifest
+    from robo_genesis.evidence.compare import bundle_folder
 
-    with ExitStack() as opened:
-        run = read_manifest(bundle_folder(bundle, opened))
+    with bundle_folder(Path(bundle)) as folder:
+        run = read_manifest(folder)
     engine, backend, host = run.engine, run.backend, run.host
     versions = [
         engine.version,

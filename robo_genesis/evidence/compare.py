@@ -1,6 +1,10 @@
 """Compare two bundles that differ in one thing: the engine's version, or the backend."""
 
+import shutil
+import tempfile
+import zipfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,7 +13,7 @@ from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, rows
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.rows import PageSpecification, Section, Side, worst
+from robo_genesis.evidence.rows import PageSpecification, Row, Section, Side, worst
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_lesson, find_page
 
@@ -43,9 +47,8 @@ class BundleComparison:
         """The verdict: equal, within tolerance, inconclusive, differs or not comparable."""
         if self.obstacles:
             return rows.NOT_COMPARABLE
-        return worst(
-            [f.state for s in self.sections for f in s.rows if f.state != rows.SHOWN]
-        )
+        states = [row.state for part in self.sections for row in part.rows]
+        return worst([state for state in states if state != rows.SHOWN])
 
 
 def specification(lesson: str, page: str) -> PageSpecification:
@@ -90,102 +93,118 @@ def compare(old: Path, new: Path) -> BundleComparison:
         "repeat" if was.source == now.source else "same engine and backend, other code"
     )
     axis = " and ".join(axes(was, now)) or repeat
-    parts = () if obstacles else _sections(a, b, spec)
-    return BundleComparison(
-        was, now, (a.folder, b.folder), axis, obstacles, tuple(_notes(was, now)), parts
-    )
+    parts = () if obstacles else tuple(_sections(a, b, spec))
+    notes = tuple(_notes(was, now))
+    places = (a.folder, b.folder)
+    return BundleComparison(was, now, places, axis, obstacles, notes, parts)
 
 
-def _sections(old: Side, new: Side, spec: PageSpecification) -> tuple[Section, ...]:
-    every = (
+def _sections(old: Side, new: Side, spec: PageSpecification) -> list[Section]:
+    """Return all sections, the worst first."""
+
+    def values(kind: str) -> Iterator[Row]:
+        return rows.values(old, new, spec, kind)
+
+    relations = rows.relations(old, new, spec)
+    sections = (
         rows.section("Coverage", rows.coverage(old, new, spec), SAME),
         rows.section("Invariants", rows.invariants(old, new)),
-        rows.section(
-            "Relations",
-            rows.relations(old, new, spec),
-            "The lesson claims no ordering.",
-        ),
-        rows.section(
-            "Exact counts", rows.values(old, new, spec, "exact"), "There are no counts."
-        ),
-        rows.section(
-            "Values", rows.values(old, new, spec, "value"), "There are no values."
-        ),
+        rows.section("Relations", relations, "The lesson claims no ordering."),
+        rows.section("Exact counts", values("exact"), "There are no counts."),
+        rows.section("Values", values("value"), "There are no values."),
         rows.section("Arrays", rows.arrays(old, new, spec), "There are no arrays."),
-        rows.section(
-            "Performance", rows.values(old, new, spec, "performance"), NO_PERFORMANCE
-        ),
+        rows.section("Performance", values("performance"), NO_PERFORMANCE),
     )
-    return tuple(sorted(every, key=lambda s: -rows.SEVERITY.index(s.state)))
+    return sorted(sections, key=lambda part: -rows.SEVERITY.index(part.state))
 
 
-def read_side(folder: Path) -> Side:
-    """Read one bundle strictly, with the verifier's own bounds and digests.
+@contextmanager
+def bundle_folder(path: Path) -> Iterator[Path]:
+    """Yield the folder of a bundle, also of one in an archive as the ledger offers it.
 
     Raises:
-        BundleRefused: a file is too large, missing, damaged, or differs from the listed
-            one; the message begins with the folder.
+        BundleRefused: `missing`, it is neither a folder nor an archive.
+    """
+    if path.is_dir():
+        yield path
+        return
+    if not zipfile.is_zipfile(path):
+        raise BundleRefused(
+            "missing",
+            f"{path} is neither a folder nor a zip archive; expected a run's folder, as "
+            "outputs/l04/lab/cpu, or its archive.",
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.unpack_archive(path, folder, "zip")
+        yield Path(folder)
+
+
+def read_side(path: Path) -> Side:
+    """Read one bundle, a folder or an archive; its digests must be right.
+
+    Raises:
+        BundleRefused: a file is missing, damaged, or differs from the listed one; the
+            message begins with the path.
     """
     try:
-        manifest = bundle.read_manifest(folder)
-        bundle.check_files(folder, manifest)
-        metrics, arrays = bundle.read_metrics(folder), bundle.read_arrays(folder)
-        traces = {case: read_any_trace(folder, arrays, case) for case in arrays.cases}
+        with bundle_folder(path) as folder:
+            manifest = bundle.read_manifest(folder)
+            bundle.check_files(folder, manifest)
+            arrays = bundle.read_arrays(folder)
+            traces = {
+                case: read_any_trace(folder, arrays, case) for case in arrays.cases
+            }
+            return Side(
+                str(path), manifest, bundle.read_metrics(folder), arrays, traces
+            )
     except BundleRefused as refusal:
-        raise BundleRefused(refusal.code, f"{folder}: {refusal.message}") from refusal
-    return Side(str(folder), manifest, metrics, arrays, traces)
+        raise BundleRefused(refusal.code, f"{path}: {refusal.message}") from refusal
 
 
 def axes(old: Manifest, new: Manifest) -> list[str]:
     """Return each axis in which two bundles differ, with both values."""
     engines = [
-        f"{p.engine.version} (quadrants {p.engine.quadrants_version})"
-        for p in (old, new)
+        f"{run.engine.version} (quadrants {run.engine.quadrants_version})"
+        for run in (old, new)
     ]
-    backends = [p.backend.actual for p in (old, new)]
+    backends = [run.backend.actual for run in (old, new)]
     named = (("engine version", engines), ("backend", backends))
     return [f"{axis} {was} → {now}" for axis, (was, now) in named if was != now]
 
 
 def _obstacles(old: Manifest, new: Manifest) -> Iterator[str]:
-    was_asked, is_asked = (
+    asked, asked_now = (
         {
-            "The seed": p.seed,
-            "The precision": p.engine.precision,
-            "parameters": p.parameters,
+            "The seed": run.seed,
+            "The precision": run.engine.precision,
+            "parameters": run.parameters,
         }
-        for p in (old, new)
+        for run in (old, new)
     )
-    for path, was, now in differences(was_asked, is_asked):
+    for path, was, now in differences(asked, asked_now):
         yield f"{path} differs: {quoted(was)} and {quoted(now)}."
-    for word, side in (("old", old), ("new", new)):
-        if side.backend.actual != side.backend.actual_at_end:
-            change = f"from {side.backend.actual} to {side.backend.actual_at_end}"
-            yield f"The backend of the {word} bundle changed during the run, {change}."
+    for word, run in (("old", old), ("new", new)):
+        if run.backend.actual != run.backend.actual_at_end:
+            yield f"The backend of the {word} bundle changed during the run."
     if len(differing := axes(old, new)) > 1:
         yield f"Two axes differ: {' and '.join(differing)}. Change one at a time."
 
 
 def _notes(old: Manifest, new: Manifest) -> Iterator[str]:
     if old.run_id == new.run_id:
-        yield "Both have the same run id. One is a copy of the other, or was edited."
+        yield "Both have the same run id: one is the other, or a copy of it."
     changed = [name for name, *_ in differences(old.source.modules, new.source.modules)]
     changed += ["the page's cells"] if old.source.page != new.source.page else []
     if changed:
-        yield f"The code differs and may be the cause: {', '.join(changed)}."
-    for word, side in (("old", old), ("new", new)):
-        if side.git is None or side.git.dirty:
-            yield f"The {word} bundle was not recorded from a clean checkout."
-    if (
-        old.backend.device_name != new.backend.device_name
-        or old.host.cpu != new.host.cpu
-    ):
+        yield f"The course's code differs and may be the cause: {', '.join(changed)}."
+    devices = [(run.backend.device_name, run.host.cpu) for run in (old, new)]
+    if devices[0] != devices[1]:
         yield "The devices differ."
     if old.environment != new.environment:
         was, now = (
-            ", ".join(f"{name}={value}" for name, value in p.environment.items())
+            ", ".join(f"{name}={value}" for name, value in run.environment.items())
             or "none"
-            for p in (old, new)
+            for run in (old, new)
         )
         yield f"The switches of the engine differ: {was}; {now}."
     for word, one, other in (("gained", new, old), ("lost", old, new)):

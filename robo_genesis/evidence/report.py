@@ -1,16 +1,70 @@
 """The report of a comparison of two bundles: a summary, and a document with all rows."""
 
+import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import astuple
+from pathlib import Path
 
 from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle import Manifest
-from robo_genesis.evidence.compare import BundleComparison
+from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.document import Cells, Document, Part
-from robo_genesis.evidence.rows import DIFFERS, EQUAL, INCONCLUSIVE, SEVERITY, Row
+from robo_genesis.evidence.refusals import BundleRefused
+from robo_genesis.evidence.rows import (
+    DIFFERS,
+    EQUAL,
+    INCONCLUSIVE,
+    NOT_COMPARABLE,
+    SEVERITY,
+    WITHIN,
+    Row,
+)
 
 COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
+
+
+# What a comparison means, by its state.
+CONCLUSIONS = {
+    EQUAL: "The runs agree within the tolerances of the lesson.",
+    WITHIN: "The runs agree within the tolerances of the lesson.",
+    INCONCLUSIVE: "Whether the runs agree is undecided: see the inconclusive lines above.",
+    DIFFERS: "The runs differ: an arrow leads from the old value to the new one.",
+    NOT_COMPARABLE: "The runs cannot be compared, for the reasons above.",
+}
+
+# Exit statuses; 1 for a difference, and for an undecided comparison.
+STATUS = {EQUAL: 0, WITHIN: 0, NOT_COMPARABLE: 2}
+
+SAME_QUESTION = (
+    "Engine, backend, settings and code are equal. Another processor can change the last "
+    "digits; a larger difference comes from a changed cell of the notebook. The check "
+    "`functions` fails if the test of a function did not pass."
+)
+
+
+def print_comparison(old: Path, new: Path, folder: Path | None = None) -> int:
+    """Compare two bundles, or archives of bundles, and print the result.
+
+    Args:
+        old: for a student, the site's run.
+        new: for a student, the own run.
+        folder: gets the whole report, None for none.
+
+    Returns:
+        0 they agree, 1 they differ or it is undecided, 2 they cannot be compared.
+    """
+    try:
+        comparison = compare(old, new)
+    except BundleRefused as refusal:
+        print(f"Not compared: {refusal}", file=sys.stderr)
+        return 2
+    print(summary(comparison), CONCLUSIONS[comparison.state], sep="\n")
+    if comparison.state == DIFFERS and comparison.axis == "repeat":
+        print(SAME_QUESTION)
+    if folder:
+        print(f"Report: {document(comparison).write(folder)}")
+    return STATUS.get(comparison.state, 1)
 
 
 def title(comparison: BundleComparison) -> str:
@@ -23,7 +77,7 @@ def verdict(comparison: BundleComparison) -> str:
     """Return the result in one sentence, and the number of rows in each state."""
     if comparison.obstacles:
         return "Not comparable."
-    rows = Counter(f.state for s in comparison.sections for f in s.rows)
+    rows = Counter(row.state for part in comparison.sections for row in part.rows)
     counts = ", ".join(
         f"{rows[state]} {state}" for state in reversed(SEVERITY) if state in rows
     )
@@ -39,8 +93,8 @@ def summary(comparison: BundleComparison) -> str:
     for part in comparison.sections:
         state = part.state if part.rows else part.empty
         lines.append(f"  {part.title.lower()}: {state}")
-        worst = [f for f in part.rows if f.state in (DIFFERS, INCONCLUSIVE)]
-        lines += [f"    {words(f)}" for f in worst]
+        worst = [row for row in part.rows if row.state in (DIFFERS, INCONCLUSIVE)]
+        lines += [f"    {words(row)}" for row in worst]
     return "\n".join(map(printable, [*lines, *comparison.notes]))
 
 
@@ -68,8 +122,9 @@ def document(comparison: BundleComparison) -> Document:
 
 def changes(comparison: BundleComparison) -> list[Cells]:
     """Return head and rows of all sections that are not equal, the worst rows first."""
-    found = [f for part in comparison.sections for f in part.rows if f.state != EQUAL]
-    return _table(sorted(found, key=lambda f: -SEVERITY.index(f.state)))
+    rows = [row for part in comparison.sections for row in part.rows]
+    unequal = [row for row in rows if row.state != EQUAL]
+    return _table(sorted(unequal, key=lambda row: -SEVERITY.index(row.state)))
 
 
 def _table(rows: Sequence[Row]) -> list[Cells]:

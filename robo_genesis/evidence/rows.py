@@ -17,7 +17,6 @@ from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import (
     Arrays,
-    JointRecord,
     Manifest,
     Metric,
     by_full_name,
@@ -140,25 +139,19 @@ def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
 
 def _content(side: Side) -> dict[str, str]:
     """Return each thing that a bundle has, with its description; names begin with the kind."""
-    return (
-        {f"case {name}": "present" for name in side.traces}
-        | {f"metric {name}": f"{m.unit}, {m.kind}" for name, m in side.numbers.items()}
-        | {f"check {name}": "present" for name in side.checks}
-        | {
-            f"axis {name}": ", ".join(labels)
-            for name, labels in side.arrays.coords.items()
-        }
-        | {f"joint {joint.name}": _joint_text(joint) for joint in side.arrays.joints}
-    )
-
-
-def _joint_text(joint: JointRecord) -> str:
-    lower, upper = (
-        "no limit" if limit is None else six_digits(limit, joint.unit)
-        for limit in (joint.lower, joint.upper)
-    )
-    places = f"DOF {joint.dof_idx_local}, qpos {joint.q_idx_local}"
-    return f"{joint.type_}, {places}, {lower} to {upper}"
+    content = {f"case {name}": "present" for name in side.traces}
+    content |= {f"check {name}": "present" for name in side.checks}
+    for name, metric in side.numbers.items():
+        content[f"metric {name}"] = f"{metric.unit}, {metric.kind}"
+    for name, labels in side.arrays.coords.items():
+        content[f"axis {name}"] = ", ".join(labels)
+    for joint in side.arrays.joints:
+        limits = (six_digits(limit, joint.unit) for limit in (joint.lower, joint.upper))
+        places = f"DOF {joint.dof_idx_local}, qpos {joint.q_idx_local}"
+        content[f"joint {joint.name}"] = (
+            f"{joint.type_}, {places}, {' to '.join(limits)}"
+        )
+    return content
 
 
 def invariants(old: Side, new: Side) -> Iterator[Row]:

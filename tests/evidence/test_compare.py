@@ -1,8 +1,9 @@
 import re
-import runpy
 import shutil
+import subprocess
 import sys
 from pathlib import Path
+from textwrap import dedent
 
 import numpy as np
 import pytest
@@ -15,7 +16,6 @@ from spoilers import (
     drop_case,
     facts,
     joint,
-    manifest,
     modules,
     part,
     pop,
@@ -25,6 +25,7 @@ from spoilers import (
     write,
 )
 
+from robo_genesis.__main__ import main
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import BundleRefused
@@ -44,7 +45,7 @@ same = facts()  # A change of nothing
 
 @pytest.fixture
 def compared(folder, other):
-    """Compare the two after the given changes of the second and of the first, sealed again."""
+    """Compare the two after changes of the second and of the first, sealed again."""
 
     def run(*changes, first=same, swap=False):
         both(first, seal)(folder)
@@ -60,7 +61,7 @@ def value(case, metric, new):
 
 
 def rows(comparison, title):
-    (section,) = (s for s in comparison.sections if s.title == title)
+    (section,) = (part for part in comparison.sections if part.title == title)
     return section.rows
 
 
@@ -69,52 +70,29 @@ UPGRADED = part("engine", version="9.9.9")
 
 
 @pytest.mark.parametrize(
-    ("spoiler", "axis"),
+    ("spoiler", "axis", "note"),
     [
-        (same, "repeat"),
-        (UPGRADED, rf"engine version .* → 9\.9\.9 \(quadrants {QUADRANTS}\)"),
-        (ACCELERATED, "backend cpu → cuda"),
+        (same, "repeat", "Both have the same run id"),
+        (UPGRADED, rf"engine version .* → 9\.9\.9 \(quadrants {QUADRANTS}\)", ""),
+        (ACCELERATED, "backend cpu → cuda", ""),
         (
-            part("source", modules={"metrics": "0" * 64}),
+            modules(metrics="0" * 64),
             "same engine and backend, other code",
+            "may be the cause: metrics.",
         ),
-        (joint(3, lower=-3.07180000001), "repeat"),  # equal but for the last digits
+        (facts(environment={"QD_DEBUG": "1"}), "repeat", "differ: none; QD_DEBUG=1."),
+        (facts(warnings=["New one."]), "repeat", "Engine warning gained: New one."),
+        (facts(warnings=[]), "repeat", "Engine warning lost: Approximating tendon."),
+        (part("host", cpu="another CPU"), "repeat", "The devices differ."),
     ],
 )
-def test_the_axis_names_what_differs(compared, spoiler, axis):
+def test_axis_and_notes_name_what_differs(compared, spoiler, axis, note):
     comparison = compared(spoiler)
     assert re.fullmatch(axis, comparison.axis)
-    assert (
-        {section.state for section in comparison.sections}
-        == {comparison.state}
-        == {"equal"}
-    )
+    assert note in " ".join(comparison.notes)
+    assert {part.state for part in comparison.sections} == {"equal"}
     assert len(rows(comparison, "Values")) == 4 * 9
     assert len(rows(comparison, "Arrays")) == 4 * 11
-
-
-@pytest.mark.parametrize(
-    ("spoiler", "note"),
-    [
-        (same, "Both have the same run id. One is a copy of the other, or was edited."),
-        (
-            facts(environment={"QD_DEBUG": "1", "GS_ENABLE_ZEROCOPY": "0"}),
-            "The switches of the engine differ: none; QD_DEBUG=1, GS_ENABLE_ZEROCOPY=0.",
-        ),
-        (modules(metrics="0" * 64), "The code differs and may be the cause: metrics."),
-        (facts(warnings=["New one."]), "Engine warning gained: New one."),
-        (
-            facts(warnings=["New one."]),
-            "Engine warning lost: Approximating tendon.",
-        ),
-        (part("backend", device_name="another CPU"), "The devices differ."),
-        (facts(git=None), "The new bundle was not recorded from a clean checkout."),
-    ],
-)
-def test_circumstances_are_noted_and_are_not_a_difference(compared, spoiler, note):
-    comparison = compared(spoiler)
-    assert note in comparison.notes
-    assert comparison.state == "equal"
 
 
 @pytest.mark.parametrize(
@@ -123,14 +101,8 @@ def test_circumstances_are_noted_and_are_not_a_difference(compared, spoiler, not
         (part("parameters", stepped_joint="joint2"), "parameters.stepped_joint"),
         (facts(seed=1), "The seed differs: 0 and 1"),
         (part("engine", precision="64"), "The precision differs: 32 and 64"),
-        (
-            part("backend", actual_at_end="cuda"),
-            "changed during the run, from cpu to cuda",
-        ),
-        (
-            both(ACCELERATED, UPGRADED),
-            "9.9.9 (quadrants " + QUADRANTS + ") and backend cpu → cuda",
-        ),
+        (part("backend", actual_at_end="cuda"), "changed during the run"),
+        (both(ACCELERATED, UPGRADED), ") and backend cpu → cuda"),
     ],
 )
 def test_another_question_or_a_second_axis_is_not_comparable(
@@ -138,7 +110,6 @@ def test_another_question_or_a_second_axis_is_not_comparable(
 ):
     comparison = compared(spoiler)
     assert (comparison.state, comparison.sections) == ("not comparable", ())
-    assert obstacle in " ".join(comparison.obstacles)
     assert obstacle in report.summary(comparison)
 
 
@@ -150,12 +121,7 @@ def limit(speed):
 @pytest.mark.parametrize(
     ("case", "metric", "new", "state"),
     [
-        (
-            "G1",
-            "initial_error",
-            lambda v: v + 5e-6,
-            "differs",
-        ),  # by the metric's own tolerance
+        ("G1", "initial_error", lambda v: v + 5e-6, "differs"),  # its own tolerance
         ("G1", "peak_speed", lambda v: v - 0.99 * limit(v), "within tolerance"),
         ("G1", "peak_speed", lambda v: v - 1.01 * limit(v), "differs"),
         ("G1", "settling_time", None, "differs"),
@@ -165,105 +131,66 @@ def limit(speed):
 @pytest.mark.parametrize("swap", [False, True])
 def test_values_agree_within_their_tolerance(compared, case, metric, new, state, swap):
     comparison = compared(value(case, metric, new), swap=swap)
-    assert comparison.state == state
-    row = rows(comparison, "Exact counts" if metric.endswith("samples") else "Values")[
-        0
-    ]
-    assert (row.what, row.state) == (f"{case}.{metric}", state)
+    title = "Exact counts" if metric.endswith("samples") else "Values"
+    row = rows(comparison, title)[0]
+    assert (comparison.state, row.state) == (state, state)
+    assert row.what == f"{case}.{metric}"
     assert ("not observed" in (row.old, row.new)) == (new is None)
-    assert (row.weight < 1) == (state == "within tolerance" or new is None)
 
 
 @pytest.mark.parametrize(
-    ("metric", "old", "new", "state", "verdict"),
+    ("old", "new", "state", "verdict"),
     [
-        ("peak_speed", (1.0, 2.0), (1.0, 2.0), "equal", "held in both"),
-        ("peak_speed", (2.0, 1.0), (1.0, 2.0), "differs", "flipped"),
-        ("peak_speed", (2.0, 1.0), (2.0, 1.0), "differs", "broken in both"),
-        ("peak_speed", (1.0, 2.0), (1.0, 1.04), "inconclusive", "inconclusive"),
-        ("peak_speed", (1.0, 0.96), (1.0, 1.04), "inconclusive", "inconclusive"),
-        (
-            "peak_speed",
-            (2.0, 1.0),
-            (1.0, 1.04),
-            "differs",
-            "broken in one, undecided in the other",
-        ),
-        ("peak_speed", (1.0, 2.0), (None, 1.0), "differs", "flipped"),
-        ("peak_speed", (1.0, 2.0), (1.0, None), "equal", "held in both"),
-        ("peak_speed", (1.0, 2.0), (None, None), "inconclusive", "inconclusive"),
-        # "no later" allows the same sample.
-        ("rise_time", (0.11, 0.11), (0.11, 0.10), "equal", "held in both"),
-        ("rise_time", (0.11, 0.11), (0.11, 0.12), "inconclusive", "inconclusive"),
+        ((1.0, 2.0), (1.0, 2.0), "equal", "held in both"),
+        ((2.0, 1.0), (1.0, 2.0), "differs", "flipped"),
+        ((2.0, 1.0), (2.0, 1.0), "differs", "broken in both"),
+        ((1.0, 2.0), (1.0, 1.04), "inconclusive", "inconclusive"),
+        ((2.0, 1.0), (1.0, 1.04), "differs", "broken in one, undecided in the other"),
+        ((1.0, 2.0), (None, 1.0), "differs", "flipped"),
+        ((1.0, 2.0), (None, None), "inconclusive", "inconclusive"),
     ],
 )
-def test_claimed_orderings(compared, metric, old, new, state, verdict):
+def test_claimed_orderings(compared, old, new, state, verdict):
     first, second = (
-        both(value("G1", metric, a), value("G2", metric, b)) for a, b in (old, new)
+        both(value("G1", "peak_speed", a), value("G2", "peak_speed", b))
+        for a, b in (old, new)
     )
     found = rows(compared(second, first=first), "Relations")
-    [row] = [row for row in found if row.what.startswith(f"{metric}: G2 ")]
+    [row] = [row for row in found if row.what.startswith("peak_speed: G2 ")]
     assert (row.state, row.what.partition(", ")[2]) == (state, verdict)
 
 
 without_g3 = both(drop_case, pop(METRICS, "G3"))
-LACKING = ("present", "missing")
+failed = check(3, passed=False)
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "title", "found"),
+    ("first", "second", "title", "what"),
     [
-        (
-            same,
-            without_g3,
-            "Coverage",
-            {"case G3": LACKING, "metric G3.overshoot": ("rad, value", "missing")},
-        ),
-        (without_g3, without_g3, "Coverage", {"case G3": ("missing", "missing")}),
-        (
-            same,
-            pop("manifest.json", "checks", -1),
-            "Coverage",
-            {"check functions": LACKING},
-        ),
+        (same, without_g3, "Coverage", "metric G3.overshoot"),
+        (without_g3, without_g3, "Coverage", "case G3"),
+        (same, pop("manifest.json", "checks", -1), "Coverage", "check functions"),
         (
             same,
             put(METRICS, "G1", "overshoot", unit="degree"),
             "Coverage",
-            {"metric G1.overshoot": ("rad, value", "degree, value")},
+            "metric G1.overshoot",
         ),
-        (
-            same,
-            joint(3, dof_idx_local=4, lower=None),
-            "Coverage",
-            {
-                "joint joint4": (
-                    "REVOLUTE, DOF 3, qpos 3, -3.0718 rad to -0.0698 rad",
-                    "REVOLUTE, DOF 4, qpos 3, no limit to -0.0698 rad",
-                )
-            },
-        ),
-        (
-            check(3, passed=False),
-            check(3, passed=False),
-            "Invariants",
-            {"baseline_approaches": ("FAILED", "FAILED")},
-        ),
+        (same, joint(3, lower=None), "Coverage", "joint joint4"),
+        (failed, failed, "Invariants", "baseline_approaches"),
         (
             same,
             part("engine", files_match_wheel=False),
             "Invariants",
-            {"engine files match the wheel": ("passed", "FAILED")},
+            "engine files match the wheel",
         ),
     ],
 )
-def test_what_one_or_both_sides_lack_differs(compared, first, second, title, found):
+def test_what_one_or_both_sides_lack_differs(compared, first, second, title, what):
     comparison = compared(second, first=first)
     assert comparison.state == "differs"
-    differing = {
-        f.what: (f.old, f.new) for f in rows(comparison, title) if f.state == "differs"
-    }
-    assert found.items() <= differing.items()
+    differing = [row for row in rows(comparison, title) if row.state == "differs"]
+    assert what in [row.what for row in differing]
 
 
 def added(place, amount):
@@ -272,140 +199,54 @@ def added(place, amount):
 
 
 @pytest.mark.parametrize(
-    ("fields", "state", "what", "delta", "allowed"),
-    [
-        (
-            {"qd": added((7, 3), 0.5)},
-            "differs",
-            "qd_rad_s_or_m_s[7, 3]",
-            "0.5 rad/s",
-            "rad/s",
-        ),
-        (
-            {"qd": added((7, 8), 0.5)},
-            "differs",
-            "qd_rad_s_or_m_s[7, 8]",
-            "0.5 m/s",
-            "m/s",
-        ),
-        (
-            {"qd": added((7, 3), 5e-4)},
-            "within tolerance",
-            "qd_rad_s_or_m_s[7, 3]",
-            "rad/s",
-            " ",
-        ),
-        (
-            {"link_quat": np.zeros_like},
-            "differs",
-            "link_quat_wxyz[0, 0, 0]",
-            "-1",
-            "0.0001",
-        ),
-    ],
+    ("amount", "state"), [(0.5, "differs"), (5e-4, "within tolerance")]
 )
-@pytest.mark.parametrize("swap", [False, True])
-def test_arrays_agree_within_their_tolerance(
-    compared, fields, state, what, delta, allowed, swap
-):
-    comparison = compared(rewrite(**fields), swap=swap)
+@pytest.mark.parametrize(("dof", "unit"), [(3, "rad/s"), (8, "m/s")])
+def test_arrays_agree_within_their_tolerance(compared, amount, state, dof, unit):
+    comparison = compared(rewrite(qd=added((7, dof), amount)))
     row = rows(comparison, "Arrays")[0]
-    assert (comparison.state, row.state, row.what) == (state, state, f"G1 {what}")
-    assert delta.removeprefix("-") in row.delta
-    assert allowed in row.allowed
+    assert (comparison.state, row.state) == (state, state)
+    assert row.what == f"G1 qd_rad_s_or_m_s[7, {dof}]"
+    assert row.delta.endswith(f" {unit}")
     assert (row.what in report.summary(comparison)) == (state == "differs")
 
 
-def test_arrays_without_a_tolerance_are_equal(compared, monkeypatch):
+def test_an_array_without_a_tolerance_is_equal_and_a_case_may_have_no_bound(
+    compared, monkeypatch
+):
+    spoiler = rewrite(q=added((7, 3), 1e-6), qd=added((7, 3), 0.5))
     monkeypatch.setattr(l04, "TOLERANCES", {"rad/s": (1.0, 0.0)})
-    comparison = compared(rewrite(q=added((7, 3), 1e-6), qd=added((7, 3), 0.5)))
-    first, second, *others = rows(comparison, "Arrays")
+    first, second, *others = rows(compared(spoiler), "Arrays")
     assert (first.state, first.allowed) == ("differs", "0 rad")
     assert (second.state, second.allowed) == ("within tolerance", "1 rad/s")
     assert {row.state for row in others} == {"equal"}
+    monkeypatch.setattr(l04, "TOLERANCES", {"G1": (np.inf, 0.0)})
+    assert compared().state == "within tolerance"
 
 
-def test_a_case_may_have_no_bound_and_its_largest_difference_is_named(
-    compared, monkeypatch
-):
-    monkeypatch.setattr(l04, "TOLERANCES", l04.TOLERANCES | {"G1": (np.inf, 0.0)})
-    faster = value("G1", "peak_speed", lambda v: v + 2 * limit(v))
-    comparison = compared(rewrite(q=added((7, 3), 1)), faster)
-    assert comparison.state == "within tolerance"
-    assert rows(comparison, "Values")[0].what == "G1.peak_speed"
-    assert rows(comparison, "Arrays")[0].what == "G1 q_rad_or_m[7, 3]"
+def test_performance_is_shown_and_decides_nothing(compared):
+    record = {"unit": "steps/s", "class": "performance", "from": ["clock"]}
+    slow, fast = (
+        put(METRICS, "G1", speed=record | {"value": steps}) for steps in (10.0, 100.0)
+    )
+    comparison = compared(slow, first=fast)
+    (row,) = rows(comparison, "Performance")
+    assert (row.old, row.new, row.state) == ("100 steps/s", "10 steps/s", "shown")
+    assert comparison.state == "equal"
 
 
 @pytest.mark.parametrize(
     ("spoiler", "said"),
     [
         (write(METRICS, "{}"), "digest: {}: metrics.json: sha256 is"),
-        (
-            both(facts(lesson="l02"), seal),
-            "is of l04/lab, {} of l02/lab. Give two bundles",
-        ),
-        (
-            both(facts(lesson="l99"), seal),
-            "lesson: Lesson 'l99' does not exist. Choices: l01",
-        ),
+        (both(facts(lesson="l02"), seal), "is of l04/lab, {} of l02/lab. Give two"),
+        (both(facts(lesson="l99"), seal), "lesson: Lesson 'l99' does not exist."),
     ],
 )
-def test_bundles_are_bounded_as_for_the_verifier_and_of_one_page(
-    folder, other, spoiler, said
-):
+def test_bundles_are_whole_and_of_one_page(folder, other, spoiler, said):
     spoiler(other)
     with pytest.raises(BundleRefused, match=said.format(other)):
         compare(folder, other)
-
-
-@pytest.fixture
-def command(monkeypatch, capsys):
-    """Run the command; return its exit status and what it printed, to both streams."""
-
-    def run(*arguments):
-        monkeypatch.setattr(
-            sys, "argv", ["compare.py", "--report", *map(str, arguments)]
-        )
-        with pytest.raises(SystemExit) as ended:
-            runpy.run_path(
-                str(ROOT / "build_scripts" / "compare.py"), run_name="__main__"
-            )
-        return ended.value.code, "".join(capsys.readouterr())
-
-    return run
-
-
-ODD = "\x1b[2J\nEqual. Rows: \u202e"
-
-
-@pytest.mark.parametrize(
-    "spoiler",
-    [
-        manifest(lambda m: m.update({ODD: 1})),
-        part("parameters", **{ODD: {ODD: 1}}),
-        facts(warnings=["New one.\nEqual. Rows: 9"]),
-    ],
-)
-def test_nothing_of_a_bundle_controls_the_terminal(
-    folder, other, command, spoiler, tmp_path
-):
-    both(spoiler, seal)(other)
-    _, printed = command(tmp_path / "report", folder, other)
-    assert all(c.isprintable() for c in printed.replace("\n", ""))
-    assert "\nEqual. Rows: 9" not in printed
-    written = [path.read_text() for path in (tmp_path / "report").glob("*")]
-    assert not {*ODD[:1], ODD[-1]} & {*"".join(written)}
-
-
-def test_performance_is_shown_and_decides_nothing(compared):
-    of = {"unit": "steps/s", "class": "performance", "from": ["clock"]}
-    slow, fast = (
-        put(METRICS, "G1", speed=of | {"value": steps}) for steps in (10.0, 100.0)
-    )
-    comparison = compared(slow, first=fast)
-    (row,) = rows(comparison, "Performance")
-    assert (row.old, row.new, row.state) == ("100 steps/s", "10 steps/s", "shown")
-    assert comparison.state == "equal"
 
 
 def test_the_report_is_worst_first_and_keeps_words_as_words(compared):
@@ -420,61 +261,72 @@ def test_the_report_is_worst_first_and_keeps_words_as_words(compared):
     order = [SEVERITY.index(section.state) for section in unlike.sections]
     assert len(set(order)) > 2
     ranks = [
-        [(SEVERITY.index(row.state), row.weight) for row in of.rows]
-        for of in unlike.sections
+        [(SEVERITY.index(row.state), row.weight) for row in part.rows]
+        for part in unlike.sections
     ]
     assert all(of == sorted(of, reverse=True) for of in [order, *ranks])
     text = report.summary(unlike)
-    assert text.splitlines()[1].startswith("Differs. Rows: ")
     assert "G2.final_error: " in text
-    assert "overshoot: G2 higher than G1, inconclusive" in text
     page = report.document(unlike).markdown()
     assert "- Engine warning gained: \\<b\\>1 \\| 2\\</b\\> \\# see https" in page
     table = [line for line in page.splitlines() if line.startswith("|")]
     assert {len(re.findall(r"(?<!\\)\|", line)) for line in table} <= {4, 5, 6, 7}
 
 
-def faster(by):
-    return value("G3", "peak_speed", lambda speed: speed + by)
-
-
 alike = both(value("G1", "peak_speed", 3.0), value("G2", "peak_speed", 3.0))
+faster = value("G3", "peak_speed", lambda speed: speed + 0.1)
 
 
 @pytest.mark.parametrize(
     ("old", "new", "status", "said"),
     [
-        (same, same, 0, "Equal. Rows: "),
-        (same, faster(0.0001), 0, "Within tolerance. Rows: "),
-        (same, faster(0.1), 1, "Differs. Rows: "),
-        (alike, alike, 1, "Inconclusive. Rows: "),
-        (same, facts(seed=1), 2, "Not comparable."),
+        (same, same, 0, "same run id"),
+        (same, faster, 1, "a changed cell of the notebook"),
+        (alike, alike, 1, "is undecided: see the inconclusive lines"),
+        (same, facts(seed=1), 2, "The seed differs: 0 and 1"),
+        (same, facts(page="lecture"), 2, "Give two bundles of the same page"),
     ],
 )
-def test_the_exit_status_and_the_report(
-    folder, other, command, tmp_path, old, new, status, said
+def test_the_command_compares_with_an_archive_and_writes_a_report(
+    folder, other, tmp_path, capsys, old, new, status, said
 ):
     both(old, seal)(folder)
     both(new, seal)(other)
-    code, printed = command(tmp_path / "a report", folder, other)
-    assert (code, printed.splitlines()[1][: len(said)]) == (status, said)
-    assert sorted(p.name for p in (tmp_path / "a report").iterdir()) == ["report.md"]
-    assert f"Report: {tmp_path / 'a report' / 'report.md'}" in printed
+    archive = shutil.make_archive(str(tmp_path / "site"), "zip", folder)
+    written = tmp_path / "a report"
+    assert main(["compare", archive, str(other), "--report", str(written)]) == status
+    assert said in "".join(capsys.readouterr())
+    assert (written / "report.md").is_file() == (said[:8] != "Give two")
 
 
-def test_what_cannot_be_compared_or_written_exits_2(
-    folder, other, command, no_file, tmp_path
+def test_what_is_no_bundle_is_refused_with_what_is_valid(other, tmp_path, capsys):
+    (tmp_path / "notes.txt").write_text("no bundle")
+    for given in ("nowhere", str(tmp_path / "notes.txt")):
+        assert main(["compare", given, str(other)]) == 2
+        assert "neither a folder nor a zip archive" in capsys.readouterr().err
+
+
+def test_the_commands_for_teachers_grade_each_student_and_leave_the_bundles(
+    folder, tmp_path
 ):
-    (other / "metrics.json").write_text("{}")
-    report = tmp_path / "report"
-    for arguments, said in (
-        ((report, folder, other), f"Refused: digest: {other}: metrics.json"),
-        ((report, "", folder), "OLD='' is not a folder. Usage: make compare"),
-        (
-            (no_file.parent, folder, folder),
-            f"REPORT={no_file.parent} cannot be written: ",
-        ),
-    ):
-        code, printed = command(*arguments)
-        assert (code, printed[: len(said)]) == (2, said)
-    assert not report.exists()
+    """The block of ADOPTING.md, run twice: its output must not become a part of a bundle."""
+    text = (ROOT / "ADOPTING.md").read_text()
+    [block] = re.findall(r"(?m)^    mkdir -p compared\n(?:    .*\n)+", text)
+    work = tmp_path / "course"
+    for place in ("submitted/ada", "submitted/bob lee", "book/_build/evidence/l04/cpu"):
+        shutil.copytree(folder, work / place)
+    (work / "submitted/bob lee/notes.txt").write_text("not listed")
+    python = work / ".venv/bin/python"
+    python.parent.mkdir(parents=True)
+    python.write_text(
+        f"#!/bin/sh\nPYTHONPATH='{ROOT}' exec '{sys.executable}' \"$@\"\n"
+    )
+    python.chmod(0o755)
+    for _ in range(2):
+        command = ["bash", "-c", dedent(block)]
+        done = subprocess.run(
+            command, cwd=work, capture_output=True, text=True, check=True
+        )
+        assert done.stdout.splitlines() == ["ada 0", "bob lee 2"]
+    assert "The runs agree" in (work / "compared/ada.txt").read_text()
+    assert "notes.txt" in (work / "compared/bob lee.txt").read_text()
