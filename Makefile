@@ -76,8 +76,8 @@ lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l09)
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
 	@$(COURSE) serve $(call options,PORT)
 
-live: $(ENVIRONMENT) ## show the book on localhost while it is written (PORT=8000 EXECUTE=1)
-	@$(COURSE) live $(call options,EXECUTE PORT RENDER SOLUTIONS)
+live: $(ENVIRONMENT) ## show the book on localhost while it is written (PORT=8000)
+	@$(COURSE) live $(call options,PORT RENDER SOLUTIONS)
 
 home-picture: ## renew the README's picture from the built site (needs Debian's chromium)
 	@chromium --headless --no-sandbox --hide-scrollbars --window-size=1280,900 --virtual-time-budget=5000 \

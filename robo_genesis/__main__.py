@@ -20,7 +20,6 @@ from robo_genesis.pipeline.command import TIMEOUT, run
 def book(options: Namespace) -> Sequence[str] | int:
     """Measure every lesson on CPU, verify, render and check the site."""
     from robo_genesis.pipeline import release, up_to_date
-    from robo_genesis.pipeline.html.sphinx_process import LOG, SphinxProcess
 
     set_environment(options)
     is_release = options.release == "1"
@@ -29,22 +28,15 @@ def book(options: Namespace) -> Sequence[str] | int:
     if is_release and options.to is None:
         return release.build(options)
     published = options.book / PUBLISHED
-    with SphinxProcess(options.book, options.cache / LOG) as sphinx:
-        if not is_release and (
-            lines := up_to_date.nothing_changed(ROOT, options.book, published)
-        ):
-            return lines
-        from robo_genesis.pipeline.stages import Build, run_build
+    if not is_release and (
+        lines := up_to_date.nothing_changed(ROOT, options.book, published)
+    ):
+        return lines
+    from robo_genesis.pipeline.stages import Build, run_build
 
-        return run_build(
-            Build(
-                **folders(options),
-                jobs=options.jobs,
-                release=is_release,
-                to=options.to,
-                sphinx=sphinx,
-            )
-        )
+    return run_build(
+        Build(**folders(options), jobs=options.jobs, release=is_release, to=options.to)
+    )
 
 
 def execute(options: Namespace) -> Sequence[str]:
@@ -114,15 +106,10 @@ def serve(options: Namespace) -> int:
 
 def live(options: Namespace) -> int:
     """Show the book on localhost while it is written."""
-    import asyncio
-
-    from robo_genesis.pipeline.html.live import Live
-    from robo_genesis.pipeline.html.live import serve as serve_live
+    from robo_genesis.pipeline.html.render import live as run_live
 
     set_environment(options)
-    shown = Live(**folders(options), execute=options.execute == "1")
-    asyncio.run(serve_live(shown, options.port))
-    return 0
+    return run_live(options.port, options.book, options.cache)
 
 
 def lock(options: Namespace) -> Sequence[str]:
@@ -219,12 +206,7 @@ COMMANDS: dict[Callable[..., Any], tuple[str, dict[str, dict[str, Any]]]] = {
     serve: ("served", {"--book": FOLDERS["--book"], "--port": PORT}),
     live: (
         "shown",
-        FOLDERS
-        | SITE
-        | {
-            "--port": PORT,
-            "--execute": {**SWITCH, "help": "1: run changed pages"},
-        },
+        FOLDERS | SITE | {"--port": PORT},
     ),
     lock: (
         "written",

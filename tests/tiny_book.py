@@ -113,7 +113,8 @@ def make_book(folder: Path, **pages: str) -> Path:
     chapters = [{"file": name} for name in pages]
     toc = {"format": "jb-book", "root": "index", "chapters": chapters}
     (book / "_toc.yml").write_text(yaml.safe_dump(toc))
-    shutil.copy(BOOK / "_config.yml", book)
+    for name in ("conf.py", "_config.yml"):
+        shutil.copy(BOOK / name, book)
     shutil.copytree(BOOK / "_static", book / "_static", dirs_exist_ok=True)
     return book
 

@@ -1,5 +1,6 @@
 """The packages that come from npm, by lock file: viewer and math font, and tools of the tests.
 
+npm compares each package with the digest in the lock before it unpacks it.
 Node.js and npm themselves come from PyPI, so a machine needs nothing but Python.
 """
 
@@ -15,15 +16,6 @@ from robo_genesis.pipeline.command import output_of
 
 LOCK = ("package.json", "package-lock.json")
 SETTINGS = ".npmrc"
-
-DIGESTS = Path(__file__).with_suffix(".sha256")
-# What the site ships, by its place in `node_modules`, with its SHA-256, from a file as
-# `sha256sum` writes it. The lock holds digests of archives, which npm compares while it
-# unpacks them; these are those of the unpacked files.
-PUBLISHED = {
-    name: digest
-    for digest, name in map(str.split, DIGESTS.read_text("utf8").splitlines())
-}
 
 
 def node() -> Path:
@@ -69,39 +61,13 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
     return installed / "node_modules"
 
 
-def published(name: str, root: Path = ROOT, cache: Path = CACHE) -> bytes:
-    """Return a file of `PUBLISHED` after comparing it with its digest.
-
-    If the cache holds another content, the packages are fetched again, once.
+def published(name: str) -> bytes:
+    """Return a file of the packages.
 
     Args:
-        name: place of the file in `node_modules`.
-        root: see `packages`.
-        cache: see `packages`.
-
-    Raises:
-        ProjectError: the fetched file differs as well, or npm failed.
+        name: its place in `node_modules`.
     """
-    for attempt in (1, 2):
-        file = packages(root, cache) / name
-        content = file.read_bytes() if file.is_file() else b""
-        digest = hashlib.sha256(content).hexdigest()
-        if digest == PUBLISHED[name]:
-            return content
-        if attempt == 1:
-            print(f"{file} is not the locked file: fetching all packages anew")
-            shutil.rmtree(packages(root, cache).parent)
-    raise ProjectError(
-        f"npm's file {name} has the digest {digest}, expected is {PUBLISHED[name]}. If "
-        "package-lock.json names a new version, read what changed in the file and write its "
-        "digest into robo_genesis/pipeline/npm.sha256."
-    )
-
-
-def require_published() -> None:
-    """Fetch the packages if they are missing, and compare what the site ships with its digests."""
-    for name in PUBLISHED:
-        published(name)
+    return (packages() / name).read_bytes()
 
 
 def locked(name: str, root: Path = ROOT) -> dict[str, str]:

@@ -7,9 +7,7 @@ import yaml
 from tiny_book import cell, make_book, notebook, paragraphs
 
 from robo_genesis.pipeline.html.archive import pack
-from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.page_folder import write_page
@@ -78,10 +76,10 @@ def executed(pages: list[Page], folder: Path) -> list[PageResult]:
     return results
 
 
-def draft_of(book: Path, folder: Path, results: list[PageResult]) -> Draft:
-    """Render a book."""
-    sphinx = SphinxProcess(book, folder / "render.log")
-    return render(sphinx, folder / "staging", PageIndex.of(results))
+def rendered(folder: Path, results: list[PageResult], place: str = "render") -> Path:
+    """Render the book of a folder below it, and return the folder of the pages."""
+    built = PageIndex.of(results)
+    return render(folder / "book", folder / place, built, folder / "render.log")
 
 
 def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Path:
@@ -90,9 +88,9 @@ def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Pa
     results = [
         as_executed(page, store / page.docname, seconds[page.docname]) for page in pages
     ]
-    draft = draft_of(book, folder, results)
-    pack(draft.html)
-    return draft.html
+    html = rendered(folder, results)
+    pack(html)
+    return html
 
 
 def render_small_book(folder: Path) -> Path:

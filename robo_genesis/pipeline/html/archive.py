@@ -2,14 +2,11 @@
 
 import hashlib
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import BinaryIO
 
 from bs4 import BeautifulSoup
-
-from robo_genesis.core.files import derived, write_whole
-from robo_genesis.core.project import ProjectError
 
 # The archive's place in the site, for the link of the home page: unpack it, open
 # `index.html`.
@@ -30,21 +27,15 @@ SUMS = "SHA256SUMS"
 
 
 def pack(html: Path) -> Path:
-    """Put the archive of a site into the site.
+    """Put the archive of a complete site into the site, and return its file.
 
     Args:
-        html: the folder of the complete site, before its checks: they include links to
-            the archive.
-
-    Returns:
-        The archive. The same files make the same bytes.
+        html: the folder of the site.
     """
-    archive = html / ARCHIVE
-    archive.parent.mkdir(exist_ok=True)
-    files = sorted(
-        path for path in html.rglob("*") if path.is_file() and path != archive
-    )
+    files = sorted(path for path in html.rglob("*") if path.is_file())
     names = (f"{FOLDER}/{path.relative_to(html).as_posix()}" for path in files)
+    archive = html / ARCHIVE
+    archive.parent.mkdir()
     write_zip(archive, zip(names, map(content, files), strict=True))
     return archive
 
@@ -65,41 +56,24 @@ def content(path: Path) -> bytes:
     data = path.read_bytes()
     if path.suffix != ".html" or OFFER[1:].encode() not in data:
         return data
-
-    def without_offer() -> bytes:
-        page = BeautifulSoup(data, "html.parser")
-        for offer in page.select(OFFER):
-            offer.decompose()
-        return page.encode()
-
-    return derived("offline", [data, Path(__file__).read_bytes()], without_offer)
+    page = BeautifulSoup(data, "html.parser")
+    for offer in page.select(OFFER):
+        offer.decompose()
+    return page.encode()
 
 
-def write_sums(html: Path, known: Mapping[str, str]) -> Path:
+def write_sums(html: Path) -> Path:
     """Write the digests of a complete site into the site; return the file.
 
     Args:
-        html: the folder of the site with its archive. The archive holds no SHA256SUMS:
-            its pages differ from the site's by the offer of the archive, and its own
+        html: the folder of the site with its archive, which has no SHA256SUMS: its own
             digest is in the file.
-        known: digests by name of the file; the other files are read.
-
-    Raises:
-        ProjectError: a file is a link, or its name has a character that `sha256sum`
-            would escape.
     """
-    lines = []
-    for path in sorted(
-        html.rglob("*"), key=lambda path: path.relative_to(html).as_posix()
-    ):
-        name = path.relative_to(html).as_posix()
-        if path.is_symlink() or set(name) & set("\\\n\r"):
-            raise ProjectError(
-                f"The site's file {name!r} is a link, or has a backslash or a new line in its "
-                f"name. {SUMS} lists plain files with plain names. Rename or copy it."
-            )
-        if path.is_file() and name != SUMS:
-            digest = known.get(name) or hashlib.sha256(path.read_bytes()).hexdigest()
-            lines.append(f"{digest}  {name}\n")
-    write_whole(html / SUMS, "".join(lines).encode())
+    files = {
+        path.relative_to(html).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in html.rglob("*")
+        if path.is_file()
+    }
+    lines = (f"{digest}  {name}\n" for name, digest in sorted(files.items()))
+    (html / SUMS).write_text("".join(lines), "utf8")
     return html / SUMS

@@ -2,15 +2,13 @@
 
 import os
 import shutil
-import tempfile
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robo_genesis.core.files import replaced
-from robo_genesis.core.project import PUBLISHED, STAGING
-from robo_genesis.pipeline.html.draft import Draft
+from robo_genesis.core.project import PUBLISHED
+from robo_genesis.pipeline.html.archive import pack, write_sums
 
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
     from robo_genesis.pipeline.pages.results import PageResult
@@ -20,28 +18,11 @@ PAGES = (
 )
 
 
-def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
-    """Copy the bundles of executed pages into a draft.
-
-    Args:
-        draft: bundles of pages named `lab` become `evidence/<lesson>/<backend>` in its
-            folder, others `pages/<lesson>/<page>/<backend>`.
-        results: the executed pages.
-
-    Raises:
-        OSError: a bundle cannot be read.
-    """
-    for result in results:
-        if result.bundle is not None:
-            lesson, page = str(result.page.lesson), str(result.page.page)
-            own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
-            shutil.copytree(
-                result.bundle, draft.folder.joinpath(*own, result.bundle.name)
-            )
-
-
 def publish(
-    book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None
+    book: Path,
+    rendered: Path,
+    results: Iterable["PageResult"],
+    finish: Callable[[Path], None],
 ) -> Path:
     """Replace the published site and its pages' bundles by new ones, which everybody may read.
 
@@ -49,39 +30,40 @@ def publish(
 
     Args:
         book: the folder that holds `_build`.
-        folder: the site, rendered and checked, and the bundles; it is moved away.
-        finish: called with the complete folder before it is put in place.
+        rendered: the pages as Sphinx wrote them.
+        results: the executed pages, whose bundles are published beside the site.
+        finish: called with the complete folder before it is put in place; what it
+            raises leaves the old site.
 
     Returns:
         The folder of the published site's HTML.
-
-    Raises:
-        OSError: nothing is changed.
     """
-    with replaced(book / PUBLISHED) as following:
-        shutil.move(folder, following)
-        finish(following)
-        for here, _, files in os.walk(following):
+    with replaced(book / PUBLISHED) as site:
+        # Sphinx's note for its next build
+        html = shutil.copytree(
+            rendered, site / "html", ignore=shutil.ignore_patterns(".buildinfo")
+        )
+        add_bundles(site, results)
+        pack(html)
+        write_sums(html)
+        finish(site)
+        for here, _, files in os.walk(site):
             os.chmod(here, 0o755)
             for name in files:
                 os.chmod(os.path.join(here, name), 0o644)
     return book / PUBLISHED / "html"
 
 
-@contextmanager
-def staging_folder(cache: Path) -> Iterator[Path]:
-    """Make the folder in which one build renders; remove it in the end.
-
-    The build lock must be held: folders of killed builds are removed first. A process
-        that a killed
-    build left would write into its own folder and not into this one.
+def add_bundles(site: Path, results: Iterable["PageResult"]) -> None:
+    """Copy the bundles of executed pages into a folder.
 
     Args:
-        cache: folder of the caches.
+        site: bundles of pages named `lab` become `evidence/<lesson>/<backend>` in it,
+            others `pages/<lesson>/<page>/<backend>`.
+        results: the executed pages.
     """
-    for left in cache.glob(f"{STAGING}*"):
-        shutil.rmtree(left, ignore_errors=True)
-    with tempfile.TemporaryDirectory(
-        prefix=f"{STAGING}-", dir=cache, ignore_cleanup_errors=True
-    ) as own:
-        yield Path(own)
+    for result in results:
+        if result.bundle is not None:
+            lesson, page = str(result.page.lesson), str(result.page.page)
+            own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
+            shutil.copytree(result.bundle, site.joinpath(*own, result.bundle.name))

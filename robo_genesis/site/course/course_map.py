@@ -90,6 +90,7 @@ class MapDirective(PageDirective):
         """
         book = Path(self.env.srcdir)
         self.env.note_dependency(str(book / FILE))
+        self.env.note_reread()  # it shows titles, times and pictures of other pages
         lessons = read_map(book)
         gone = [x.page for x in lessons if x.page and x.page not in self.env.found_docs]
         if gone:

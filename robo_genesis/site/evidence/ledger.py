@@ -51,6 +51,7 @@ class Ledger(PageDirective):
         part = self.arguments[0]
         if part not in ("runs", "items"):
             raise ValueError("the choices are runs and items.")
+        self.env.note_reread()
         return [ledger_part(part=part)]
 
 

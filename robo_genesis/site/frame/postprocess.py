@@ -6,7 +6,6 @@ flashes.
 
 import re
 import shutil
-from html import unescape
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
@@ -14,13 +13,10 @@ from urllib.parse import unquote, urlsplit
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
-from robo_genesis.core import palette
-from robo_genesis.core.files import derived
+from robo_genesis.pipeline.html.checks import POLICY
 from robo_genesis.site.figures import drawings
-from robo_genesis.site.frame import accessibility, style_sheets
+from robo_genesis.site.frame import accessibility
 
-# The modules that change a page, and the colours that they use.
-CHANGES = (accessibility, drawings, style_sheets, palette)
 # Jupyter Book and the theme load every script on all pages; these are needed only where
 # a selector matches. No page needs `fontawesome.js`: the icons come from a font.
 NEEDED_BY = {
@@ -60,9 +56,6 @@ CHOOSE_THEME = """
 
 TITLE = "page-title"  # The anchor of a title that has no other
 
-# A picture of a page; a finished page contains its size.
-IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
-
 
 def note_page(
     app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
@@ -83,9 +76,6 @@ def finish_site(app: Sphinx, error: Exception | None) -> None:
         for page in sorted(written(app)):
             path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
             path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
-        style_sheets.join_sheets(
-            Path(app.outdir)
-        )  # it looks for the names in all finished pages
     written(app).clear()
 
 
@@ -96,28 +86,24 @@ def finish_page(html: str, folder: Path) -> str:
         html: the page as the theme wrote it.
         folder: the folder that the page's addresses are relative to.
     """
+    page = BeautifulSoup(html, "html.parser")
+    accessibility.make_accessible(page)
+    accessibility.stack_tables(page)
+    drawings.inline_drawings(page, folder)
+    drop_idle_scripts(page)
+    defer_scripts(page)
+    choose_theme(page)
+    wait_for_the_title(page)
+    place_images(page, folder)
+    forbid_other_hosts(page)
+    return str(page)
 
-    def make() -> bytes:
-        page = BeautifulSoup(html, "html.parser")
-        accessibility.make_accessible(page)
-        accessibility.stack_tables(page)
-        drawings.inline_drawings(page, folder)
-        drop_idle_scripts(page)
-        defer_scripts(page)
-        choose_theme(page)
-        wait_for_the_title(page)
-        place_images(page, folder)
-        style_sheets.link_joined(page)
-        return str(page).encode()
 
-    images = [
-        folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)
-    ]
-    sources = (Path(module.__file__ or "") for module in CHANGES)
-    files = [path for path in (*images, *sources, Path(__file__)) if path.is_file()]
-    return derived(
-        "finished", [html.encode(), *(path.read_bytes() for path in files)], make
-    ).decode()
+def forbid_other_hosts(page: BeautifulSoup) -> None:
+    """Let the browser itself refuse whatever would be loaded from another host."""
+    policy = {"http-equiv": "Content-Security-Policy", "content": POLICY}
+    if page.head:
+        page.head.insert(0, page.new_tag("meta", attrs=policy))
 
 
 def drop_idle_scripts(page: BeautifulSoup) -> None:

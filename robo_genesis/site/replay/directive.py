@@ -34,7 +34,6 @@ from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import bullets, html, image, marked
 from robo_genesis.site.figures.case_labels import labelled
-from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
@@ -183,7 +182,6 @@ def leave_model(
     folder, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
     for file, content in ((f"{name}.glb", model), (f"{name}.js", script)):
         write_whole(folder / file, content)
-        note_files(env, folder / file)
     weight = round(
         sum(len(gzip.compress(of)) for of in (script, viewer.viewer())) / 1000
     )

@@ -9,11 +9,10 @@ from pathlib import Path
 from sphinx.application import Sphinx
 
 from robo_genesis.pipeline import npm
-from robo_genesis.pipeline.html.scripts import VIEWER
-from robo_genesis.site.frame.incremental import REPLAYS
 
 # Folder of the site; Jupyter Book would load every script of `_static` on every page.
-FOLDER = REPLAYS
+FOLDER = "replay"
+VIEWER = "model-viewer.js"
 
 VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
 NOTICE = "NOTICE.txt"

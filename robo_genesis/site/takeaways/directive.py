@@ -19,7 +19,6 @@ from sphinx.util.osutil import relative_uri
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.site.evidence.plain_nodes import bullets
-from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.takeaways.files import (
     Takeaways,
@@ -28,6 +27,7 @@ from robo_genesis.site.takeaways.files import (
     write_takeaways,
 )
 
+TAKEAWAYS = "takeaways"  # Folder of the site
 ADDRESS = re.compile(r"https://(?P<host>[\w.-]+)/(?P<name>[\w.-]+/[\w.-]+)")
 
 # Returns the link to a file with an optional text, and its size.
@@ -47,9 +47,6 @@ class TakeawaysBox(PageDirective):
         )
         self.env.note_dependency(self.env.doc2path(page.docname, base=False))
         found = write_takeaways(page, files, self.config)
-        note_files(
-            self.env, found.wheel, found.constraints, *found.student.parent.iterdir()
-        )
         links = partial(
             link, relative_uri(f"{self.env.docname}.html", TAKEAWAYS), files
         )

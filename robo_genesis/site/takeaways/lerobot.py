@@ -46,9 +46,8 @@ from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.evidence.plain_nodes import bullets
 from robo_genesis.site.figures.explorer import Recorded
-from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.takeaways.directive import link
+from robo_genesis.site.takeaways.directive import TAKEAWAYS, link
 from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
 FILE = "chunk-000/file-000"  # The only file of each kind
@@ -92,7 +91,6 @@ class DatasetDownload(PageDirective):
             files / f"{lesson}-dataset" / f"{lesson_page.replace('/', '-')}-lerobot.zip"
         )
         write_whole(file, made)
-        note_files(self.env, file)
         base = relative_uri(f"{self.env.docname}.html", TAKEAWAYS)
         digest = hashlib.sha256(made).hexdigest()
         return [

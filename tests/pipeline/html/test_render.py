@@ -1,17 +1,19 @@
-import signal
-import subprocess
-import sys
-import time
+"""Sphinx shows executed pages; what it keeps makes no page differ from a render from nothing."""
 
-import psutil
+import re
+import shutil
+from pathlib import Path
+
+import nbformat
 import pytest
+import yaml
 from built_site import parsed
-from small_book import draft_of, executed
-from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
+from small_book import as_executed, executed, rendered
+from tiny_book import WRITE_BUNDLE, cell, contents, make_book, notebook, paragraphs
 
 from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.results import PageResult
 
 CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
 LAB = "robo_genesis: {lesson: l04, page: lab}\n"
@@ -35,13 +37,9 @@ def html(tmp_path_factory):
     results = executed(find_pages(book), folder)
     text = (book / "page.md").read_text()
     (book / "page.md").write_text(text.replace("cell}", "cell}\n:tags: [hide-input]"))
-    (folder / "staging").mkdir()
-    (folder / "staging" / "stale").touch()
     with pytest.MonkeyPatch.context() as patch:
         patch.delenv("SITE_URL", raising=False)
-        html = draft_of(book, folder, results).html
-    assert not (folder / "staging" / "stale").exists()
-    return html
+        return rendered(folder, results)
 
 
 def test_metadata_come_from_the_page_and_outputs_from_the_store(html):
@@ -67,28 +65,99 @@ def test_without_an_address_nothing_claims_one(html):
 def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
     """A page that the execution stage has not seen would leave a file behind if it were run."""
     trace, front = tmp_path / "was executed", "mystnb: {execution_mode: force}\n"
-    book = make_book(
-        tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front)
-    )
-    with pytest.raises(
-        ProjectError, match=r"page\.md is not executed, and Sphinx executes"
-    ):
-        draft_of(book, tmp_path, [])
+    make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
+    said = r"page\.md is not executed, and Sphinx executes"
+    with pytest.raises(ProjectError, match=said):
+        rendered(tmp_path, [])
     assert not trace.exists()
 
 
-FORKS = "import os, time; os.fork() or time.sleep(60); time.sleep(60)"
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
+FIGURE = "```{figure} a.svg\n:name: %s\nA drawing\n```"
+MAP = {"id": "L01", "title": "One", "page": "law", "outcomes": ["go"]}
+PAGES = {
+    "glossary": "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n",
+    "law": "# Law\n\n(spring)=\n## The spring\n\nA gain of two.\n",
+    "text": "# Text\n\nSee [](law.md) and {ref}`spring`.\n",
+    "drawn": paragraphs("# Drawn", FIGURE % "drawn", "$$\nF = k x\n$$ (force)"),
+    "citing": "# Citing\n\nSee {numref}`drawn` and {eq}`force`.\n",
+    "map": "# Map\n\n```{course-map}\n```\n",
+    "times": "# Times\n\n```{cell-times}\n```\n",
+    "run": notebook(cell("print(7)")),
+    "extra": "# Extra\n\nMore.\n",
+}
 
 
-def test_a_child_of_sphinx_does_not_outlive_it(tmp_path):
-    """A child keeps the pipe open, for which an interrupted build would wait."""
-    sphinx = SphinxProcess.__new__(SphinxProcess)
-    how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    sphinx.process = subprocess.Popen(
-        [sys.executable, "-c", FORKS], start_new_session=True, **how
-    )
-    with sphinx:
-        while not (below := psutil.Process(sphinx.process.pid).children()):
-            time.sleep(0.05)
-    assert sphinx.process.returncode == -signal.SIGKILL
-    assert psutil.wait_procs(below, timeout=30)[1] == []
+def run_of(folder: Path, printed: str, seconds: float) -> list[PageResult]:
+    """Return the book's executed page with an output, without a run."""
+    (page,) = find_pages(folder / "book")
+    (code,) = (c for c in page.notebook.cells if c.cell_type == "code")
+    code.outputs = [nbformat.v4.new_output("stream", name="stdout", text=printed)]
+    return [as_executed(page, folder / f"run {printed}", [seconds])]
+
+
+def replace(page: Path, *pairs: tuple[str, str]) -> None:
+    for old, new in pairs:
+        assert old in page.read_text()
+        page.write_text(page.read_text().replace(old, new))
+
+
+def edit_pages(book: Path) -> None:
+    """Edit prose, a title, a term, numbers and the map, which other pages show."""
+    replace(book / "law.md", ("of two", "of three"), ("# Law", "# Hooke's law"))
+    replace(book / "glossary.md", ("A factor", "A ratio"))
+    replace(book / "drawn.md", ("# Drawn", f"# Drawn\n\n{FIGURE % 'first'}"))
+    replace(book / "course_map.yml", ("title: One", "title: First"))
+
+
+def edit_contents(book: Path) -> None:
+    """Remove a page, add one, and change a script."""
+    (book / "extra.md").rename(book / "added.md")
+    replace(book / "_toc.yml", ("extra", "added"))
+    (book / "_static/choice.js").write_text("1")
+
+
+def test_each_edit_gives_the_pages_of_a_render_from_nothing(tmp_path):
+    book = make_book(tmp_path, **PAGES)
+    (book / "a.svg").write_text(DRAWING)
+    (book / "course_map.yml").write_text(yaml.safe_dump([MAP]))
+    results = run_of(tmp_path, "seven", 1.0)
+    rendered(tmp_path, results)
+    read = []
+    for edit in (edit_pages, edit_contents, None):
+        if edit:
+            edit(book)
+        else:
+            results = run_of(tmp_path, "eight", 2.0)
+        found = contents(rendered(tmp_path, results))
+        log = (tmp_path / "render.log").read_text()
+        read.append(re.search(r"(\d+) added, (\d+) changed", log).groups())
+        shutil.rmtree(tmp_path / "cold", ignore_errors=True)
+        cold = contents(rendered(tmp_path, results, "cold"))
+        pages = [name for name in cold if name.endswith(".html")]
+        assert [name for name in pages if found.get(name) != cold[name]] == []
+    assert read == [("0", "4"), ("1", "9"), ("10", "0")]
+
+
+def test_the_figures_of_each_page_are_numbered_from_one(tmp_path):
+    pages = {
+        name: paragraphs(f"# {name}", FIGURE % f"{name}-a", FIGURE % f"{name}-b")
+        for name in ("one", "two")
+    }
+    (make_book(tmp_path, **pages) / "a.svg").write_text(DRAWING)
+    html = rendered(tmp_path, [])
+    for name in pages:
+        shown = (html / f"{name}.html").read_text()
+        assert re.findall(r"Fig. (\d)", shown) == ["1", "2"]
+
+
+def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
+    book = make_book(tmp_path, text="# Text\n\nWords.\n", other="# Other\n")
+    rendered(tmp_path, [])
+    replace(book / "text.md", ("Words.", "{doc}`nowhere`"))
+    for _ in range(2):
+        with pytest.raises(ProjectError, match=r"text\.md:3.*nowhere"):
+            rendered(tmp_path, [])
+    replace(book / "text.md", ("{doc}`nowhere`", "Good words."))
+    assert "Good words." in (rendered(tmp_path, []) / "text.html").read_text()
+    assert "0 added, 1 changed" in (tmp_path / "render.log").read_text()

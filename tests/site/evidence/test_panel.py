@@ -19,7 +19,6 @@ from robo_genesis.evidence import bundle, recorder, replay_data, report
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
-from robo_genesis.pipeline.html.checks import QUOTING
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import ledger as sphinx_ledger
 from robo_genesis.site.evidence import ledger_data, measured, provenance
@@ -219,8 +218,6 @@ def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, stat
     panel = Panel(tmp_path / "book").panel(PageRun("l04/lab", run.folder, status, True))
     text = f"No figures from amdgpu for Genesis {project.engine_pin()} (amdgpu-{state}). Why."
     assert panel.astext().startswith(text)
-    quoting = panel, sphinx_ledger.run_block("", run), measured.status_list([status])
-    assert all({*node["classes"]} & {*QUOTING} for node in quoting)
     shown = (nodes.image, nodes.table, nodes.raw, nodes.bullet_list)
     assert not [n for n in panel.findall(nodes.Element) if isinstance(n, shown)]
 

@@ -5,7 +5,7 @@ from built_site import parsed
 from docutils import nodes
 from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
-from small_book import draft_of, executed
+from small_book import executed, rendered
 from tiny_book import (
     LAB_FRONT,
     WRITE_BUNDLE,
@@ -83,7 +83,7 @@ def html(tmp_path_factory):
     book = make_book(
         folder, **pages, **{"evidence/ledger": "# Ledger\n\n```{ledger} items\n```\n"}
     )
-    return draft_of(book, folder, executed(find_pages(book), folder)).html
+    return rendered(folder, executed(find_pages(book), folder))
 
 
 def lines_and_rows(html, name):

@@ -4,7 +4,7 @@ import re
 
 import pytest
 import yaml
-from small_book import draft_of, executed
+from small_book import executed, rendered
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, paragraphs
 
 from robo_genesis.core.project import ProjectError
@@ -76,7 +76,7 @@ def report(tmp_path_factory):
     (book / "innocent.svg").symlink_to(frame)
     results = executed(find_pages(book), folder)
     with pytest.raises(ProjectError) as caught:
-        draft_of(book, folder, results)
+        rendered(folder, results)
     assert str(folder / "render.log") in str(caught.value)
     return str(caught.value)
 
