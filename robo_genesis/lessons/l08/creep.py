@@ -34,50 +34,47 @@ SCAN = {name: {of: value} for of, row in SCANS.items() for name, value in row.it
 # less.
 ROW = {name: SCAN[name] for name in ("base", "mu_03", "mu_2", "m_09", "m_15")}
 
-SHALLOW = {
-    name: own for name, own in ROW.items() if name != "mu_2"
-}  # Which would sink in by 5 mm
+# Without the box that would sink in by 5 mm.
+SHALLOW = {name: own for name, own in ROW.items() if name != "mu_2"}
 
 
 def side_by_side(
-    of: Mapping[str, Mapping[str, float]], **common: Any
+    boxes: Mapping[str, Mapping[str, float]], prefix: str = "", **common: Any
 ) -> dict[str, HeldCase]:
-    """Return grippers in a row along y."""
-    cases = enumerate(of.items())
+    """Return grippers in a row along y, with a prefix before their names."""
     return {
-        n: HeldCase(place=round(0.1 * k, 1), **{**common, **own})
-        for k, (n, own) in cases
+        prefix + name: HeldCase(place=round(0.1 * k, 1), **common | {**own})
+        for k, (name, own) in enumerate(boxes.items())
     }
 
 
-def scene(name: str, of: Mapping[str, Mapping[str, float]] = ROW, **common: Any) -> Any:
-    """Return a scene by its name; its cases have that name before theirs."""
-    return {
-        name: side_by_side({f"{name}_{one}": own for one, own in of.items()}, **common)
-    }
+# Settings of each other scene; most have the boxes of `ROW`.
+SETTINGS: dict[str, dict[str, Any]] = {
+    "plain": {},
+    "T_5ms": {"time_constant": 0.005},
+    "T_20ms": {"time_constant": 0.02},
+    "h_1ms": {"substeps": 10},
+    "iterations_500": {"iterations": 500},
+    "elliptic_1": {"cone": "elliptic", "impratio": 1.0},
+    "elliptic_10": {"cone": "elliptic", "impratio": 10.0},
+    "elliptic": {"cone": "elliptic"},
+    "pyramid_10": {"impratio": 10.0},
+    "pyramid_100": {"impratio": 100.0},
+    "noslip_5": {"noslip": 5},
+}
 
 
 # Mass whose weight is µN [kg].
 LIGHT = HeldCase().friction * HeldCase().force / HeldCase().gravity
 
-LONG = {"long": side_by_side({"long": {}}, dt=0.1, substeps=40, duration=10.0)}
-
 # The runs in Genesis, by scene.
-SCENES: dict[str, dict[str, HeldCase]] = (
-    LONG
-    | {"scan": side_by_side(SCAN)}
-    | scene("plain")
-    | scene("T_5ms", time_constant=0.005)
-    | scene("T_20ms", SHALLOW, time_constant=0.02)
-    | scene("h_1ms", substeps=10)
-    | scene("iterations_500", iterations=500)
-    | scene("elliptic_1", cone="elliptic", impratio=1.0)
-    | scene("elliptic_10", cone="elliptic", impratio=10.0)
-    | scene("elliptic", cone="elliptic")
-    | scene("pyramid_10", impratio=10.0)
-    | scene("pyramid_100", impratio=100.0)
-    | scene("noslip_5", noslip=5)
-)
+SCENES = {
+    "long": side_by_side({"long": {}}, dt=0.1, substeps=40, duration=10.0),
+    "scan": side_by_side(SCAN),
+} | {
+    name: side_by_side(SHALLOW if name == "T_20ms" else ROW, f"{name}_", **settings)
+    for name, settings in SETTINGS.items()
+}
 
 CASES = {n: case for of in SCENES.values() for n, case in of.items()}
 

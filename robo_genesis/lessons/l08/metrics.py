@@ -80,23 +80,23 @@ def good(trace: Episodes, case: PickCase) -> np.ndarray:
     return reached(trace, case) == len(RUNGS)
 
 
+# Arrays from which the rungs follow, up to the rung of the same name.
+HELD = ("phase", "force_N")
+CARRIED = (*HELD, "object_pos_m")
+RELEASED = (*CARRIED, "touches")
+
+
 @dataclass(frozen=True, slots=True)
 class EpisodesMetrics(CaseMetrics):
     """How many episodes reach each rung, and how many other words would count."""
 
     planned: float = metric("1", "planned", "phase")
-    held: float = metric("1", "held", "phase", "force_N")
-    lifted: float = metric("1", "lifted", "phase", "force_N", "object_pos_m")
-    carried: float = metric("1", "carried", "phase", "force_N", "object_pos_m")
-    released: float = metric(
-        "1", "released", "phase", "force_N", "object_pos_m", "touches"
-    )
-    contained: float = metric(
-        "1", "contained", "phase", "force_N", "object_pos_m", "touches"
-    )
-    resting: float = metric(
-        "1", "success", "phase", "force_N", "object_pos_m", "touches"
-    )
+    held: float = metric("1", "held", *HELD)
+    lifted: float = metric("1", "lifted", *CARRIED)
+    carried: float = metric("1", "carried", *CARRIED)
+    released: float = metric("1", "released", *RELEASED)
+    contained: float = metric("1", "contained", *RELEASED)
+    resting: float = metric("1", "success", *RELEASED)
     finished: float = metric("1", "all phases done", "phase")
     raised_once: float = metric("1", "lifted at some time", "object_pos_m")
     in_bowl: float = metric(
@@ -106,17 +106,7 @@ class EpisodesMetrics(CaseMetrics):
     hanging: float = metric(
         "1", "of these, above the rim and touched", "object_pos_m", "touches"
     )
-    upper: float = metric(
-        "1",
-        "success among the half with larger y",
-        "phase",
-        "force_N",
-        "object_pos_m",
-        "touches",
-    )
-    off_centre: float = metric(
-        "m", "median distance from the bowl's axis", "object_pos_m"
-    )
+    upper: float = metric("1", "success among the half with larger y", *RELEASED)
     short: float = metric(
         "m", "pads nearer to the base than believed", "q_rad_or_m", "phase"
     )
@@ -133,22 +123,17 @@ class EpisodesMetrics(CaseMetrics):
 def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
     """Count episodes of one batch."""
     level, passed = reached(trace, case), rungs(trace, case)
-    rise, apart = (
-        trace.object_pos[..., 2] - trace.object_pos[0, :, 2],
-        off_axis(trace, case),
-    )
-    over = apart[-1] < CENTRED
+    rise = trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
+    over = off_axis(trace, case)[-1] < CENTRED
+    hanging = (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)
     values = [
         *((level > k).sum() for k in range(len(RUNGS))),
         (trace.phase[-1] == DONE).sum(),
         (rise.max(axis=0) >= RAISED).sum(),
         passed["contained"].sum(),
         over.sum(),
-        (
-            over & (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)
-        ).sum(),
+        (over & hanging).sum(),
         (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
-        np.median(apart[-1]),
         np.median(case.beliefs[:, 0] - at_closing(trace)[:, 0]),
         *grip(trace, level > RUNGS.index("carried")),
     ]
