@@ -1,6 +1,6 @@
 """Named checks of L06."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -46,18 +46,15 @@ def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
         for number, position in enumerate(world.positions):
             q = run.traces[name].target[-number]  # the first command, or the last
             apart, angle = distance_and_angle(Pose(position, world.quat), hand_pose(q))
-            label = f"{name}.target_{number}"
-            yield at_most(f"{label}.residual_m", apart, most + spec.SAME_POSE[0])
-            yield at_most(
-                f"{label}.residual_rad", angle, angle_most + spec.SAME_POSE[1]
-            )
+            label = f"{name}.target_{number}.residual"
+            yield at_most(f"{label}_m", apart, most + spec.SAME_POSE[0])
+            yield at_most(f"{label}_rad", angle, angle_most + spec.SAME_POSE[1])
     for k, (name, residual) in enumerate(run.readings["mixed"].items()):
         beyond = bool((spec.MIXED[k] == spec.BEYOND_REACH).all())
         expected = study.residual(spec.MIXED[k], run.joints)
-        tolerance = spec.SAME_RESIDUAL * max(
-            1.0, 4 * expected
-        )  # a float32 has seven digits
-        yield within(f"mixed.{name}", residual, expected, tolerance)
+        # A float32 has seven digits.
+        room = spec.SAME_RESIDUAL * max(1.0, 4 * expected)
+        yield within(f"mixed.{name}", residual, expected, room)
         accepted = run.readings["mixed_accepted"][f"env_{k}"]
         yield equal(f"mixed.row_{k}_accepted", accepted, int(not beyond))
         if beyond:
@@ -132,13 +129,11 @@ def old_forces_after_a_reset(run: Experiment) -> Iterator[Finding]:
     for k in spec.LATER:
         before, after, later = (found[f"force_{k}_{when}"] for when in study.WHEN)
         yield above(f"row_{k}.force_before_N", before, 50.0)
-        yield equal(
-            f"row_{k}.neither_old_nor_zero_N", min(after, abs(after - before)), 0.0
-        )
+        neither = min(after, abs(after - before))
+        yield equal(f"row_{k}.neither_old_nor_zero_N", neither, 0.0)
         yield equal(f"row_{k}.force_one_step_later_N", later, 0.0)
-        yield equal(
-            f"row_{k}.joint_forces_that_changed", found[f"joints_{k}_changed"], 0
-        )
+        changed = found[f"joints_{k}_changed"]
+        yield equal(f"row_{k}.joint_forces_that_changed", changed, 0)
 
 
 def answers_depend_on_the_row(run: Experiment) -> Iterator[Finding]:
@@ -155,12 +150,15 @@ def sweep_repeats_the_runs(run: Experiment) -> Iterator[Finding]:
     recorded, to 0.01 mm.
     """
     for name, robot in spec.SWEPT.items():
-        m, most, row = run.metrics[name], spec.RESOLUTION["m"], spec.SWEEP[robot]
-        ends, passed = (
-            run.readings[f"sweep_{what}"][row] for what in ("end", "overshoot")
-        )
-        yield within(f"{name}.final_distance_m", ends, m.final_distance, most)
-        yield within(f"{name}.overshoot_m", passed, m.overshoot, most)
+        m, room = run.metrics[name], spec.RESOLUTION["m"]
+        end, passed = (sweep[spec.SWEEP[robot]] for sweep in swept(run))
+        yield within(f"{name}.final_distance_m", end, m.final_distance, room)
+        yield within(f"{name}.overshoot_m", passed, m.overshoot, room)
+
+
+def swept(run: Experiment) -> tuple[Mapping[str, float], Mapping[str, float]]:
+    """Return by robot of the sweep the distance at the end and the overshoot [m]."""
+    return run.readings["sweep_end"], run.readings["sweep_overshoot"]
 
 
 def price_of_stiffness(run: Experiment) -> Iterator[Finding]:
@@ -172,15 +170,12 @@ def price_of_stiffness(run: Experiment) -> Iterator[Finding]:
     m = run.metrics
     share = m["unlimited_robot"].overshoot / m["stiff_robot"].overshoot
     yield below("share_of_the_overshoot_without_limits", share, 0.1)
-    ends, passed = (run.readings[f"sweep_{what}"] for what in ("end", "overshoot"))
+    ends, passed = swept(run)
     for load in spec.LOADS:
         plain, stiff = (spec.SWEEP[kp, 1.0, load] for kp in (1.0, 2.0))
-        yield within(
-            f"load_{load:g}.share_of_the_distance", ends[stiff] / ends[plain], 0.5, 0.05
-        )
-        yield above(
-            f"load_{load:g}.added_overshoot_m", passed[stiff] - passed[plain], 0.02
-        )
+        share, added = ends[stiff] / ends[plain], passed[stiff] - passed[plain]
+        yield within(f"load_{load:g}.share_of_the_distance", share, 0.5, 0.05)
+        yield above(f"load_{load:g}.added_overshoot_m", added, 0.02)
 
 
 def stiffest_fail(run: Experiment) -> Iterator[Finding]:
@@ -189,9 +184,7 @@ def stiffest_fail(run: Experiment) -> Iterator[Finding]:
     """
     for (kp, kv, load), name in spec.SWEEP.items():
         if kp >= 8 and load == 0:
-            worst = max(
-                run.readings[f"sweep_{what}"][name] for what in ("end", "overshoot")
-            )
+            worst = max(sweep[name] for sweep in swept(run))
             yield above(f"kp_{kp:g}_kv_{kv:g}.worse_of_both_m", worst, 5e-3)
 
 

@@ -23,11 +23,7 @@ MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 class WorldMetrics(CaseMetrics):
     """Where the hand began and ended, and whether it moved after the second command was sent."""
 
-    start_distance: float = metric("m", "start to first target", *MEASURED)
     residual: float = metric("m", "last command to its target", *COMMANDED)
-    residual_angle: float = metric(
-        "rad", "last command to its target, angle", *COMMANDED
-    )
     first_distance: float = metric("m", "first target after 1.8 s", *MEASURED)
     final_distance: float = metric(
         "m",
@@ -52,13 +48,11 @@ def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:
         IndexError: the trace lacks the hand, or ends before its second command.
     """
     first, last = (Pose(world.positions[k], world.quat) for k in (0, -1))
-    start, switched = (measured_hand(trace, k) for k in (0, world.switch))
     hand = trace.link_pos[:, HAND].astype(np.float64)
     apart = np.linalg.norm(hand[world.switch :] - hand[world.switch], axis=1)
     return WorldMetrics(  # in the order of its fields
-        distance_and_angle(first, start)[0],
-        *distance_and_angle(last, hand_pose(trace.target[-1])),
-        distance_and_angle(first, switched)[0],
+        distance_and_angle(last, hand_pose(trace.target[-1]))[0],
+        distance_and_angle(first, measured_hand(trace, world.switch))[0],
         *distance_and_angle(last, measured_hand(trace, -1)),
         passed_by(hand[: world.switch + 1], first.position),
         float(apart.max()) if len(apart) > 1 else None,

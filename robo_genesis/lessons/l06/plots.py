@@ -11,7 +11,7 @@ from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import Environment
-from robo_genesis.lessons.l06.text import fits, sizes
+from robo_genesis.lessons.l06.text import fits, steps
 from robo_genesis.lessons.l06.throughput import FITTED, GROUP
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import HAND
@@ -51,12 +51,12 @@ MEASURED = look("first", marker="o", markersize=4)
 
 def times(run: Experiment, name: str) -> FloatArray:
     """Return one kind of reading for each number of environments [s]."""
-    return np.array([run.readings[GROUP][f"{name}_{size}"] for size in sizes(run)])
+    return np.array([run.readings[GROUP][f"{name}_{size}"] for size in steps(run)])
 
 
 def of_environments(ax: Axes, run: Experiment, title: str, ylabel: str) -> None:
     """Make both axes logarithmic and label them: numbers of environments to the right."""
-    shown = [size for size in sizes(run) if size.bit_count() == 1]  # powers of two
+    shown = [size for size in steps(run) if size.bit_count() == 1]  # powers of two
     plotting.log_axis(ax, shown, "number of environments B")
     ax.set(yscale="log", ylabel=ylabel)
     plotting.legend_above(ax, title)
@@ -64,8 +64,8 @@ def of_environments(ax: Axes, run: Experiment, title: str, ylabel: str) -> None:
 
 def throughput(run: Experiment) -> Figure:
     """Draw the steps of all environments in a second, and proportional growth."""
-    figure, numbers = plotting.figure(3.6), np.array(sizes(run))
-    ax, step = figure.subplots(), times(run, "step")
+    (figure, ax), numbers = plotting.axes(3.6), np.array([*steps(run)])
+    step = times(run, "step")
     ax.plot(numbers, numbers / step[0], label="B times the first", **THEORY)
     ax.plot(numbers, numbers / step, label="measured", **MEASURED)
     slow, fast = (numbers / times(run, name) for name in ("slowest", "fastest"))
@@ -77,18 +77,12 @@ def throughput(run: Experiment) -> Figure:
 
 def model(run: Experiment) -> Figure:
     """Draw the measured time of a step, and the range of the models."""
-    figure, numbers = plotting.figure(3.8), np.array(sizes(run))
-    ax, step, known = (
-        figure.subplots(),
-        1000 * times(run, "step"),
-        np.isin(numbers, FITTED),
-    )
+    (figure, ax), numbers = plotting.axes(3.8), np.array([*steps(run)])
+    step, known = 1000 * times(run, "step"), np.isin(numbers, FITTED)
     fine = np.geomspace(numbers[0], numbers[-1], 60)
     models = [1000 * one.step_time(fine) for one in fits(run)]
-    band = {"color": THEORY["color"], "alpha": 0.3, "linewidth": 0}
-    ax.fill_between(
-        fine, np.min(models, axis=0), np.max(models, axis=0), label="models", **band
-    )
+    band = {"color": THEORY["color"], "alpha": 0.3, "linewidth": 0, "label": "models"}
+    ax.fill_between(fine, np.min(models, axis=0), np.max(models, axis=0), **band)
     dots = MEASURED | {"linestyle": "none", "markersize": 5}
     ax.plot(numbers[known], step[known], label="in the fits", **dots)
     ax.plot(numbers[~known], step[~known], label="predicted", fillstyle="none", **dots)

@@ -1,6 +1,6 @@
 """What L06 reads beside its runs, and how it compares two of them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -53,6 +53,13 @@ LECTURE_READINGS = {
 }
 
 
+def named(
+    names: Iterable[str], values: Iterable[Any], kind: Callable[[Any], Any] = float
+) -> dict[str, Any]:
+    """Return readings by name, each as a number of Python."""
+    return dict(zip(names, map(kind, values), strict=True))
+
+
 def read_mixed(page: Any, robot: Any) -> IkAnswer:
     """Ask a question with a target beyond reach; give a page its residuals and verdicts."""
     world = replace(spec.FIRST, settings=spec.ONE_START)
@@ -60,12 +67,8 @@ def read_mixed(page: Any, robot: Any) -> IkAnswer:
     answer = ask(robot, page.joints, worlds)
     apart, _ = kinematics.distances(answer.error)
     verdicts = kinematics.accepted(answer.q, answer.error, *spec.ONE_START.tolerances)
-    page.readings["mixed"] = dict(
-        zip(READINGS["mixed"].units, map(float, apart), strict=True)
-    )
-    page.readings["mixed_accepted"] = dict(
-        zip(spec.WORLDS, map(int, verdicts), strict=True)
-    )
+    page.readings["mixed"] = named(READINGS["mixed"].units, apart)
+    page.readings["mixed_accepted"] = named(spec.WORLDS, verdicts, int)
     return answer
 
 
@@ -96,9 +99,8 @@ def record(page: Any, scene: Any, robot: Any, camera: Any) -> None:
     worlds = list(spec.WORLDS.values())
     start(scene, robot, page.joints, worlds)
     page.capture(camera, "initial")
-    page.traces |= dict(
-        zip(spec.WORLDS, reach(scene, robot, page.joints, worlds), strict=True)
-    )
+    runs = reach(scene, robot, page.joints, worlds)
+    page.traces |= dict(zip(spec.WORLDS, runs, strict=True))
     page.capture(camera, "final")
 
 
@@ -128,12 +130,9 @@ def record_variants(page: Any, scene: Any, robot: Any) -> None:
     loaded = [row for row, world in enumerate(worlds) if world.load]
     heavy = np.array([spec.HAND_MASS + worlds[row].load for row in loaded])
     masses = set_link_mass(robot, END_EFFECTOR, heavy, loaded)
-    page.readings["hand_mass"] = dict(
-        zip(spec.VARIANTS, map(float, masses), strict=True)
-    )
-    page.traces |= dict(
-        zip(spec.VARIANTS, reach(scene, robot, page.joints, worlds), strict=True)
-    )
+    page.readings["hand_mass"] = named(spec.VARIANTS, masses)
+    runs = reach(scene, robot, page.joints, worlds)
+    page.traces |= dict(zip(spec.VARIANTS, runs, strict=True))
     set_link_mass(robot, END_EFFECTOR, np.full(len(loaded), spec.HAND_MASS), loaded)
 
 
@@ -152,34 +151,26 @@ def read_equality(page: Any, scene: Any, robot: Any, alone: Any, single: Any) ->
     ordered = reach(scene, robot, page.joints, [worlds[k] for k in spec.ORDER])
     permuted = [(rows[k], ordered[j]) for j, k in enumerate(spec.ORDER)]
     each = [(rows[k], reach(alone, single, joints, [worlds[k]])[0]) for k in spec.ENVS]
-    found = [compared(permuted), compared(again), compared(each)]
+    values = [*compared(permuted), *compared(again), *compared(each)]
     for settings in (spec.ONE_START, spec.IK):
         question = replace(spec.FIRST, positions=spec.RESTARTED, settings=settings)
         q = ask(robot, page.joints, [question] * len(spec.ENVS)).q
-        differ = q[1:] != q[0]
-        found.append(
-            (differ.size, int(differ.sum()), float(np.abs(q[1:] - q[0]).max()))
-        )
+        apart = np.abs(q[1:] - q[0])
+        values += [apart.size, int(np.count_nonzero(apart)), float(apart.max())]
     height = min(row.link_pos[-1, kinematics.HAND, 2] for row in rows)
-    values = [
-        *(value for of in found for value in of),
-        height,
-        *np.ravel(forces[:-1]),
-        *changed,
-    ]
-    page.readings[EQUALITY] = dict(
-        zip(LECTURE_READINGS[EQUALITY].units, map(float, values), strict=True)
-    )
+    values += [float(height), *np.ravel(forces[:-1]).tolist(), *changed.tolist()]
+    page.readings[EQUALITY] = named(LECTURE_READINGS[EQUALITY].units, values)
 
 
-def compared(pairs: Sequence[tuple[Trace, Trace]]) -> tuple[int, int, float]:
+def compared(pairs: Sequence[tuple[Trace, Trace]]) -> list[float]:
     """Return the values of `COMPARED` for some pairs of runs."""
-    counted = [entries_that_differ(*pair) for pair in pairs]
-    apart = max(
-        largest_differences(*pair, slice(kinematics.ARM))["q"] for pair in pairs
-    )
-    differ, of = (sum(column) for column in zip(*counted, strict=True))
-    return of, differ, apart
+    differ, numbers = np.sum([entries_that_differ(*pair) for pair in pairs], axis=0)
+    arm = slice(kinematics.ARM)
+    return [
+        int(numbers),
+        int(differ),
+        max(largest_differences(*pair, arm)["q"] for pair in pairs),
+    ]
 
 
 def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
@@ -217,9 +208,16 @@ def largest_differences(
 
 
 def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:
-    """Return by claim the pairs of runs that must be equal to the last bit."""
-    copies = {"permuted": spec.PERMUTED, "beside": spec.BESIDE, "again": spec.AGAIN}
-    found = {
-        claim: [(n, f"env_{n[-1]}") for n in names] for claim, names in copies.items()
+    """Return by claim the pairs of runs that are compared; all but `alone` must be equal."""
+    groups = {
+        "permuted": spec.PERMUTED,
+        "beside": spec.BESIDE,
+        "again": spec.AGAIN,
+        "plain": ("plain_robot",),
+        "alone": spec.ALONE,
     }
-    return found | {"plain": [("plain_robot", "env_0")]}
+    worlds = {"plain_robot": "env_0"}
+    return {
+        claim: [(name, worlds.get(name, f"env_{name[-1]}")) for name in names]
+        for claim, names in groups.items()
+    }

@@ -7,11 +7,14 @@ each run.
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 
+import numpy as np
+
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.text import bullets, decimal, listed
 from robo_genesis.lessons.l06 import spec, study
+from robo_genesis.lessons.l06.checks import swept
 from robo_genesis.lessons.l06.throughput import ENDS, FITTED, GROUP, PARTS
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 from robo_genesis.sim.throughput import Model, fit
@@ -34,9 +37,7 @@ def mixed_table(run: Experiment) -> Iterator[dict[str, str]]:
     for k, (residual, accepted) in enumerate(zip(*found, strict=True)):
         yield {
             "row": f"{k}",
-            "target [m]": ", ".join(f"{value:g}" for value in spec.MIXED[k]).replace(
-                "-", "−"
-            ),
+            "target [m]": "{:g}, {:g}, {:g}".format(*spec.MIXED[k]).replace("-", "−"),
             "position residual [mm]": mm(residual, 3),
             "the row is": "accepted" if accepted else "**refused**",
         }
@@ -44,19 +45,17 @@ def mixed_table(run: Experiment) -> Iterator[dict[str, str]]:
 
 def row_table(run: Experiment) -> str:
     """Return residual and distances of each environment."""
-    shown = {
-        "residual of the last command [mm]": ("residual", 3),
-        "first target after 1.8 s [mm]": ("first_distance", 2),
-        "last target at the end [mm]": ("final_distance", 2),
-        "motion after 1.8 s [mm]": ("moved_later", 2),
+    heads = {
+        "residual of the last command [mm]": 3,
+        "first target after 1.8 s [mm]": 2,
+        "last target at the end [mm]": 2,
+        "motion after 1.8 s [mm]": 2,
     }
-    rows = {
-        spec.LABELS[name]: [
-            1e3 * getattr(run.metrics[name], of) for of, _ in shown.values()
-        ]
-        for name in spec.WORLDS
-    }
-    heads = {head: digits for head, (_, digits) in shown.items()}
+    rows = {}
+    for name in spec.WORLDS:
+        m = run.metrics[name]
+        metres = m.residual, m.first_distance, m.final_distance, m.moved_later
+        rows[spec.LABELS[name]] = 1e3 * np.array(metres)
     return tables.number_table("run", heads, rows)
 
 
@@ -67,9 +66,7 @@ def sweep_table(run: Experiment) -> Iterator[dict[str, str]]:
         row = {"KP ×": f"{kp:g}"}
         for kv in spec.FACTORS:
             name = spec.SWEEP[kp, kv, 0.0]
-            passed, end = (
-                1e3 * run.readings[f"sweep_{of}"][name] for of in ("overshoot", "end")
-            )
+            end, passed = (1e3 * sweep[name] for sweep in swept(run))
             row[f"KV × {kv:g}"] = f"{passed:.0f} / {end:.0f}"
         yield row
 
@@ -99,16 +96,15 @@ CLAIMED = {
 
 def equality_table(run: Experiment) -> str:
     """Return how many numbers differ, and by how much, where two runs could be equal."""
-    names = {**study.pairs(), "alone": [(f"env_{k}", f"alone_{k}") for k in spec.ENVS]}
-    found: dict[str, tuple[float, ...]] = {
+    found = {
         claim: study.compared(
             [(run.traces[one], run.traces[other]) for one, other in pairs]
         )
-        for claim, pairs in names.items()
+        for claim, pairs in study.pairs().items()
     }
     measured = run.readings.get(study.EQUALITY, {})
     for claim in study.READ if measured else ():
-        found[claim] = (*(measured[f"{claim}_{what}"] for what in study.COMPARED),)
+        found[claim] = [measured[f"{claim}_{what}"] for what in study.COMPARED]
     rows = {}
     for claim, (numbers, differ, apart) in found.items():
         large = f"{apart:.2f} rad" if apart > 0.1 else f"{three(1e6 * apart)} µrad"
@@ -120,19 +116,21 @@ def equality_table(run: Experiment) -> str:
 def variant_table(run: Experiment) -> str:
     """Return gains, mass, torques and distances of four robots with one target."""
     torques = [f"torque of joint{k + 1} (computed) [N·m]" for k in SHOWN_TORQUES]
-    heads = {"KP of joint2 [N·m/rad]": 0, "mass of the hand [kg]": 2}
-    heads |= dict.fromkeys(torques, 2) | {
+    heads = {
+        "KP of joint2 [N·m/rad]": 0,
+        "mass of the hand [kg]": 2,
+        **dict.fromkeys(torques, 2),
         "ends from target [mm]": 2,
         "passes it by [mm]": 1,
     }
     rows = {}
     for name, world in spec.VARIANTS.items():
         trace, m = run.traces[name], run.metrics[name]
-        expected = mujoco_kinematics.gravity_effort(
-            trace.q[-1].astype(float), world.load
-        )
-        pairs = [(trace.control_force[-1, k], expected[k]) for k in SHOWN_TORQUES]
-        both = [f"{decimal(found, 2)} ({decimal(right, 2)})" for found, right in pairs]
+        q, force = trace.q[-1].astype(float), trace.control_force[-1]
+        expected = mujoco_kinematics.gravity_effort(q, world.load)
+        both = [
+            f"{decimal(force[k], 2)} ({decimal(expected[k], 2)})" for k in SHOWN_TORQUES
+        ]
         first = world.kp[1], run.readings["hand_mass"][name], *both
         rows[spec.LABELS[name]] = *first, 1e3 * m.final_distance, 1e3 * m.overshoot
     return tables.number_table("robot", heads, rows)
@@ -140,25 +138,24 @@ def variant_table(run: Experiment) -> str:
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs."""
-    m = run.metrics
-    accepted = ends(name for name, is_ in run.readings["mixed_accepted"].items() if is_)
+    m, verdicts = run.metrics, run.readings["mixed_accepted"]
+    accepted = ends(name for name, verdict in verdicts.items() if verdict)
     named, others = (
-        [m[f"env_{k}"].moved_later for k in spec.ENVS if (k in spec.LATER) == is_]
-        for is_ in (True, False)
+        [m[f"env_{k}"].moved_later for k in rows]
+        for rows in (spec.LATER, {*spec.ENVS} - {*spec.LATER})
     )
-    pairs = [(run.traces[f"env_{k}"], run.traces[f"alone_{k}"]) for k in spec.ENVS]
+    pairs = study.pairs()["alone"]
+    *_, apart = study.compared([(run.traces[a], run.traces[b]) for a, b in pairs])
     return bullets(
         [
             f"One of the four targets is beyond reach. Rows {accepted} are accepted.",
             "After the second command, the named environments moved by "
-            f"{mm(min(named))} mm or more, "
-            f"the others by at most {1e6 * max(others):.2g} µm.",
+            f"{mm(min(named))} mm or more, the others by at most {1e6 * max(others):.2g} µm.",
             "Positions of arm joints in a row and in the same run alone differ by up to "
-            f"{1e6 * study.compared(pairs)[2]:.2f} µrad.",
+            f"{1e6 * apart:.2f} µrad.",
             *(
                 f"{spec.LABELS[name]}: the hand passes the target by "
-                f"{mm(m[name].overshoot)} mm, ends "
-                f"{mm(m[name].final_distance)} mm from it."
+                f"{mm(m[name].overshoot)} mm, ends {mm(m[name].final_distance)} mm from it."
                 for name in spec.VARIANTS
             ),
         ]
@@ -177,30 +174,22 @@ def ms(seconds: float) -> str:
     return three(1000 * seconds)
 
 
-def sizes(run: Experiment) -> list[int]:
-    """Return the numbers of environments that were timed."""
-    return [int(name[6:]) for name in run.readings[GROUP] if name.startswith("build_")]
-
-
 def steps(run: Experiment) -> dict[int, float]:
-    """Return the time of a step by the number of environments [s]."""
-    return {size: run.readings[GROUP][f"step_{size}"] for size in sizes(run)}
+    """Return the time of a step by the number of environments that were timed [s]."""
+    found = run.readings[GROUP]
+    sizes = (int(name[6:]) for name in found if name.startswith("build_"))
+    return {size: found[f"step_{size}"] for size in sizes}
 
 
 def throughput_table(run: Experiment) -> str:
     """Return time and throughput of each number of environments; the largest one is bold."""
-    found, rows = steps(run), {}
-    first, best = (
-        next(iter(found.values())),
-        max(found, key=lambda size: size / found[size]),
-    )
+    found = steps(run)
+    best = max(found, key=lambda size: size / found[size])
+    rows = {}
     for size, step in found.items():
         rate = three(size / step)
-        rows[f"{size}"] = (
-            ms(step),
-            three(step / first),
-            f"**{rate}**" if size == best else rate,
-        )
+        bold = f"**{rate}**" if size == best else rate
+        rows[f"{size}"] = ms(step), three(step / found[1]), bold
     heads = ("one step [ms]", "times the first", "steps per second, all")
     return tables.timed_table("environments", dict.fromkeys(heads, 0), rows)
 
@@ -209,20 +198,16 @@ def throughput_details(run: Experiment) -> str:
     """Return what else was measured with each number of environments."""
     found, rows = run.readings[GROUP], {}
     for size, step in steps(run).items():
-        of = [
-            found[f"{name}_{size}"]
-            for name in ("fastest", "slowest", "build", "memory")
-        ]
-        rows[f"{size}"] = f"{ms(of[0])} to {ms(of[1])}", three(DT / step), *of[2:]
-    heads = (
-        "fastest to slowest [ms]",
-        "simulated s per s, each",
-        "build [s]",
-        "memory [MiB]",
-    )
-    return tables.timed_table(
-        "environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows
-    )
+        repeats = f"{ms(found[f'fastest_{size}'])} to {ms(found[f'slowest_{size}'])}"
+        of_build = found[f"build_{size}"], found[f"memory_{size}"]
+        rows[f"{size}"] = repeats, three(DT / step), *of_build
+    heads = {
+        "fastest to slowest [ms]": 0,
+        "simulated s per s, each": 0,
+        "build [s]": 1,
+        "memory [MiB]": 0,
+    }
+    return tables.timed_table("environments", heads, rows)
 
 
 def fits(run: Experiment) -> list[Model]:
@@ -252,19 +237,16 @@ def model_table(run: Experiment) -> str:
 def constants_table(run: Experiment) -> str:
     """Return the range of both constants of the models, and what follows from them."""
     models = fits(run)
-    rows = {
-        "*a*, the fixed part of a step [ms]": span([1e3 * m.fixed for m in models]),
-        "*b*, the part of each environment [µs]": span([1e6 * m.each for m in models]),
-        "1/*b*, the limit of the throughput [steps per second]": span(
-            [1 / m.each for m in models]
-        ),
-        "*a*/*b*, environments for half of it": span(
-            [m.fixed / m.each for m in models]
-        ),
+    constants = {
+        "*a*, the fixed part of a step [ms]": [1e3 * m.fixed for m in models],
+        "*b*, the part of each environment [µs]": [1e6 * m.each for m in models],
+        "1/*b*, the limit of the throughput [steps per second]": [
+            1 / m.each for m in models
+        ],
+        "*a*/*b*, environments for half of it": [m.fixed / m.each for m in models],
     }
-    return tables.timed_table(
-        "constant", {"models": 0}, {name: (of,) for name, of in rows.items()}
-    )
+    rows = {name: (span(values),) for name, values in constants.items()}
+    return tables.timed_table("constant", {"models": 0}, rows)
 
 
 def parts_table(run: Experiment) -> str:
@@ -283,13 +265,11 @@ def cache_table(run: Experiment) -> str:
     rows = {}
     for size in (1024, 1000):
         four = size // 4
-        names = {
-            f"one scene of {size}": size,
-            f"four scenes of {four}, in turn": f"four_of_{four}",
-        }
-        for name, of in names.items():
-            step = run.readings[GROUP][f"step_{of}"]
-            rows[name] = ms(step), three(1e6 * step / size)
-    return tables.timed_table(
-        "a step of", {"time [ms]": 0, "for each environment [µs]": 0}, rows
-    )
+        for words, name in (
+            (f"one scene of {size}", f"{size}"),
+            (f"four scenes of {four}, in turn", f"four_of_{four}"),
+        ):
+            step = run.readings[GROUP][f"step_{name}"]
+            rows[words] = ms(step), three(1e6 * step / size)
+    heads = {"time [ms]": 0, "for each environment [µs]": 0}
+    return tables.timed_table("a step of", heads, rows)

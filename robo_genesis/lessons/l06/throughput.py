@@ -131,17 +131,13 @@ def measure(
         start(robot)
         found[f"memory_{size}"] = memory() - before
         built[size] = scene, robot
-    timed = {str(size): calls_of(*of) for size, of in built.items()} | dict(
-        others(built)
-    )
-    found |= timing.in_turn(
-        timed, protocol.warm_up, protocol.steps, protocol.repeats, clock
-    )
-    ends = {
-        str(size): to_numpy(robot.get_dofs_position())
+    timed = {str(size): calls_of(*of) for size, of in built.items()}
+    repeats = protocol.warm_up, protocol.steps, protocol.repeats
+    found |= timing.in_turn(timed | {**others(built)}, *repeats, clock)
+    return found, {
+        str(size): unequal(to_numpy(robot.get_dofs_position()))
         for size, (_, robot) in built.items()
     }
-    return found, {name: unequal(q) for name, q in ends.items()}
 
 
 def explanations(
