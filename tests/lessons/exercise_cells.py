@@ -1,6 +1,7 @@
 """The functions that a lab leaves to the student: their cells, and our solutions."""
 
 import ast
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from robo_genesis.core.project import BOOK
 from robo_genesis.pipeline.pages.book import Page, find_pages
 
 
+@cache
 def page_of(lesson: str, name: str) -> Page:
     """Return an executed page of a lesson."""
     (found,) = (
@@ -32,3 +34,21 @@ def solutions(lesson: str, page: str = "lab") -> dict[str, Any]:
         if "solution" in cell.metadata.get("tags", []):
             exec(cell.source, solved)
     return solved
+
+
+def with_mistake(lesson: str, name: str, old: str, new: str) -> Any:
+    """Return our solution in the lab of a lesson with a replacement in its code."""
+    (source,) = (
+        cell.source
+        for cell in page_of(lesson, "lab").notebook.cells
+        if "solution" in cell.metadata.get("tags", []) and f"def {name}(" in cell.source
+    )
+    assert old in source
+    solved = solutions(lesson)
+    exec(source.replace(old, new), solved)
+    return solved[name]
+
+
+def rows(mistakes: dict[str, dict[str, list[str]]]) -> list[tuple[str, str, list[str]]]:
+    """Return function, part of its code, and what replaces it, of a table of mistakes."""
+    return [(name, *each) for name, of in mistakes.items() for each in of.items()]
