@@ -5,11 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import failed, put, trace
-from lessons.l08.conftest import without_motion
-from lessons.l08.made_batches import episodes
-from robot_runs import LINKS
+from lessons.l08.conftest import batch, experiment
 
-from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l08 import edge, pages, plots, spec, text
 from robo_genesis.sim.arm import picking
 
@@ -32,17 +29,16 @@ def outcomes(name, case):
 
 @pytest.fixture(scope="module")
 def run(joints):
-    paced = {"length": np.repeat([4, 6, 8], edge.TIMED), "creep": 1.5e-3}
-    made = {
-        name: episodes(
-            case, *outcomes(name, case), **(paced if name == "paced" else {})
-        )
-        for name, case in edge.CASES.items()
+    lengths = {
+        "paced": np.repeat([9, 10, 11], edge.TIMED),
+        "timed": np.repeat([6, 6.4, 6.8, 7.2], edge.TIMED),
     }
-    model = {"model": spec.EXPECTED_MODEL}
-    return Experiment(
-        without_motion(pages.RATES), made, [*LINKS, "object"], model, {}, False, joints
-    )
+    made = {}
+    for name, case in edge.CASES.items():
+        good, *hand = outcomes(name, case)
+        how = {"length": lengths.get(name, 6), "slide": 1.5e-3}
+        made[name] = batch(case, np.where(good, 7, 1), *hand, **how)
+    return experiment(pages.RATES, made, joints)
 
 
 def test_each_check_accepts_the_batches(run):
@@ -87,6 +83,6 @@ def test_a_clock_ends_the_descent_whatever_is_measured():
 def test_tables_and_figure_show_the_batches(run):
     assert "| 128 |" in text.pair_table(run)
     assert "below −8" in text.side_table(run)
-    assert "| 0.6 | 2.3 | 3.45 | 1.50 |" in text.pace_table(run)
+    assert "| 0.6 | 3.2 | 4.80 | 1.50 |" in text.pace_table(run)
     assert "100 of 128" in text.rate_table(run, "counted")
     assert plots.errors(run, "grid").axes
