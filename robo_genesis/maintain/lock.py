@@ -24,6 +24,7 @@ def write_lock(root: Path = ROOT, upgrade: Sequence[str] = ()) -> None:
         ProjectError: uv cannot resolve the project; the old lock is unchanged.
     """
     command = [sys.executable, "-m", "uv", "pip", "compile", "pyproject.toml"]
+    command += ["--all-extras", "--no-annotate", "--custom-compile-command=make lock"]
     command += [f"--output-file={LOCK}", "--quiet"]
     command += [f"--upgrade-package={package}" for package in upgrade]
     refusal = "uv cannot resolve pyproject.toml"

@@ -51,13 +51,3 @@ def driver_version(backend: str, root: Path = Path("/")) -> str | None:
     path = root / "sys" / "module" / DRIVERS[backend] / "version"
     kernel = f"of the kernel {platform.release()}, without a version"
     return path.read_text().strip() if path.is_file() else kernel
-
-
-# Used until the rules of manifests are gone.
-import re  # noqa: E402
-
-PROCESSOR = (
-    r"intel|xeon|epyc|threadripper|opteron|processor|\bcpu\b|apple|pipe\b|swrast"
-)
-FOREIGN = {"amdgpu": "nvidia|geforce|tesla|quadro", "cuda": r"\bamd\b|radeon|instinct"}
-TAG = re.compile(r"\+(cpu|rocm|cu(?=\d))(\d*)\.?(\d*)")
