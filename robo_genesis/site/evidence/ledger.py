@@ -16,10 +16,14 @@ from sphinx.util.osutil import relative_uri
 from robo_genesis.core.files import write_whole
 from robo_genesis.pipeline.pages.book import page_files
 from robo_genesis.site.evidence import ledger_data
-from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.measured import badge_node
 from robo_genesis.site.evidence.plain_nodes import Cell, between, html, paragraph, table
-from robo_genesis.site.evidence.provenance import ITEMS, all_runs, measured_pages
+from robo_genesis.site.evidence.provenance import ITEMS
+from robo_genesis.site.evidence.runs import (
+    PageRun,
+    all_runs,
+    badge_node,
+    measured_pages,
+)
 from robo_genesis.site.pages import PageDirective
 
 DOWNLOADS = "_downloads/evidence"

@@ -1,17 +1,16 @@
-"""Entries of the ledger: runs with their bundles, items with their digests, files to download."""
+"""Entries of the ledger: facts of runs, items with their digests, files to download."""
 
 import csv
 import hashlib
 import io
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
-from robo_genesis.core.files import derived
 from robo_genesis.evidence.bundle import Manifest
-from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.html.archive import write_zip
+from robo_genesis.site.evidence.runs import PageRun
 
 LEDGER = "evidence/ledger"  # The page
 
@@ -24,40 +23,6 @@ UNMEASURED = {
     "settings": "Chosen, not measured.",
     "unbound": "Printed by its cell. The page has no bundle.",
 }
-
-
-@dataclass(frozen=True, slots=True)
-class PageRun:
-    """One run of a page on a backend: the folder of its bundle, existing or not, and its state."""
-
-    page: str  # as `l04/lab`
-    folder: Path
-    status: Status
-    recorded: bool = False  # committed with the book; otherwise of this build
-
-    @property
-    def key(self) -> str:
-        """Page and backend, as items name their run."""
-        return (
-            f"{self.page}/{self.status.backend}{'/recorded' if self.recorded else ''}"
-        )
-
-    @property
-    def lesson(self) -> str:
-        """The lesson of its page."""
-        return self.page.split("/")[0]
-
-    @property
-    def command(self) -> str:
-        """The command that creates it, as a console shows it."""
-        if self.recorded:
-            return f"$ make evidence LESSON={self.lesson} BACKEND={self.status.backend}"
-        return "$ make book"
-
-    @property
-    def manifest(self) -> Manifest | None:
-        """The accepted manifest, None where there is none."""
-        return self.status.manifest
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,23 +106,18 @@ def archive_name(run: PageRun) -> str:
     return f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
 
 
+@lru_cache(maxsize=128)
 def archive(folder: Path) -> bytes:
     """Return a bundle as a zip whose bytes depend only on the names and contents of its files.
 
     Args:
         folder: an accepted bundle.
     """
-    paths = sorted(path for path in folder.rglob("*") if path.is_file())
-    files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
-
-    def pack() -> bytes:
-        stream = io.BytesIO()
-        write_zip(stream, files.items())
-        return stream.getvalue()
-
-    decide = [
-        json.dumps([*files]).encode(),
-        *files.values(),
-        Path(__file__).read_bytes(),
-    ]
-    return derived("bundle", decide, pack)
+    files = {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+    stream = io.BytesIO()
+    write_zip(stream, files.items())
+    return stream.getvalue()

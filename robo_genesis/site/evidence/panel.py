@@ -22,8 +22,6 @@ from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import course_marks, find_replay
-from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.measured import BACKEND, page_run, recorded_runs
 from robo_genesis.site.evidence.plain_nodes import (
     bullets,
     image,
@@ -31,6 +29,7 @@ from robo_genesis.site.evidence.plain_nodes import (
     paragraph,
     table,
 )
+from robo_genesis.site.evidence.runs import BACKEND, PageRun, page_run, recorded_runs
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
 

@@ -11,7 +11,6 @@ import re
 import textwrap
 from collections.abc import Sequence, Set
 from dataclasses import replace
-from functools import lru_cache
 from itertools import chain, count
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -20,16 +19,15 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
-from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.site.evidence import ledger_data, measured, refusals
+from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import (
     LEDGER,
     MEASURED,
     PRINTED,
     Item,
-    PageRun,
 )
 from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
+from robo_genesis.site.evidence.runs import all_runs, measured_pages
 from robo_genesis.site.frame.executed import RECOMPUTED
 
 LOG = "the engine's log"
@@ -53,27 +51,6 @@ UNBOUND = (
 )
 
 logger = logging.getLogger(__name__)
-
-
-@lru_cache(maxsize=4)
-def measured_pages(book: Path) -> dict[str, str]:
-    """Return docname → `lesson/page` of the pages that run the engine."""
-    return {
-        p.docname: f"{p.lesson}/{p.page}" for p in find_pages(book) if p.declares_bundle
-    }
-
-
-@lru_cache(maxsize=4)
-def all_runs(book: Path) -> dict[str, PageRun]:
-    """Return the runs of this build and the recorded ones by key, missing runs included."""
-    runs = [
-        measured.page_run(book, *name.split("/"))
-        for name in measured_pages(book).values()
-    ]
-    recorded = chain.from_iterable(
-        measured.recorded_runs(book, run.lesson) for run in runs
-    )
-    return {run.key: run for run in (*runs, *recorded)}
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:
@@ -220,10 +197,7 @@ def add_line(holder: nodes.Element, text: str, address: str | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Register the passes over each page that was read."""
-    app.connect(
-        "doctree-read", refusals.refuse, priority=890
-    )  # before the lines are added
+    """Register the pass over each page that was read."""
     app.connect(
         "doctree-read", read_page, priority=900
     )  # pictures are collected before

@@ -31,7 +31,8 @@ from robo_genesis.pipeline.pages import page_index
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
-from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.evidence.runs import BACKEND
+from robo_genesis.site.evidence.values import measured
 from robo_genesis.site.takeaways.notebooks import (
     CHECK,
     executed_notebook,

@@ -43,8 +43,9 @@ from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages.page_index import page_outputs
-from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.evidence.plain_nodes import bullets
+from robo_genesis.site.evidence.runs import BACKEND
+from robo_genesis.site.evidence.values import measured
 from robo_genesis.site.figures.explorer import Recorded
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.takeaways.directive import TAKEAWAYS, link

@@ -46,8 +46,9 @@ from robo_genesis.core.text import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.page_index import page_outputs
-from robo_genesis.site.evidence.measured import BACKEND, COUNTED, measured
 from robo_genesis.site.evidence.plain_nodes import WRITERS, between, html
+from robo_genesis.site.evidence.runs import BACKEND
+from robo_genesis.site.evidence.values import COUNTED, measured
 from robo_genesis.site.figures.case_labels import label
 from robo_genesis.site.pages import PageDirective
 

@@ -21,9 +21,9 @@ from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import ledger as sphinx_ledger
-from robo_genesis.site.evidence import ledger_data, measured, provenance
+from robo_genesis.site.evidence import ledger_data, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
-from robo_genesis.site.evidence.ledger_data import PageRun
+from robo_genesis.site.evidence.runs import PageRun
 
 FILMED = Replay(("G1",), "box", "box")
 SCRIPT = "<script>alert(1)</script>"
@@ -131,21 +131,22 @@ def record(folder, tmp_path, built, courses_pages):
 def test_the_comparison_names_both_runs_and_all_else_one(
     folder, tmp_path, record, monkeypatch
 ):
-    runs = accepted("l04/lab", folder), record("cuda")
+    both_runs = accepted("l04/lab", folder), record("cuda")
     monkeypatch.setattr(provenance, "measured_pages", lambda book: {})
     monkeypatch.setattr(
-        provenance, "all_runs", lambda book: {run.key: run for run in runs}
+        provenance, "all_runs", lambda book: {run.key: run for run in both_runs}
     )
     facts = {"docname": "page", "metadata": defaultdict(dict), "found_docs": ()}
     env = SimpleNamespace(srcdir=tmp_path / "book", **facts)
     document = new_document("page")
-    document += Panel(tmp_path / "book").panel(runs[1])
+    document += Panel(tmp_path / "book").panel(both_runs[1])
     for image in document.findall(nodes.image):
         image["uri"] = image["uri"].removeprefix("/")
     provenance.read_page(SimpleNamespace(env=env), document)
 
     ours, theirs = (
-        ledger_data.provenance("table", [of]).removeprefix("Measured ") for of in runs
+        ledger_data.provenance("table", [of]).removeprefix("Measured ")
+        for of in both_runs
     )
     lines = [n.astext() for n in document.findall(lambda n: "provenance" in classes(n))]
     alone, compared = f"Measured {theirs}", f"Measured {ours} and {theirs}"
@@ -154,7 +155,7 @@ def test_the_comparison_names_both_runs_and_all_else_one(
     both = ("l04/lab/cpu", "l04/lab/cuda/recorded")
     found = [item.runs for item in env.metadata["page"][provenance.ITEMS]]
     assert found == [both[1:]] * 6 + [both] * 2
-    run, badge, *_ = sphinx_ledger._of_runs(runs)
+    run, badge, *_ = sphinx_ledger._of_runs(both_runs)
     assert [link["refuri"] for link in run] == [
         "#run-l04-lab-cpu",
         "#run-l04-lab-cuda-recorded",
@@ -225,7 +226,7 @@ def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, stat
 def test_a_run_that_was_never_recorded_has_no_panel(tmp_path, record, monkeypatch):
     status = Status("missing", "amdgpu", "None.", None, summary="None.")
     absent = PageRun("l04/lab", tmp_path, status, recorded=True)
-    monkeypatch.setattr(measured, "recorded_runs", lambda *asked: (absent,))
+    monkeypatch.setattr(sphinx_panel, "recorded_runs", lambda *asked: (absent,))
     panel = Panel(tmp_path / "book")
     panel.arguments = ["l04"]
     assert panel.shown() == []

@@ -2,9 +2,6 @@
 
 import pytest
 from built_site import parsed
-from docutils import nodes
-from docutils.core import publish_doctree
-from myst_parser.parsers.docutils_ import Parser
 from small_book import executed, rendered
 from tiny_book import (
     LAB_FRONT,
@@ -16,10 +13,7 @@ from tiny_book import (
     raising,
 )
 
-from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.site.evidence.measured import badge_node
-from robo_genesis.site.evidence.refusals import problems
 
 IMPORTS = """\
 from IPython.display import HTML, SVG, Markdown
@@ -122,48 +116,3 @@ def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
         "table",
         "svg",
     ]
-
-
-def read(text):
-    settings = {"myst_enable_extensions": ["attrs_inline", "attrs_block"]}
-    return publish_doctree(text, parser=Parser(), settings_overrides=settings)
-
-
-def found(document, book):
-    return [problem for _, problem in problems(document, book)]
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (
-            "<div\n  class='x evidence&#45;badge'>cpu-verified</div>",
-            "the class evidence-badge",
-        ),
-        ("[amdgpu-verified]{.evidence-badge}", "the class evidence-badge"),
-        (
-            "```{container} evidence-badge\namdgpu-verified\n```",
-            "the class evidence-badge",
-        ),
-        (
-            "```{raw} html\n<b class='evidence-badge'>x</b>\n```",
-            "the class evidence-badge",
-        ),
-        ("[7 rad]{.measured}", "the class measured"),
-        ("[7 rad]{.provenance}", "the class provenance"),
-        ('<img src="a.svg">', "the page has <img> as raw HTML"),
-        (
-            "![x](lessons/../evidence/l04/cpu/a.png) ![y](b.svg)",
-            "Use the {evidence} directive",
-        ),
-    ],
-)
-def test_an_imitated_result_is_refused_however_it_is_written(text, said, tmp_path):
-    (problem,) = found(read(text), tmp_path)
-    assert said in problem
-
-
-def test_the_site_s_own_badges_and_harmless_html_pass(tmp_path):
-    document = read("Two<br>lines, `evidence-badge` in code, <b class='x'>bold</b>.")
-    document += nodes.paragraph("", "", badge_node(Status("verified", "cpu", "", None)))
-    assert found(document, tmp_path) == []

@@ -6,11 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from robo_genesis.core import project
-from robo_genesis.pipeline.bundles.status import Status
-from robo_genesis.pipeline.pages.page_index import PageIndex
-from robo_genesis.site.evidence import measured
-from robo_genesis.site.evidence.measured import measured as insert
-from robo_genesis.site.evidence.measured import require_passed, status_line
+from robo_genesis.site.evidence import values
+from robo_genesis.site.evidence.values import measured, require_passed
 
 ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
 
@@ -30,7 +27,7 @@ ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
     ],
 )
 def test_a_value_comes_with_unit_and_origin(outputs, experiment, name, text, source):
-    found, origin = insert("l04/lab", name)
+    found, origin = measured("l04/lab", name)
     assert re.fullmatch(text.format(experiment.metrics["G2"].overshoot), found)
     assert origin.startswith(ORIGIN)
     assert source in origin
@@ -50,41 +47,7 @@ def test_a_value_comes_with_unit_and_origin(outputs, experiment, name, text, sou
 )
 def test_an_unknown_value_names_those_there_are(outputs, name, said):
     with pytest.raises(LookupError, match=said):
-        insert("l04/lab", name)
-
-
-@pytest.mark.parametrize("spoiled", [None, b"", b"no pickle"])
-def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoiled):
-    monkeypatch.setattr(
-        measured, "page_index", lambda: PageIndex(states=tmp_path / "states")
-    )
-    calls = []
-    first = measured.stored("../l04/lab", lambda: calls.append(1) or "verified")
-    (file,) = (path for path in tmp_path.rglob("*") if path.is_file())
-    assert file.parent == tmp_path / "states"
-    if spoiled is not None:
-        file.write_bytes(spoiled)
-    assert measured.stored("../l04/lab", lambda: calls.append(2) or "verified") == first
-    assert calls == ([1] if spoiled is None else [1, 2])
-
-
-@pytest.mark.parametrize(
-    ("state", "backend", "words"),
-    [
-        ("verified", "amdgpu", "Measured on AMD GPU with Genesis 9.8.7"),
-        ("inconclusive", "amdgpu", "AMD GPU run: inconclusive"),
-        ("stale", "x<y", "x&lt;y run: stale"),
-    ],
-)
-def test_the_line_of_an_accepted_run_alone_has_its_engine_and_no_markup(
-    state, backend, words
-):
-    manifest = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
-    status = Status(state, backend, "", manifest)
-    assert (
-        status_line([status])
-        == f'<span class="status-word state-{state}">{words}</span>'
-    )
+        measured("l04/lab", name)
 
 
 def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
@@ -93,10 +56,10 @@ def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
         LookupError, match=r"no check 'control_lav'\. Choices: .*control_law"
     ):
         require_passed("l04/lab", "control_lav")
-    with pytest.raises(ValueError, match=r"manifest\.json is not in"):
+    with pytest.raises(ValueError, match=r"manifest\.json cannot be read"):
         require_passed("l04/elsewhere", "control_law")
     failed = SimpleNamespace(name="sag", passed=False, found={"sag_m": 0.1})
     manifest = SimpleNamespace(checks=[failed])
-    monkeypatch.setattr(measured.bundle, "read_manifest", lambda folder: manifest)
+    monkeypatch.setattr(values, "read_manifest", lambda folder: manifest)
     with pytest.raises(ValueError, match=r"the check sag of l04/lab found .*0\.1"):
         require_passed("l04/lab", "sag")

@@ -1,0 +1,213 @@
+"""The runs of this build and the recorded ones: their states, as pages show them.
+
+| directive | shows |
+|---|---|
+| {lesson-status} l04 | a line with the states of a lesson's runs, details in a fold |
+| {course-status} | the states of the runs of each published lesson |
+| {course-measured} | a line: engine version and dates of this build's runs |
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from html import escape
+from pathlib import Path
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis.core import project
+from robo_genesis.core.text import listed
+from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.pipeline.bundles.status import (
+    RECORDED_PAGE,
+    Status,
+    bundle_status,
+    recorded_folders,
+    recorded_status,
+)
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.page_index import page_outputs
+from robo_genesis.site.course.course_map import MapDirective, named, page_link
+from robo_genesis.site.evidence.plain_nodes import between, bullets, paragraph
+
+BACKEND, REFERENCE = project.BUILD_BACKEND, "amdgpu"
+READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
+EXPLANATION = "evidence/index"  # The page that explains the evidence
+
+
+@dataclass(frozen=True, slots=True)
+class PageRun:
+    """One run of a page on a backend: the folder of its bundle, existing or not, and its state."""
+
+    page: str  # as `l04/lab`
+    folder: Path
+    status: Status
+    recorded: bool = False  # committed with the book; otherwise of this build
+
+    @property
+    def key(self) -> str:
+        """Page and backend, as items name their run."""
+        recorded = "/recorded" if self.recorded else ""
+        return f"{self.page}/{self.status.backend}{recorded}"
+
+    @property
+    def lesson(self) -> str:
+        """The lesson of its page."""
+        return self.page.split("/")[0]
+
+    @property
+    def command(self) -> str:
+        """The command that creates it, as a console shows it."""
+        if self.recorded:
+            return f"$ make evidence LESSON={self.lesson} BACKEND={self.status.backend}"
+        return "$ make book"
+
+    @property
+    def manifest(self) -> Manifest | None:
+        """The accepted manifest, None where there is none."""
+        return self.status.manifest
+
+
+@lru_cache(maxsize=64)
+def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> PageRun:
+    """Return a page's run of this build; it does not change while Sphinx runs."""
+    name = f"{lesson}/{page}"
+    folder, absent = page_outputs(name) / BACKEND, f"No bundle was recorded for {name}."
+    status = bundle_status(folder, lesson, page, absent, book, once=True)
+    return PageRun(name, folder, status)
+
+
+@lru_cache(maxsize=64)
+def recorded_runs(book: Path, lesson: str) -> tuple[PageRun, ...]:
+    """Return the recorded runs of a lesson's lab, the reference first, recorded or not."""
+    folder, name = book / "evidence" / lesson, f"{lesson}/{RECORDED_PAGE}"
+    recorded = [path.name for path in recorded_folders(book) if path.parent == folder]
+    return tuple(
+        PageRun(name, folder / backend, recorded_status(book, lesson, backend), True)
+        for backend in dict.fromkeys((REFERENCE, *recorded))
+    )
+
+
+@lru_cache(maxsize=4)
+def measured_pages(book: Path) -> dict[str, str]:
+    """Return docname → `lesson/page` of the pages that run the engine."""
+    return {
+        page.docname: f"{page.lesson}/{page.page}"
+        for page in find_pages(book)
+        if page.declares_bundle
+    }
+
+
+@lru_cache(maxsize=4)
+def all_runs(book: Path) -> dict[str, PageRun]:
+    """Return the runs of this build and the recorded ones by key, missing runs included."""
+    runs = [page_run(book, *name.split("/")) for name in measured_pages(book).values()]
+    recorded = [run for own in runs for run in recorded_runs(book, own.lesson)]
+    return {run.key: run for run in (*runs, *recorded)}
+
+
+def badge_node(status: Status) -> nodes.Node:
+    """Return a state as the site shows it everywhere: one word and its colour."""
+    classes = ["evidence-badge", f"state-{status.state}"]
+    return nodes.inline("", status.badge, classes=classes)
+
+
+def status_list(statuses: Iterable[Status]) -> nodes.bullet_list:
+    """Return the states of runs as a list: the badge and a sentence on each."""
+    lines = ((badge_node(status), f" {status.sentence}") for status in statuses)
+    return bullets(*lines, classes=["lesson-status"])
+
+
+def status_line(statuses: Iterable[Status]) -> str:
+    """Return the states of runs as a line of HTML; an accepted one has its engine."""
+    words = []
+    for status in statuses:
+        backend = READABLE.get(status.backend, status.backend)
+        text = f"{backend} run: {status.state}"
+        if status.state == "verified" and status.manifest:
+            version = status.manifest.engine.version
+            text = f"Measured on {backend} with Genesis {version}"
+        kind = f"status-word state-{status.state}"
+        words.append(f'<span class="{kind}">{escape(text)}</span>')
+    return " · ".join(words)
+
+
+def lesson_statuses(book: Path, lesson: str) -> list[Status]:
+    """Return the states of a lesson's lab: of this build on CPU, then of the recorded runs."""
+    return [
+        run.status for run in (page_run(book, lesson), *recorded_runs(book, lesson))
+    ]
+
+
+class LessonStatus(SphinxDirective):
+    """Show the states of a lesson's runs in one line, and a sentence on each behind it.
+
+    The line leaves out missing runs unless all are missing.
+    """
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the fold; inside it is one line per backend."""
+        statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
+        known = [status for status in statuses if status.state != "missing"] or statuses
+        opening = (
+            f'<details class="status-line"><summary>{status_line(known)}</summary>'
+        )
+        return [
+            between("", status_list(statuses), opening=opening, closing="</details>")
+        ]
+
+
+class CourseStatus(MapDirective):
+    """Show the state of the runs of each published lesson's lab."""
+
+    def shown(self) -> list[nodes.Node]:
+        """Return a title and a list for each lesson."""
+        parts: list[nodes.Node] = []
+        for lesson in self.lessons():
+            if lesson.page:
+                title = page_link(self.env.docname, lesson.page, lesson.title)
+                statuses = lesson_statuses(Path(self.env.srcdir), lesson.id.lower())
+                parts += [named(lesson, title), status_list(statuses)]
+        return parts
+
+
+class CourseMeasured(SphinxDirective):
+    """Show with which engine and when the runs of this build were measured."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return the line, with a link to the page on evidence where the book has it."""
+        line = measured_line(all_runs(Path(self.env.srcdir)).values())
+        link = page_link(self.env.docname, EXPLANATION, "How to read the evidence")
+        more = [" ", link] if EXPLANATION in self.env.found_docs else []
+        return [paragraph(line, *more, classes=["course-measured"])]
+
+
+def measured_line(runs: Iterable[PageRun]) -> str:
+    """Return engine version and dates of the accepted runs that were not recorded.
+
+    Args:
+        runs: of this build, and recorded ones, which are left out.
+    """
+    own = [run for run in runs if not run.recorded]
+    accepted = [run.manifest for run in own if run.manifest]
+    if not accepted:
+        return "No run of this build was accepted."
+    engines = sorted({manifest.engine.version for manifest in accepted})
+    dates = sorted({manifest.started[:10] for manifest in accepted})
+    when = f"on {dates[0]}" if len(dates) == 1 else f"from {dates[0]} to {dates[-1]}"
+    line = f"Measured on {READABLE[BACKEND]} with Genesis {listed(engines)} {when}."
+    lacking = len(own) - len(accepted)
+    return (
+        f"{line} {lacking} of {len(own)} runs were not accepted." if lacking else line
+    )
+
+
+def setup(app: Sphinx) -> None:
+    """Register the directives."""
+    app.add_directive("lesson-status", LessonStatus)
+    app.add_directive("course-status", CourseStatus)
+    app.add_directive("course-measured", CourseMeasured)
