@@ -26,7 +26,6 @@ HTML, DOCTREES = "html", "doctrees"  # In the folder of a render
 ENVIRONMENT = "environment.pickle"  # What Sphinx knows of all pages, in `DOCTREES`
 GOOD = "good.pickle"  # The same after the last render that succeeded
 EXECUTED = "executed-pages.json"  # Lists the executed pages, in the folder of a render
-STATES = "states"  # States of runs, in the folder of a render
 LOG = "render.log"  # In the folder of the caches
 
 
@@ -51,8 +50,7 @@ def render(book: Path, folder: Path, built: PageIndex, log: Path) -> Path:
     (doctrees / ENVIRONMENT).unlink(missing_ok=True)
     if (doctrees / GOOD).is_file():
         shutil.copy(doctrees / GOOD, doctrees / ENVIRONMENT)
-    known = built.model_copy(update={"states": folder / STATES})
-    variables = known.write(folder / EXECUTED)
+    variables = built.write(folder / EXECUTED)
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going"]
     command += ["-d", str(doctrees), str(book), str(html)]
     with log.open("w") as stream:

@@ -21,6 +21,7 @@ from robo_genesis.pipeline.pages.outputs import keep_outputs
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
+SECONDS = "cell_seconds"  # In the metadata of the notebook
 
 
 class PageRefused(ProjectError):  # noqa: N818 - the word of the domain, as for bundles
@@ -32,8 +33,7 @@ class Record(Strict):
 
     `fingerprint` names everything that decides outputs, `code` is the digest of the
     page's own code. `engine` is its version, None if it is unknown. `seconds` is the
-    duration of the execution, `cell_seconds` that of each cell with code; `files` maps
-    names to digests.
+    duration of the execution; `files` maps names to digests.
     """
 
     docname: str
@@ -44,7 +44,6 @@ class Record(Strict):
     run_id: RunId
     engine: str | None
     seconds: float
-    cell_seconds: list[float]
     files: dict[str, Sha256]
 
 
@@ -76,6 +75,7 @@ def write_page(
     with replaced(place) as fresh:
         fresh.mkdir()
         code = NotebookNode(notebook | {"cells": code_cells(notebook)})
+        code.metadata[SECONDS] = list(cell_seconds)
         nbformat.write(code, fresh / NOTEBOOK)
         if page.declares_bundle:
             shutil.copytree(left, fresh / OUTPUTS)
@@ -90,7 +90,6 @@ def write_page(
             run_id=run_id,
             engine=installed_version(ENGINE),
             seconds=round(seconds, 3),
-            cell_seconds=list(cell_seconds),
             files=_digests(fresh),
         )
         (fresh / RECORD).write_text(

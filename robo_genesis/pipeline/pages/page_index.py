@@ -16,8 +16,7 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.page_folder import (
     NOTEBOOK,
     OUTPUTS,
-    Record,
-    read_record,
+    SECONDS,
 )
 from robo_genesis.pipeline.pages.results import PageResult
 
@@ -30,13 +29,11 @@ class PageIndex(Strict):
     """A file that the environment names.
 
     `folders` has the folder in the store of each executed page by name, and `outputs`
-    the files that the run of each measuring page left, by `lesson/page`. `states` is a
-    folder that keeps the states of runs for the next render; None keeps nothing.
+    the files that the run of each measuring page left, by `lesson/page`.
     """
 
     folders: dict[str, Path] = Field(default_factory=dict)
     outputs: dict[str, Path] = Field(default_factory=dict)
-    states: Path | None = None
 
     @classmethod
     def of(cls, results: Iterable[PageResult]) -> Self:
@@ -106,8 +103,8 @@ def with_last_outputs(
     return found
 
 
-def page_record(docname: str) -> Record:
-    """Return the record of an executed page.
+def cell_seconds(docname: str) -> list[float]:
+    """Return how long each cell with code of an executed page took.
 
     Raises:
         LookupError: the page is not executed.
@@ -115,7 +112,7 @@ def page_record(docname: str) -> Record:
     folder = page_index().folders.get(docname)
     if folder is None:
         raise LookupError(f"{docname} is not executed. Build with `make book`.")
-    return read_record(folder)
+    return nbformat.read(folder / NOTEBOOK, as_version=4).metadata[SECONDS]
 
 
 def measuring_page(docname: str) -> str:

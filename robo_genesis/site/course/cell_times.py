@@ -10,7 +10,7 @@ from sphinx.application import Sphinx
 
 from robo_genesis.core import tables
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.page_index import page_record
+from robo_genesis.pipeline.pages.page_index import cell_seconds
 from robo_genesis.site.pages import PageDirective
 
 
@@ -20,9 +20,7 @@ class CellTimes(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the table."""
         pages = find_pages(Path(self.env.srcdir))
-        rows = [
-            row(page.docname, page_record(page.docname).cell_seconds) for page in pages
-        ]
+        rows = [row(page.docname, cell_seconds(page.docname)) for page in pages]
         return self.parse_text_to_nodes(tables.markdown(rows))
 
 

@@ -62,8 +62,7 @@ def begin(app: Sphinx) -> None:
     site = Path(app.outdir)
     shutil.rmtree(site / "_static", ignore_errors=True)
     if app.env.config_status != CONFIG_OK:
-        for folder in (site, page_index().states):
-            shutil.rmtree(folder or "", ignore_errors=True)
+        shutil.rmtree(site, ignore_errors=True)
         site.mkdir(parents=True)
 
 
