@@ -99,11 +99,6 @@ def test_the_lecture_compares_solver_steps_and_force_limits(reaches):
     ]
 
 
-def test_the_record_of_answers_has_the_dt_of_its_case():
-    case = replace(spec.UNREACHABLE, dt=0.5)
-    assert (case.start.dt, case.start.steps) == (0.5, spec.DRAWS)
-
-
 @pytest.mark.parametrize(
     ("change", "label"),
     [

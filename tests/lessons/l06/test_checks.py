@@ -105,14 +105,3 @@ def test_a_row_that_is_not_accepted_is_not_commanded():
     q[3, 0] = np.nan
     with pytest.raises(NotAccepted, match=r"Rows \[2, 3\] are refused"):
         commands(worlds, IkAnswer(q, error))
-
-
-def test_the_metrics_tell_when_a_hand_moved(worlds):
-    m = worlds.metrics
-    assert m["env_0"].moved_later < 1e-5 < 0.1 < m["env_1"].moved_later
-    assert (m[PLAIN].moved_later, m[PLAIN].final_distance) == (
-        None,
-        m[PLAIN].first_distance,
-    )
-    assert m["unlimited_robot"].overshoot < 0.01 < m[STIFF].overshoot
-    assert m["env_3"].first_distance < 0.02 > m["env_3"].final_distance

@@ -41,12 +41,6 @@ def measured(four, single):
     return page.traces
 
 
-def test_a_second_run_agrees_with_the_first_and_inherits_no_load(four, measured):
-    for name, run in zip(spec.WORLDS, reach(**vars(four), worlds=WORLDS), strict=True):
-        apart = study.largest_differences(run, measured[name])
-        assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), apart
-
-
 def test_answers_of_some_environments_are_those_of_all(four):
     every = ask(four.robot, four.joints, WORLDS)
     some = ask(four.robot, four.joints, [WORLDS[3], WORLDS[1]], envs=[3, 1])
@@ -80,7 +74,7 @@ def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
     assert set_link_mass(four.robot, "hand", [0.73], [1]) == pytest.approx([0.73] * 4)
 
 
-@pytest.mark.parametrize("size", [1, 2, 64])
+@pytest.mark.parametrize("size", [2, 64])
 def test_rows_of_batches_of_other_sizes_agree_within_the_bounds(
     real_engine, measured, size
 ):

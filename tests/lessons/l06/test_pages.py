@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import shift, trace
-from lessons.lesson_bundles import accepted_then_refused
-from spoilers import in_archive
 
 from robo_genesis.core.palette import MARKS
 from robo_genesis.lessons.l06 import explorer, plots, spec, study, target_parts, text
@@ -71,14 +69,6 @@ def test_the_conclusions_follow_the_runs(run):
     assert "the others by at most 2 µm" in text.conclusions(moved)
 
 
-def test_figures_draw_what_the_tables_say(run):
-    lines = plots.distance(run).axes[0].lines
-    last = [line.get_ydata()[-1] for line in lines[: len(spec.WORLDS)]]
-    assert last == pytest.approx(
-        [1000 * run.metrics[n].final_distance for n in spec.WORLDS]
-    )
-
-
 def test_the_replay_has_a_sphere_at_each_target_in_the_colour_of_its_run():
     parts = target_parts()
     assert len(parts) == 4
@@ -87,13 +77,3 @@ def test_the_replay_has_a_sphere_at_each_target_in_the_colour_of_its_run():
         spec.TARGETS[0] + np.array([*spec.PLACES[1], 0]), abs=1e-6
     )
     assert parts[1].rgb == tuple(bytes.fromhex(MARKS["first"].light[1:]))
-
-
-@pytest.mark.parametrize("run", [True], indirect=True)
-def test_a_sound_bundle_is_accepted_and_a_moved_hand_is_refused(engine, tmp_path, run):
-    spoil = in_archive(
-        "beside_0", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01)
-    )
-    assert "link_pos" in accepted_then_refused(
-        engine, tmp_path, "l06", "lecture", run, spoil
-    )

@@ -8,23 +8,6 @@ from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l07 import checks, plots, rungs, spec, text
 from robo_genesis.lessons.l07.metrics import BALL, OBJECT
-from robo_genesis.sim.bodies import table
-
-
-@pytest.mark.parametrize(
-    ("other", "gap"),
-    [
-        ((0.3, 0.0, 0.1, 0.1), 0.2),
-        ((0.0, -0.2, 0.1, 0.1), 0.1),
-        ((0.13, 0.14, 0.1, 0.1), 0.05),
-        ((0.05, 0.0, 0.1, 0.1), -0.05),
-        ((0.01, 0.0, 0.02, 0.02), -0.05),
-    ],
-)
-def test_the_gap_of_two_footprints(other, gap):
-    one = (0.0, 0.0, 0.1, 0.1)
-    assert table.gap(one, other) == pytest.approx(gap)
-    assert table.gap(one, other) == table.gap(other, one)
 
 
 def test_an_object_that_both_cameras_lose_is_not_seen(scenes):
@@ -97,24 +80,6 @@ SPOILED = {
 def test_a_check_fails_for_its_own_fault(scenes, name):
     spoil, expected = SPOILED[name]
     assert failed(spoil(scenes)) == expected
-
-
-@pytest.mark.engine
-def test_a_second_run_of_the_engine_is_equal(real_engine):
-    from types import SimpleNamespace
-
-    from robo_genesis.lessons.l07 import study
-
-    page = SimpleNamespace(
-        traces={}, readings={}, frames={}, links=[], render=False, joints=None
-    )
-    first = [study.examine(page, real_engine.gs, "baseline")] and dict(page.traces)
-    study.examine(page, real_engine.gs, "baseline")
-    for name, of in first.items():
-        again = page.traces[name]
-        assert all(
-            np.array_equal(getattr(of, f), getattr(again, f)) for f in of.arrays()
-        )
 
 
 @pytest.mark.parametrize(
