@@ -155,7 +155,7 @@ def _broken_links(site: Site, path: Path, page: PageReader) -> Iterator[str]:
 
 
 def _broken(site: Site, page: Path, address: str) -> str | None:
-    """Return why an address inside the site leads nowhere."""
+    """Return why an address inside the site names no file, as a site on disk needs."""
     address, fragment = urldefrag(address)
     place = unquote(urlsplit(address).path)
     if place.startswith("/") and not place.startswith(site.base):
@@ -164,7 +164,6 @@ def _broken(site: Site, page: Path, address: str) -> str | None:
     target = page
     if place:
         target = Path(os.path.normpath(folder / place.removeprefix(site.base)))
-        target = target / "index.html" if target.is_dir() else target
     if not (target.is_relative_to(site.root) and target.is_file()):
         return "leads to no file of the site."
     known = site.pages.get(target)

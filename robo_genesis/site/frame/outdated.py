@@ -78,10 +78,13 @@ def pages_to_read(
 
 
 def pages_to_write(app: Sphinx, env: BuildEnvironment) -> Set[str]:
-    """Return all pages if one shows the others something new."""
+    """Return all pages if one shows the others something new.
+
+    Without any page, Sphinx would not write the style sheets again.
+    """
     before, now = getattr(env, SHARED, None), shared(env)
     setattr(env, SHARED, now)
-    return set() if before == now else env.found_docs
+    return {env.config.root_doc} if before == now else env.found_docs
 
 
 def shared(env: BuildEnvironment) -> str:

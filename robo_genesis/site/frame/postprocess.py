@@ -4,7 +4,6 @@ No script blocks a page, it loads only the files that it needs, and nothing move
 flashes.
 """
 
-import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -18,28 +17,24 @@ from robo_genesis.site.figures import drawings
 from robo_genesis.site.frame import accessibility
 
 # Jupyter Book and the theme load every script on all pages; these are needed only where
-# a selector matches. No page needs `fontawesome.js`: the icons come from a font.
-NEEDED_BY = {
-    "div.highlight": {"clipboard.min.js", "copybutton.js"},
-    ".sd-tab-set": {"design-tabs.js"},
-    "fieldset.choice": {"choice.js"},
-    ".explorer": {"explorer.js"},
-    ".explorer .plots, .replay": {"plot.js"},
-    ".replay": {"replay.js"},
-    ".memory, article": {"memory.js"},
-    ".explorer .play, .replay": {"stage.js"},
-    "#search-results": {
-        "language_data.js",
-        "search-from-disk.js",
-        "searchindex.js",
-        "searchtools.js",
-    },
-    ".toggle, .admonition.dropdown": {"togglebutton.js"},
+# an element has one of these classes or identifiers. No page needs `fontawesome.js`:
+# the icons come from a font.
+NEEDED_BY: dict[str, set[str]] = {
+    "choice.js": {"choice"},
+    "clipboard.min.js": {"highlight"},
+    "copybutton.js": {"highlight"},
+    "design-tabs.js": {"sd-tab-set"},
+    "explorer.js": {"explorer"},
+    "fontawesome.js": set(),
+    "language_data.js": {"search-results"},
+    "plot.js": {"plots", "replay"},
+    "replay.js": {"replay"},
+    "search-from-disk.js": {"search-results"},
+    "searchindex.js": {"search-results"},
+    "searchtools.js": {"search-results"},
+    "stage.js": {"explorer", "replay"},
+    "togglebutton.js": {"toggle"},
 }
-NEEDED_NOWHERE = {"fontawesome.js"}
-
-# Classes and identifiers in a selector.
-NAMED = re.compile(r"[.#]([\w-]+)")
 
 # Files of the theme in `_static` that no page loads.
 UNUSED = ("**/*.map", "*webpack-macros.html", "locales", "scripts/fontawesome.js*")
@@ -109,18 +104,10 @@ def forbid_other_hosts(page: BeautifulSoup) -> None:
 def drop_idle_scripts(page: BeautifulSoup) -> None:
     """Remove the scripts that this page does not need."""
     tags = page.find_all(True)
-    written = {name for tag in tags for name in (*tag.get("class", ()), tag.get("id"))}
-
-    def matches(selector: str) -> bool:
-        """Search only if the page has all names of a selector: a search without result is slow."""
-        named = (NAMED.findall(part) for part in selector.split(","))
-        return any(written.issuperset(names) for names in named) and bool(
-            page.select_one(selector)
-        )
-
-    idle = NEEDED_NOWHERE.union(*(NEEDED_BY[s] for s in NEEDED_BY if not matches(s)))
+    names = {name for tag in tags for name in (*tag.get("class", ()), tag.get("id"))}
     for script in page.find_all("script", src=True):
-        if Path(urlsplit(str(script["src"])).path).name in idle:
+        file = Path(urlsplit(str(script["src"])).path).name
+        if not names & NEEDED_BY.get(file, names):
             script.decompose()
 
 

@@ -1,7 +1,6 @@
 """The look in a browser: the palette arrives in both themes, and everything on it can be read."""
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 
 import matplotlib as mpl
@@ -10,7 +9,7 @@ from contrast import GROUNDS, contrast
 from playwright.sync_api import Page
 
 from robo_genesis.core import plotting
-from robo_genesis.core.palette import MARKS, PARTS, css_name
+from robo_genesis.core.palette import MARKS, PARTS
 from robo_genesis.lessons.l04 import spec
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
@@ -123,25 +122,3 @@ def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, ad
         assert right <= 390
         assert scale * min(letters or [drawn]) >= 11
     page.close()
-
-
-def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
-    page.locator("[data-name=replay-l04-lecture-cpu] .veil button").click()
-    names = {css_name(name): name for name in MARKS}
-    lines = page.eval_on_selector_all(
-        ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)",
-        """lines => lines.map(line => {
-          const { stroke, strokeDasharray } = getComputedStyle(line);
-          return [line.classList.item(1), stroke, strokeDasharray.match(/[\\d.]+/g) ?? []];
-        })""",
-    )
-    for css_class, ink, dashes in lines:
-        mark = MARKS[names[css_class]]
-        assert hexadecimal(ink) == getattr(mark, theme), css_class
-        assert [float(dash) for dash in dashes] == [
-            2 * length for length in mark.dashes
-        ], css_class
-    beside = page.locator("[data-name=replay-l04-lecture-cpu] .plot:first-child .name")
-    assert {"G2", "G3"} <= {*beside.all_text_contents()} <= {"G1", "G2", "G3"}
-    count = Counter(names[css_class] for css_class, *_ in lines)
-    assert count == {"first": 3, "second": 3, "third": 3, "target": 1, "limit": 2}

@@ -1,9 +1,7 @@
 """The site is used served, and out of the archive from disk."""
 
 import pytest
-from watching import SERVED_ONLY, watch
-
-from robo_genesis.pipeline.html.checks import Site
+from watching import watch
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -58,16 +56,3 @@ def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
     assert problems == []
     context.close()
-
-
-def test_links_inside_the_site_name_files_so_that_they_work_from_disk(site):
-    wrong = []
-    pages = Site(site).pages.items()
-    for path, address in (
-        (path, url) for path, page in pages for url in page.addresses
-    ):
-        url = address.partition("#")[0].partition("?")[0]
-        leads = not url.startswith("/") and path.parent.joinpath(url).is_file()
-        if url and ":" not in url and path.name not in SERVED_ONLY and not leads:
-            wrong.append(f"{path}: {url}")
-    assert wrong == []

@@ -1,12 +1,10 @@
 """The replays of the built pages: the robot of a lecture is where the record says, and all fit."""
 
 from collections.abc import Iterator
-from io import BytesIO
 
 import numpy as np
 import pytest
 from built_site import PAGES
-from PIL import Image
 from playwright.sync_api import Page
 from watching import call, choose, errors, show_all, show_model
 
@@ -91,43 +89,6 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
         assert turned == pytest.approx(1, abs=1e-6), link
 
 
-def test_the_picture_is_that_of_the_model(lecture):
-    """Both show the robot in one place: most points of one are in the other."""
-    choose(lecture, "G1", 0, REPLAY)
-    lecture.wait_for_function(POSED, arg=["G1", 0.0])
-    stage = lecture.locator(f"{REPLAY} .stage")
-    model = lightness(lecture, stage, "model-viewer")
-    picture = lightness(lecture, stage, ".still")
-    above = np.s_[: int(0.7 * len(model))]  # the floor is below; its light differs
-    robot, drawn = (
-        np.abs(image - image[20, -20])[above] > 15 for image in (model, picture)
-    )
-    assert 0.15 < robot.mean() < 0.5
-    assert (robot & drawn).sum() / (robot | drawn).sum() > 0.8
-
-
-def test_the_arm_is_whole_where_it_meets_its_copy(browser_3d, address):
-    """Surfaces in one place would flicker: at the end of each run the copies hardly show."""
-    page = browser_3d.new_page(viewport={"width": 480, "height": 700})
-    page.goto(f"{address}/{LECTURE}.html")
-    show_model(page, REPLAY)
-    stage, shown = page.locator(f"{REPLAY} .stage"), {}
-    for copies in (True, False):
-        if not copies:
-            call(page, "hide_copies")
-        for case in find_replay("l04").cases:
-            choose(page, case, 0, REPLAY)
-            choose(page, case, 120, REPLAY)
-            page.wait_for_function(POSED, arg=[case, 1.2])
-            shown[case, copies] = lightness(page, stage, "model-viewer")
-    for case in find_replay("l04").cases:
-        with_copies, alone = shown[case, True], shown[case, False]
-        arm = np.abs(alone - alone[20, -20])[: int(0.7 * len(alone))] > 15
-        differ = np.abs(with_copies - alone)[: len(arm)] > 12
-        assert (arm & differ).sum() / arm.sum() < 0.03, case
-    page.close()
-
-
 STEPS = ".replay[data-name=replay-l04-lecture-cpu-steps]"
 CURVES = f"{STEPS} polyline"
 
@@ -181,18 +142,6 @@ def test_without_javascript_the_samples_are_in_a_fold(browser_3d, address, name)
     assert page.locator(".replay + details summary").first.is_visible()
     assert not page.locator(".veil").first.is_visible()
     page.context.close()
-
-
-def lightness(page, stage, part) -> np.ndarray:
-    """Return a screenshot of one part of the stage alone, 0 to 255."""
-    only = f".stage > :not({part}) {{ visibility: hidden; }} .stage > {part} {{ display: block; }}"
-    style = page.add_style_tag(
-        content=only.replace("}", " }").replace(";", " !important;")
-    )
-    with Image.open(BytesIO(stage.screenshot())) as image:
-        found = np.asarray(image.convert("L")).astype(int)
-    style.evaluate("style => style.remove()")
-    return found
 
 
 @pytest.mark.parametrize("name", PLAYING)

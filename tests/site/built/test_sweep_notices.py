@@ -1,7 +1,6 @@
 """A home page that breaks every rule of the sweep: each rule must complain of its own."""
 
 import random
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -132,16 +131,3 @@ def test_every_rule_is_broken():
 )
 def test_a_page_that_breaks_a_rule_is_noticed(spoiled, rule, complaint):
     assert [text for text in spoiled[rule] if complaint in text], spoiled[rule]
-
-
-def test_a_pale_text_is_noticed_in_the_dark(browser, address):
-    phone = replace(KINDS["phone"], rules=("axe", "theme"))
-    assert phone.scheme == "dark"
-    found = Visit(browser, address, "index.html", phone).wrong["axe"]
-    assert [text for text in found if text.startswith("1280 px: color-contrast: ")], (
-        found
-    )
-
-
-def test_a_box_of_its_own_may_hold_what_is_wide(spoiled):
-    assert not [text for text in spoiled["width"] if "wide</span>" in text]

@@ -5,7 +5,7 @@ from bs4 import BeautifulSoup
 from PIL import Image
 
 from robo_genesis.site.figures import drawings
-from robo_genesis.site.frame.postprocess import drop_unused_files, finish_page
+from robo_genesis.site.frame.postprocess import finish_page
 
 HEAD = """\
 <script data-cfasync="false">document.documentElement.dataset.mode = "auto";</script>
@@ -115,18 +115,3 @@ def test_markup_outside_of_what_is_mended_comes_through(tmp_path):
     assert body in finish_page(
         f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path
     )
-
-
-def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):
-    gone = [
-        "_static/scripts/a.js.map",
-        "_static/scripts/fontawesome.js",
-        "_static/locales/de/x.mo",
-    ]
-    kept = ["_static/scripts/a.js", "index.html", "_static/course.css"]
-    for name in gone + kept:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).touch()
-    drop_unused_files(tmp_path)
-    assert [name for name in gone if (tmp_path / name).exists()] == []
-    assert [name for name in kept if not (tmp_path / name).exists()] == []
