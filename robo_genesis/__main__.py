@@ -204,19 +204,8 @@ COMMANDS: dict[Callable[..., Any], tuple[str, dict[str, dict[str, Any]]]] = {
     ),
     lesson: ("added", {"new": {"help": "name of the lesson, such as l09"}}),
     serve: ("served", {"--book": FOLDERS["--book"], "--port": PORT}),
-    live: (
-        "shown",
-        FOLDERS | SITE | {"--port": PORT},
-    ),
-    lock: (
-        "written",
-        {
-            "--upgrade": {
-                "default": "",
-                "help": "packages that get their newest version",
-            }
-        },
-    ),
+    live: ("shown", FOLDERS | SITE | {"--port": PORT}),
+    lock: ("written", {"--upgrade": {"default": "", "help": "packages to upgrade"}}),
     repin: ("changed", {"genesis": {"help": "version of the engine"}}),
     sizes: ("compared", {"--book": FOLDERS["--book"]}),
 }

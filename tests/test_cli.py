@@ -58,7 +58,7 @@ def make(folder: Path, *words: str, **given: str) -> str:
         ("lesson", {"NEW": "l09"}, "lesson|l09"),
         ("repin", {"GENESIS": "1.4.5"}, "repin|1.4.5"),
         ("lock", {"UPGRADE": "numpy"}, "lock|--upgrade=numpy"),
-        ("live", {"EXECUTE": "1"}, "live|--execute=1"),
+        ("live", {"PORT": "0"}, "live|--port=0"),
     ],
 )
 @pytest.mark.parametrize("before", [False, True])
