@@ -19,17 +19,29 @@ FLOOR_RGB = (205, 205, 205)
 
 
 @dataclass(frozen=True, slots=True)
+class Hinge:
+    """The joint that turns a link; `line` is a point and the direction of its axis.
+
+    `line` (2, 3) is in the frame of the link; the direction has length 1.
+    """
+
+    joint: str
+    line: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class Part:
     """The triangles of one link that have one colour.
 
     `vertices` (v, 3) [m] in the link's frame; `faces` (f, 3) count vertices; `rgb` 0 to
-    255.
+    255. `hinge` is None for a link that no single joint turns.
     """
 
     link: str
     rgb: tuple[int, int, int]
     vertices: FloatArray
     faces: np.ndarray
+    hinge: Hinge | None = None
 
 
 def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
@@ -60,12 +72,20 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
             by_colour.setdefault((red, green, blue), []).append(
                 (placed, np.array(mesh.faces))
             )
+        hinge = hinge_of(link)
         for rgb, meshes in by_colour.items():
             vertices, faces = trimesh.util.append_faces(*zip(*meshes, strict=True))
-            parts.append(
-                Part(name, rgb, vertices.astype(np.float32), faces.astype(np.int32))
-            )
+            single = vertices.astype(np.float32), faces.astype(np.int32)
+            parts.append(Part(name, rgb, *single, hinge))
     return parts
+
+
+def hinge_of(link: Any) -> Hinge | None:
+    """Return the joint that turns a link of the engine, None if it has another kind."""
+    for joint in link.joints:
+        if joint.n_dofs == 1 and np.any(joint.dofs_motion_ang):
+            return Hinge(joint.name, np.array([joint.pos, joint.dofs_motion_ang[0]]))
+    return None
 
 
 def fixed_parts(entity: Any) -> list[Part]:
@@ -80,6 +100,7 @@ def fixed_parts(entity: Any) -> list[Part]:
             part,
             link=WORLD,
             vertices=(rotate(quat, part.vertices) + place).astype(np.float32),
+            hinge=None,
         )
         for part in read_shape(entity)
     ]
@@ -156,24 +177,23 @@ def write_shape(folder: Path, parts: Sequence[Part]) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     meshes = {f"vertices_m_{k}": part.vertices for k, part in enumerate(parts)}
     meshes |= {f"faces_{k}": part.faces for k, part in enumerate(parts)}
-    links, rgb = [part.link for part in parts], [part.rgb for part in parts]
-    np.savez_compressed(
-        folder / FILE, allow_pickle=False, link=links, rgb=rgb, **meshes
-    )
+    meshes |= {f"hinge_{k}": p.hinge.line for k, p in enumerate(parts) if p.hinge}
+    facts = {
+        "link": [part.link for part in parts],
+        "rgb": [part.rgb for part in parts],
+        "joint": [part.hinge.joint if part.hinge else "" for part in parts],
+    }
+    np.savez_compressed(folder / FILE, allow_pickle=False, **facts, **meshes)
     return folder / FILE
 
 
 def load_shape(file: Path) -> list[Part]:
     """Return the parts that `write_shape` wrote."""
+    parts = []
     with np.load(file, allow_pickle=False) as stored:
-        return [
-            Part(
-                link,
-                (red, green, blue),
-                stored[f"vertices_m_{k}"],
-                stored[f"faces_{k}"],
-            )
-            for k, (link, (red, green, blue)) in enumerate(
-                zip(stored["link"].tolist(), stored["rgb"].tolist(), strict=True)
-            )
-        ]
+        facts = (stored[name].tolist() for name in ("link", "rgb", "joint"))
+        for k, (link, (red, green, blue), joint) in enumerate(zip(*facts, strict=True)):
+            hinge = Hinge(joint, stored[f"hinge_{k}"]) if joint else None
+            mesh = stored[f"vertices_m_{k}"], stored[f"faces_{k}"]
+            parts.append(Part(link, (red, green, blue), *mesh, hinge))
+    return parts

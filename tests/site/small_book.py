@@ -15,7 +15,6 @@ from robo_genesis.pipeline.pages.page_index import PageIndex
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.course.course_map import FILE
-from robo_genesis.site.text import glossary
 
 PUBLISHED = {"page": "page", "outcomes": ["read a `qpos`", "stop"]}
 MAP = [
@@ -41,19 +40,14 @@ WORDS = "word " * 600  # Four minutes to read
 GLOSSARY = paragraphs(
     "# Glossary",
     "```{glossary}\nDOF\ndegree of freedom\n  One axis of motion. It may turn or slide.",
-    "overshoot\n  How far it passes, counted along its DOF.",
+    "overshoot\n  How far it passes, counted along its {term}`DOF`.",
     "PD control\n  A law with two gains.",
     "step\ntime step\n  What one call of the solver covers.\n```",
 )
 TERMS = paragraphs(
-    "# Overshoot and DOF",
-    "The `DOF` of [an overshoot](glossary.md) is $DOF$.",
-    "| DOF |\n| :--- |\n| overshoot |",
-    "Overshoots count as overshoot; a\ndegree\nof freedom is a DOF, two are DOFs.",
-    "A non-DOF, an *overshoot* more.",
-    "A step is a time step.",
+    "# Terms",
+    "{term}`Overshoots<overshoot>` of a\n{term}`degree\nof freedom`; a DOF more.",
 )
-FORMS = "forms: {DOF: [DOFs], overshoot: [overshoots]}\nunlinked: [step, time step]\n"
 
 DESCRIBED = "# Described\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100
 SECONDS = {"timed": [0.26, 12.345, 3.0], "other": [2.0]}
@@ -118,5 +112,4 @@ def render_small_book(folder: Path) -> Path:
     texts["other"] = notebook(cell("4"), title="Other")
     book = make_book(folder, **texts)
     (book / FILE).write_text(yaml.safe_dump(MAP))
-    (book / glossary.FORMS).write_text(FORMS)
     return render_with(book, folder, SECONDS)

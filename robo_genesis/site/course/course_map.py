@@ -53,8 +53,8 @@ def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        ValueError: the file is not a list of lessons, an id occurs twice, a lesson
-            needs one that does not come before it, or a published one has no outcomes.
+        ValueError: the file is not a list of lessons, or a lesson needs one that does
+            not come before it.
     """
     try:
         rows = yaml.safe_load((book / FILE).read_text("utf8"))
@@ -63,18 +63,11 @@ def read_map(book: Path) -> list[Lesson]:
         raise ValueError(f"{FILE}: {error}") from error
     for place, lesson in enumerate(lessons):
         known = [earlier.id for earlier in lessons[:place]]
-        if lesson.id in known:
-            raise ValueError(f"{FILE} names {lesson.id} twice.")
         unknown = [need for need in lesson.needs or () if need not in known]
         if unknown:
             raise ValueError(
                 f"{FILE}: {lesson.id} needs {', '.join(unknown)}; before it come "
                 f"{', '.join(known) or 'none'}."
-            )
-        if lesson.page and not lesson.outcomes:
-            raise ValueError(
-                f"{FILE}: {lesson.id} is published and has no outcomes. Add `outcomes:` with up to "
-                "three things that a student can do after it."
             )
     return lessons
 
@@ -166,7 +159,7 @@ class CourseMap(MapDirective):
         """Return the cards and the list, without the list where no lesson is planned."""
         lessons = self.lessons()
         cards = [self.card(lesson, lesson.page) for lesson in lessons if lesson.page]
-        shown: list[nodes.Node] = [
+        lists: list[nodes.Node] = [
             nodes.bullet_list("", *cards, classes=["course-map"])
         ]
         planned = [
@@ -175,53 +168,44 @@ class CourseMap(MapDirective):
             if not lesson.page
         ]
         if planned:
-            shown.append(nodes.paragraph("", "Planned lessons:"))
-            shown.append(nodes.bullet_list("", *planned, classes=["planned-lessons"]))
-        return shown
+            lists.append(nodes.paragraph("", "Planned lessons:"))
+            lists.append(nodes.bullet_list("", *planned, classes=["planned-lessons"]))
+        return lists
 
     def card(self, lesson: Lesson, lecture: str) -> nodes.list_item:
         """Return the card of a published lesson."""
         title = page_link(self.env.docname, lecture, lesson.title)
-        return nodes.list_item(
-            "",
-            card_picture(lesson=lesson.id.lower()),
-            named(lesson, title),
-            bullets(*map(marked, lesson.outcomes)),
-            *needs_line(lesson),
-            *self.times(lesson, lecture),
-            ids=[anchor(lesson.id)],
-        )
+        card = nodes.list_item("", card_picture(lesson=lesson.id.lower()))
+        card += [named(lesson, title), bullets(*map(marked, lesson.outcomes))]
+        if lesson.needs is not None:
+            before = listed(lesson.needs) if lesson.needs else "no other lesson"
+            card += nodes.paragraph("", f"Builds on {before}.", classes=["needs"])
+        card += self.times(lesson, lecture)
+        card["ids"] = [anchor(lesson.id)]
+        return card
 
     def times(self, lesson: Lesson, lecture: str) -> list[nodes.Node]:
         """Return a line for the lecture, for the lab, and for the other pages together."""
         pages = lesson_pages(self.env.found_docs, lesson.id.lower())
-        others = [
-            page for name, page in pages.items() if name != LAB and page != lecture
-        ]
-        linked = {"Lecture": lecture} | ({"Lab": pages[LAB]} if LAB in pages else {})
-        rows: list[tuple[str | nodes.Node, list[str]]] = [
+        lab = pages.pop(LAB, None)
+        others = [page for page in pages.values() if page != lecture]
+        lines = [
             (page_link(self.env.docname, page, word), [page])
-            for word, page in linked.items()
+            for word, page in (("Lecture", lecture), ("Lab", lab))
+            if page
         ]
         if others:
-            rows.append((f"{len(others)} more page{'s' * (len(others) > 1)}", others))
+            words = f"{len(others)} more page{'s' * (len(others) > 1)}"
+            lines.append((nodes.Text(words), others))
         return [
-            paragraph(what, ": ", page_minutes(pages=of), classes=["time"])
-            for what, of in rows
+            paragraph(words, ": ", page_minutes(pages=names), classes=["time"])
+            for words, names in lines
         ]
 
 
 def named(lesson: Lesson, title: str | nodes.Node) -> nodes.paragraph:
     """Return a line of a lesson's name and title."""
     return paragraph(nodes.strong("", f"{lesson.id} "), title)
-
-
-def needs_line(lesson: Lesson) -> list[nodes.Node]:
-    """Return the line with the lessons that come before, none where that is not decided yet."""
-    if lesson.needs is None:
-        return []
-    before = listed(lesson.needs) if lesson.needs else "no other lesson"
-    return [nodes.paragraph("", f"Builds on {before}.", classes=["needs"])]
 
 
 def anchor(lesson: str) -> str:
@@ -231,26 +215,21 @@ def anchor(lesson: str) -> str:
 
 def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
     """Return the time that some pages take together."""
-    found: list[Minutes] = [env.metadata[page][MINUTES] for page in pages]
-    read, work = sum(time.read for time in found), sum(time.work for time in found)
-    return Minutes(read, work, sheet=any(time.sheet for time in found))
+    times: list[Minutes] = [env.metadata[page][MINUTES] for page in pages]
+    read, work = sum(time.read for time in times), sum(time.work for time in times)
+    return Minutes(read, work, sheet=any(time.sheet for time in times))
 
 
 def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:
     """Write the minutes of the pages, as each page itself shows them, and the pictures of cards."""
+    names = sorted(name for _, name in app.env.images.values())
+    up = "../" * docname.count("/")
     for place in list(document.findall(card_picture)):
-        lesson, names = place["lesson"], [name for _, name in app.env.images.values()]
-        up, alt = (
-            "../" * docname.count("/"),
-            f"{lesson.upper()}: the start of its replay.",
-        )
-        of_lesson = fnmatch.filter(names, f"replay-{lesson}-lecture-cpu*.webp")
-        place.replace_self(
-            [
-                html(f'<img src="{up}_images/{n}" alt="{alt}">')
-                for n in sorted(of_lesson)[:1]
-            ]
-        )
+        lesson = place["lesson"]
+        pictures = fnmatch.filter(names, f"replay-{lesson}-lecture-cpu*.webp")[:1]
+        alt = f"{lesson.upper()}: the start of its replay."
+        images = [f'<img src="{up}_images/{name}" alt="{alt}">' for name in pictures]
+        place.replace_self([*map(html, images)])
     for place in list(document.findall(page_minutes)):
         place.replace_self(nodes.Text(str(total_minutes(app.env, place["pages"]))))
 

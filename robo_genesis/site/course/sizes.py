@@ -12,8 +12,7 @@ from nbformat.v4 import new_markdown_cell, new_notebook
 
 from robo_genesis.pipeline.pages.book import LAB, WORK_SHEET, Page, read_notebook
 from robo_genesis.pipeline.pages.page_rules import ADMONITIONS, DIRECTIVE, PARSER
-from robo_genesis.site.takeaways.plain_markdown import excerpt
-from robo_genesis.site.text.left_out import without_docstrings
+from robo_genesis.site.text.excerpts import excerpt, without_docstrings
 
 WORDS_A_MINUTE = (
     150  # A slow pace, for technical prose; code, tables and formulas are not counted
@@ -56,6 +55,8 @@ LIMITS = {
 }
 
 SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
+# The entry of a term, in a role whose text differs: not visible.
+ENTRY = re.compile(r"(?<=\w)<[^<>]+>(?=`)")
 INCLUDE = re.compile(
     r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL
 )
@@ -154,7 +155,7 @@ def count_words(text: str) -> int:
         if token.type in ("table_open", "table_close"):
             in_table = token.type == "table_open"
         elif token.type == "inline" and not in_table:
-            words += len(token.content.split())
+            words += len(ENTRY.sub("", token.content).split())
         elif directive and directive[1] in SHOWN_AS_PROSE:
             inside = parse_directive_text(TestDirective, directive[2], token.content)
             if "dropdown" not in inside.options.get("class", ""):

@@ -18,7 +18,7 @@ from trimesh.transformations import quaternion_matrix, rotation_matrix
 from robo_genesis.core import palette
 from robo_genesis.core.channels import Run, Runs
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.visual_shape import WORLD, Part, check_links, floor
+from robo_genesis.sim.visual_shape import WORLD, Hinge, Part, check_links, floor
 from robo_genesis.site.figures.case_labels import MARKS
 
 # Width of the tiles of the floor [m]; they show its distance and the motion above it
@@ -29,10 +29,6 @@ RAISED = 5e-4  # Height of the tiles above the floor that they are drawn on [m]
 
 # Colour, radius and length of the rod along a joint's axis [m].
 AXIS_RGB, AXIS_RADIUS, AXIS_LENGTH = (240, 190, 0), 0.006, 0.4
-
-# Tolerance of the angle between two links against the recorded position of their joint
-# [rad].
-SAME_ANGLE = 1e-3
 
 # Direction from the view's centre to the camera: about the vertical and from it [rad].
 THETA, PHI = np.radians(30), np.radians(78)
@@ -72,19 +68,6 @@ class Camera:
 
 
 @dataclass(frozen=True, slots=True)
-class Hinge:
-    """A joint that turns links: `parent` is the number of the link above it, `moved` those below.
-
-    `axis` (3,) and `point` (3,) [m] are a line in the parent's frame.
-    """
-
-    parent: int
-    moved: tuple[int, ...]
-    axis: FloatArray
-    point: FloatArray
-
-
-@dataclass(frozen=True, slots=True)
 class Scenery:
     """The parts to draw with the camera; `axis` says whether one of them is the axis of a joint.
 
@@ -102,29 +85,26 @@ class Scenery:
 
 
 def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
-    """Return what the replay of some runs shows; several robots in one view have no axis.
+    """Return what the replay of some runs shows.
 
     Raises:
         ValueError: a part belongs to a link that is not in the record, or two links
             have one name.
     """
     check_links(shape, runs.links)
-    hinge, followed = (
-        None if runs.replay.places else find_hinge(runs),
-        find_followed(runs),
-    )
+    followed = find_followed(runs)
     *_, tiles = floors = floor_of(shape)
     parts, ground = [*shape, *floors], float(tiles.vertices[:, 2].max())
-    seen = swept(shape, runs, followed)
-    camera = fitted(
-        np.concatenate([seen, seen * [1, 1, 0] + [0, 0, ground]])
-    )  # with the shadows
-    if hinge is None:
-        return Scenery(parts, camera, followed=followed, ground=ground)
-    parts.append(rod(runs.links[hinge.parent], hinge))
-    return Scenery(
-        parts, camera, axis=True, target=target_poses(runs, hinge), ground=ground
-    )
+    moving = swept(shape, runs, followed)
+    shadows = moving * [1, 1, 0] + [0, 0, ground]
+    camera = fitted(np.concatenate([moving, shadows]))
+    for part in shape:
+        if part.hinge and part.hinge.joint == runs.subject:
+            turned = list(runs.links).index(part.link)
+            target = target_poses(runs, turned, part.hinge)
+            parts.append(rod(runs, turned, part.hinge))
+            return Scenery(parts, camera, axis=True, target=target, ground=ground)
+    return Scenery(parts, camera, followed=followed, ground=ground)
 
 
 def find_followed(runs: Runs) -> int | None:
@@ -135,49 +115,16 @@ def find_followed(runs: Runs) -> int | None:
     return 0 if len(runs.links) == 1 and np.ptp(places, axis=0).max() > TILE else None
 
 
-def find_hinge(runs: Runs) -> Hinge | None:
-    """Return the joint of the first channel, None if no link turns about an axis by its angle.
+def target_poses(runs: Runs, turned: int, hinge: Hinge) -> dict[str, FloatArray]:
+    """Return the poses of the turned links at the target, empty if the runs have several targets.
 
-    The links are in the order of their chain. The turn of the first link that moves
-    against the one before it, in the frame of that one, contains no motion of other
-    joints.
-    """
-    angle = next(iter(runs.channels[0].values.values())).astype(float)
-    trace, last = runs.first, int(np.abs(angle - angle[0]).argmax())
-    turned = angle[last] - angle[0]
-    links = [poses(trace, k)[[0, last]] for k in range(len(runs.links))]
-    moved = [
-        k
-        for k, (start, end) in enumerate(links)
-        if turn(start, end)[0] > abs(turned) / 2
-    ]
-    if (
-        runs.channels[0].unit != "rad"
-        or abs(turned) < SAME_ANGLE
-        or not moved
-        or moved[0] == 0
-    ):
-        return None
-    parent, first = links[moved[0] - 1], links[moved[0]]
-    start, end = (
-        np.linalg.solve(above, below)
-        for above, below in zip(parent, first, strict=True)
-    )
-    size, axis = turn(start, end)
-    if abs(size - abs(turned)) > SAME_ANGLE:
-        return None
-    motion, origin = end @ np.linalg.inv(start), start[:3, 3]
-    # Of the axis, the point nearest to the link's origin: motion keeps it in place.
-    shift = end[:3, 3] - origin
-    point = origin + np.linalg.lstsq(np.eye(3) - motion[:3, :3], shift, rcond=1e-6)[0]
-    return Hinge(moved[0] - 1, tuple(moved), np.sign(turned) * axis, point)
+    A rigid link below the joint turns about its axis, so its pose at the start decides
+    the result. The links are in the order of their chain.
 
-
-def target_poses(runs: Runs, hinge: Hinge) -> dict[str, FloatArray]:
-    """Return the poses of the moved links at the target, empty if the runs have several targets.
-
-    A rigid link below the joint turns about the axis, so its pose at the start decides
-    the result.
+    Args:
+        runs: whose first channel is the position of the joint.
+        turned: number of the first link that the joint turns.
+        hinge: the joint.
     """
     position = runs.channels[0]
     targets = {v for level in runs.levels_of(position) for v in level.values.values()}
@@ -185,20 +132,23 @@ def target_poses(runs: Runs, hinge: Hinge) -> dict[str, FloatArray]:
     if len(targets) != 1 or len(starts) != 1:
         return {}
     ((target,),), (start,) = targets, starts
-    trace = runs.first
-    parent = poses(trace, hinge.parent)[0]
-    axis, point = parent[:3, :3] @ hinge.axis, (parent @ [*hinge.point, 1.0])[:3]
-    turned = rotation_matrix(target - start, axis, point)
-    return {runs.links[k]: turned @ poses(trace, k)[0] for k in hinge.moved}
+    place, (point, axis) = poses(runs.first, turned)[0], hinge.line
+    world_axis, world_point = place[:3, :3] @ axis, (place @ [*point, 1.0])[:3]
+    turn = rotation_matrix(target - start, world_axis, world_point)
+    below = range(turned, len(runs.links))
+    return {runs.links[k]: turn @ poses(runs.first, k)[0] for k in below}
 
 
-def rod(link: str, hinge: Hinge) -> Part:
-    """Return a rod along the axis, as a part of the link above the joint."""
-    half = hinge.axis * AXIS_LENGTH / 2
+def rod(runs: Runs, turned: int, hinge: Hinge) -> Part:
+    """Return a rod along the axis of a joint, as a part of the link above it."""
+    point, axis = hinge.line
+    half = axis * AXIS_LENGTH / 2
     mesh = trimesh.creation.cylinder(
-        AXIS_RADIUS, segment=[hinge.point - half, hinge.point + half], sections=16
+        AXIS_RADIUS, segment=[point - half, point + half], sections=16
     )
-    return Part(link, AXIS_RGB, mesh.vertices, mesh.faces)
+    above, below = (poses(runs.first, k)[0] for k in (turned - 1, turned))
+    mesh.apply_transform(np.linalg.solve(above, below))
+    return Part(runs.links[turned - 1], AXIS_RGB, mesh.vertices, mesh.faces)
 
 
 def floor_of(shape: Sequence[Part]) -> list[Part]:
@@ -271,17 +221,6 @@ def poses(trace: Run, link: int) -> FloatArray:
     return found
 
 
-def turn(start: FloatArray, end: FloatArray) -> tuple[float, FloatArray]:
-    """Return angle [rad] and axis (3,) of the rotation between two poses (4, 4)."""
-    rotation = end[:3, :3] @ start[:3, :3].T
-    twice = np.array(
-        [rotation[k - 1, k - 2] - rotation[k - 2, k - 1] for k in range(3)]
-    )
-    sine = float(np.linalg.norm(twice)) / 2
-    angle = float(np.arctan2(sine, (np.trace(rotation) - 1) / 2))
-    return angle, twice / (2 * sine) if sine else np.array([0.0, 0.0, 1.0])
-
-
 def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
     """Return runs whose traces all have the links of all runs, and the shape of these links.
 
@@ -316,7 +255,7 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
         """Return a part of one run; the link that its curve follows has the curve's colour."""
         red, green, blue = bytes.fromhex(palette.MARKS[marks[case]].light[1:])
         rgb = (red, green, blue) if part.link == runs.replay.follows else part.rgb
-        return replace(part, link=f"{case}: {part.link}", rgb=rgb)
+        return replace(part, link=f"{case}: {part.link}", rgb=rgb, hinge=None)
 
     parts = [
         of_case(part, case)

@@ -3,7 +3,6 @@
 The package is a wheel, built without the network: the same files give the same bytes.
 """
 
-import json
 import os
 import shutil
 import sys
@@ -21,7 +20,13 @@ from nbformat import NotebookNode
 from sphinx.config import Config
 
 from robo_genesis.core import project
-from robo_genesis.core.files import NO_SOURCE, derived, files_below, write_whole
+from robo_genesis.core.files import (
+    NO_SOURCE,
+    derived,
+    files_below,
+    files_digest,
+    write_whole,
+)
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_any_trace
@@ -29,7 +34,7 @@ from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages import page_index
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.sources import PACKAGE, Tree
+from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.evidence.values import measured
@@ -52,11 +57,8 @@ AXES = {
 # The field that holds the value before the first step, where it was read.
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
 
-DEBIAN = (
-    "python3-venv",
-    "libegl1",
-    "libgl1",
-)  # Packages of Debian that a fresh system lacks
+# Packages of Debian that a fresh system lacks.
+DEBIAN = "python3-venv libegl1 libgl1"
 
 CONSTRAINTS = "constraints.txt"  # The lock, beside the wheel
 
@@ -88,33 +90,38 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
         folder: gets the wheel, the constraints, and a folder for the lab.
         config: of the book.
     """
+    name = f"{page.lesson}-{page.page}"
     executed = page_index.executed_notebook(page.docname, page.notebook)
     run = page_index.page_outputs(f"{page.lesson}/{page.page}") / BACKEND
-    name = f"{page.lesson}-{page.page}"
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
     wheel = build_wheel(folder, repository=config.course_repository)
-    constraints = Path(
-        shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS)
-    )
+    constraints = folder / CONSTRAINTS
+    shutil.copy(project.ROOT / "requirements.lock", constraints)
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(config.torch_index, student.name)
-    manifest = bundle.read_manifest(run)
-    origin = partial(origin_of, page, manifest, commands, config)
+    origin = partial(
+        origin_of, page, bundle.read_manifest(run), commands, config
+    )
     needed = {
         project.ENGINE: project.engine_pin(),
         project.COURSE: package_facts()["version"],
     }
     check = CHECK.format(needed=needed, wheel=wheel.name)
-    address = f"{site_address()}{page.docname}.html" if site_address() else ""
-    writer = Writer(page.path.parent, lambda _: NOT_SHOWN, address)
-    _write(student, student_notebook(page, origin("student notebook"), check, writer))
-    writer = replace(writer, measured=lambda value: measured(*value.split(" ", 1))[0])
+    writer = writer_of(page.path, page.docname)
+    hidden = replace(writer, measured=lambda _: NOT_SHOWN)
+    _write(student, student_notebook(page, origin("student notebook"), check, hidden))
     _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
     units = Path(shutil.copy(run / "arrays.json", own))
     arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))
     return Takeaways(student, ran, wheel, constraints, units, arrays, figures, commands)
+
+
+def writer_of(source: Path, docname: str) -> Writer:
+    """Return the writer of a page's prose with the values of this build."""
+    address = f"{site_address()}{docname}.html" if site_address() else ""
+    return Writer(source.parent, lambda text: measured(*text.split(" ", 1))[0], address)
 
 
 def run_commands(torch_index: str, notebook: str = "") -> tuple[str, ...]:
@@ -136,9 +143,7 @@ def run_commands(torch_index: str, notebook: str = "") -> tuple[str, ...]:
 def system() -> str:
     """Return the system that the commands need."""
     python = package_facts()["requires-python"].replace(",", ", ")
-    return (
-        f"Linux with Python {python} (Debian: `apt install {' '.join(DEBIAN)}` first)"
-    )
+    return f"Linux with Python {python} (Debian: `apt install {DEBIAN}` first)"
 
 
 def wheel_name() -> str:
@@ -178,20 +183,11 @@ def _write(path: Path, notebook: NotebookNode) -> None:
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
     """Copy each case's archive, and write it as a table; yield (case, CSV, npz)."""
     described = bundle.read_arrays(run)
-    code = (path.read_bytes() for path in Tree().closure([__name__]).values())
-    decide = [(run / "arrays.json").read_bytes(), *code]
     for case, arrays in described.cases.items():
         archive, table = folder / f"{case}.npz", folder / f"{case}.csv"
         shutil.copy(run / arrays.file, archive)
-
-        def make(case: str = case) -> bytes:
-            return csv_text(
-                read_any_trace(run, described, case), described, case
-            ).encode()
-
-        table.write_bytes(
-            derived("table", [case.encode(), archive.read_bytes(), *decide], make)
-        )
+        trace = read_any_trace(run, described, case)
+        table.write_text(csv_text(trace, described, case), "utf8", newline="")
         yield case, table, archive
 
 
@@ -204,37 +200,29 @@ def csv_text(trace: TimeSeries, described: bundle.Arrays, case: str) -> str:
     """
     columns: dict[str, list[str]] = {}
     for field, (name, dims, *_) in trace.arrays().items():
-        if field not in AT_REST.values():
-            labels = _labels(field, described.cases[case].variables[name], described)
-            for label, column in zip(
-                labels, _by_state(trace, field, dims), strict=True
-            ):
-                columns[label] = [
-                    "" if value is None else str(value) for value in column
-                ]
+        if field in AT_REST.values():
+            continue
+        labels = _labels(field, described.cases[case].variables[name], described)
+        rows = _by_state(trace, field, dims)
+        for label, column in zip(labels, zip(*rows, strict=True), strict=True):
+            columns[label] = ["" if value is None else str(value) for value in column]
     return csv_bytes([list(columns), *zip(*columns.values(), strict=True)]).decode()
 
 
 def _by_state(
     trace: TimeSeries, field: str, dims: Sequence[str]
-) -> list[tuple[np.generic, ...]]:
-    """Return the columns of a field, each with one entry per state, None where nothing was read."""
+) -> list[Sequence[np.generic | None]]:
+    """Return the numbers of a field at each state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
-    rows = list(
-        values.reshape(len(values), -1)
-        if dims[0] in ("state", "step")
-        else values[None]
+    if dims[0] not in ("state", "step"):
+        return [values.ravel()] * len(trace.t)
+    rows = list(values.reshape(len(values), -1))
+    if dims[0] == "state":
+        return rows
+    start = (
+        getattr(trace, AT_REST[field]) if field in AT_REST else [None] * len(rows[0])
     )
-    if dims[0] == "step":
-        first = (
-            getattr(trace, AT_REST[field])
-            if field in AT_REST
-            else [None] * len(rows[0])
-        )
-        rows = [first, *rows]
-    elif dims[0] != "state":
-        rows *= len(trace.t)
-    return list(zip(*rows, strict=True))
+    return [start, *rows]
 
 
 def _labels(
@@ -277,41 +265,27 @@ def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -
     Raises:
         ProjectError: setuptools failed; the message contains its output.
     """
-    files = [
-        *(root / source for source in SOURCES),
-        *sorted(files_below(root / PACKAGE, left_out=NO_SOURCE)),
-    ]
-    inputs = [
-        part
-        for p in files
-        for part in (os.fsencode(p.relative_to(root)), p.read_bytes())
-    ]
-    inputs.append(repository.encode())
+    package = sorted(files_below(root / PACKAGE, left_out=NO_SOURCE))
+    digest = files_digest(root, [*(root / source for source in SOURCES), *package])
+    inputs = [digest.encode(), repository.encode()]
     wheel = folder / wheel_name()
     write_whole(wheel, derived("wheel", inputs, lambda: built_wheel(root, repository)))
     return wheel
 
 
 def built_wheel(root: Path, repository: str = "") -> bytes:
-    """Return the content of the wheel; `root` stays as it is."""
+    """Return the content of the wheel; setuptools writes into a copy of the sources."""
     with tempfile.TemporaryDirectory() as name:
         copy = Path(name)
         for source in SOURCES:
             shutil.copy(root / source, copy)
         if repository:
             with (copy / SOURCES[0]).open("a", encoding="utf8") as facts:
-                facts.write(
-                    f"\n[project.urls]\nRepository = {json.dumps(repository)}\n"
-                )
-        shutil.copytree(
-            root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(*NO_SOURCE)
-        )
-        for path in copy.rglob("*"):
-            path.chmod(0o755 if path.is_dir() else 0o644)  # whatever the user's umask
+                facts.write(f'\n[project.urls]\nRepository = "{repository}"\n')
+        ignored = shutil.ignore_patterns(*NO_SOURCE)
+        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=ignored)
+        command = [sys.executable, "-c", BUILD, "."]
         settings = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}
-        command, refusal = (
-            [sys.executable, "-c", BUILD, "."],
-            "The package's wheel cannot be built",
-        )
-        name = output_of(command, refusal, cwd=copy, env=settings).splitlines()[-1]
-        return (copy / name).read_bytes()
+        failure = "The package's wheel cannot be built"
+        printed = output_of(command, failure, cwd=copy, env=settings)
+        return (copy / printed.splitlines()[-1]).read_bytes()

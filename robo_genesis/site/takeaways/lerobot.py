@@ -36,29 +36,25 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
-from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages.page_index import page_outputs
-from robo_genesis.site.evidence.plain_nodes import bullets
+from robo_genesis.site.evidence.plain_nodes import bullets, html
 from robo_genesis.site.evidence.runs import BACKEND
-from robo_genesis.site.evidence.values import measured
 from robo_genesis.site.figures.explorer import Recorded
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.takeaways.directive import TAKEAWAYS, link
-from robo_genesis.site.takeaways.plain_markdown import Writer, plain
+from robo_genesis.site.takeaways.directive import folder, links
+from robo_genesis.site.takeaways.files import writer_of
+from robo_genesis.site.takeaways.plain_markdown import plain
 
 FILE = "chunk-000/file-000"  # The only file of each kind
-
+CHUNK = "chunk-{chunk_index:03d}/file-{file_index:03d}"
 CAMERA = "observation.images.world"
-
-QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
+QUANTILES = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
 
 PIXELS = "yuv420p"
-
 # Of the encoder: few frames depend on others, and equal pictures give equal bytes.
 OPTIONS = {"crf": "18", "g": "2", "threads": "1"}
 
@@ -70,57 +66,42 @@ class DatasetDownload(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the link to the archive, its size and its digest."""
-        lesson_page, source = (
-            self.arguments[0],
-            Path(self.env.doc2path(self.env.docname)),
-        )
+        lesson_page = self.arguments[0]
         lesson = lesson_page.split("/")[0]
+        source = Path(self.env.doc2path(self.env.docname))
+        writer = writer_of(source, self.env.docname)
+        title = f"> {self.config.html_title}. © {self.config.author}. {writer.address}"
+        readme = f"{title.rstrip()}\n\n{plain(source.read_text('utf8'), writer)}"
         run = Recorded(lesson, page_outputs(lesson_page) / BACKEND).experiment
-        address = f"{site_address()}{self.env.docname}.html" if site_address() else ""
-        writer = Writer(
-            source.parent, lambda value: measured(*value.split(" ", 1))[0], address
-        )
-        title = (
-            f"> {self.config.html_title}. © {self.config.author}. {address}".rstrip()
-        )
-        text = f"{title}\n\n{plain(source.read_text('utf8'), writer)}"
-        made = archive(
-            find(f"robo_genesis.lessons.{lesson}.dataset.recorded")(run), text
-        )
-        files = Path(self.env.app.outdir) / TAKEAWAYS
-        file = (
-            files / f"{lesson}-dataset" / f"{lesson_page.replace('/', '-')}-lerobot.zip"
-        )
-        write_whole(file, made)
-        base = relative_uri(f"{self.env.docname}.html", TAKEAWAYS)
-        digest = hashlib.sha256(made).hexdigest()
-        return [
-            bullets((*link(base, files, file), ", SHA-256 ", nodes.literal("", digest)))
-        ]
+        recorded = find(f"robo_genesis.lessons.{lesson}.dataset.recorded")
+        content = archive(recorded(run), readme)
+        name = f"{lesson_page.replace('/', '-')}-lerobot.zip"
+        file = folder(self.env) / f"{lesson}-dataset" / name
+        write_whole(file, content)
+        digest = nodes.literal("", hashlib.sha256(content).hexdigest())
+        return [bullets((html(links(self.env)(file)), ", SHA-256 ", digest))]
 
 
 def archive(data: Mapping[str, Any], readme: str) -> bytes:
     """Return the zip with both datasets, the datasheet, settings, licence, and all digests."""
-    found = {f"state/{path}": content for path, content in files(data).items()}
+    members = {f"state/{path}": content for path, content in files(data).items()}
     if data["pictures"] is not None:
-        seen = {
-            n: of for n, of in data["columns"].items() if n not in data["privileged"]
+        columns = {
+            name: column
+            for name, column in data["columns"].items()
+            if name not in data["privileged"]
         }
-        few = files({**data, "columns": seen}, data["pictures"])
-        found |= {f"camera/{path}": content for path, content in few.items()}
-    found["parameters.json"] = json.dumps(data["parameters"], indent=1).encode()
-    found["LICENSE"] = (
-        ROOT / "LICENSE"
-    ).read_bytes() + f"\n{data['credit']}\n".encode()
-    found["README.md"] = f"{readme}\n".encode()
-    sums = (
-        f"{hashlib.sha256(content).hexdigest()}  {path}\n"
-        for path, content in found.items()
-    )
-    found["SHA256SUMS"] = "".join(sums).encode()
+        camera = files({**data, "columns": columns}, data["pictures"])
+        members |= {f"camera/{path}": content for path, content in camera.items()}
+    members["parameters.json"] = json.dumps(data["parameters"], indent=1).encode()
+    licence = (ROOT / "LICENSE").read_text("utf8")
+    members["LICENSE"] = f"{licence}\n{data['credit']}\n".encode()
+    members["README.md"] = f"{readme}\n".encode()
+    sums = (f"{hashlib.sha256(c).hexdigest()}  {path}\n" for path, c in members.items())
+    members["SHA256SUMS"] = "".join(sums).encode()
     target = BytesIO()
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as whole:
-        for path, content in found.items():
+    with zipfile.ZipFile(target, "w") as whole:
+        for path, content in members.items():
             whole.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)
     return target.getvalue()
 
@@ -129,30 +110,29 @@ def files(
     data: Mapping[str, Any], pictures: np.ndarray | None = None
 ) -> dict[str, bytes]:
     """Return the files of one dataset by path: all episodes, or the first ones with pictures."""
-    episodes, rows = next(iter(data["columns"].values()))[0].shape[:2]
+    fps, given = data["fps"], data["columns"]
+    episodes, rows = next(iter(given.values()))[0].shape[:2]
     if pictures is not None:
         episodes = len(pictures)
     index = np.arange(episodes * rows)
     episode, row = np.divmod(index, rows)
-    columns = {
-        name: values[:episodes].reshape(len(index), *values.shape[2:])
-        for name, (values, _) in data["columns"].items()
-    } | {
-        "timestamp": (row / data["fps"]).astype(np.float32),
+    columns = {name: joined(values[:episodes]) for name, (values, _) in given.items()}
+    columns |= {
+        "timestamp": (row / fps).astype(np.float32),
         "frame_index": row,
         "episode_index": episode,
         "index": index,
         "task_index": np.zeros_like(index),
     }
-    labels = {name: names for name, (_, names) in data["columns"].items()}
-    features = {
+    features: dict[str, Any] = {
         name: {
-            "dtype": str(v.dtype),
-            "shape": v.shape[1:] or (1,),
-            "names": labels.get(name),
+            "dtype": str(values.dtype),
+            "shape": values.shape[1:] or (1,),
+            "names": given[name][1] if name in given else None,
         }
-        for name, v in columns.items()
+        for name, values in columns.items()
     }
+    members = {f"data/{FILE}.parquet": parquet(columns)}
     starts = rows * np.arange(episodes)
     table: dict[str, Any] = {
         "episode_index": range(episodes),
@@ -161,25 +141,23 @@ def files(
         "dataset_from_index": starts,
         "dataset_to_index": starts + rows,
     }
-    stored, measures = ["data", "meta/episodes"], dict(columns)
-    found = {f"data/{FILE}.parquet": parquet(columns)}
+    places = ["data", "meta/episodes"]
+    video_path = None
     if pictures is not None:
-        features[CAMERA] = about_video(pictures, data["fps"])
-        found[f"videos/{CAMERA}/{FILE}.mp4"] = video(pictures, data["fps"])
-        stored.append(f"videos/{CAMERA}")
-        table[f"videos/{CAMERA}/from_timestamp"] = starts / data["fps"]
-        table[f"videos/{CAMERA}/to_timestamp"] = (starts + rows) / data["fps"]
-        measures[CAMERA] = pictures.reshape(len(index), *pictures.shape[2:])
-    table |= {
-        f"{of}/{part}_index": [0] * episodes
-        for of in stored
-        for part in ("chunk", "file")
-    }
-    for name, values in measures.items():
+        place = f"videos/{CAMERA}"
+        features[CAMERA] = about_video(pictures, fps)
+        members[f"{place}/{FILE}.mp4"] = video(pictures, fps)
+        table[f"{place}/from_timestamp"] = starts / fps
+        table[f"{place}/to_timestamp"] = (starts + rows) / fps
+        places.append(place)
+        columns[CAMERA] = joined(pictures)
+        video_path = f"videos/{{video_key}}/{CHUNK}.mp4"
+    for place in places:
+        table[f"{place}/chunk_index"] = table[f"{place}/file_index"] = [0] * episodes
+    for name, values in columns.items():
         each = [statistics(part) for part in np.split(values, episodes)]
-        table |= {
-            f"stats/{name}/{what}": [one[what] for one in each] for what in each[0]
-        }
+        for measure in each[0]:
+            table[f"stats/{name}/{measure}"] = [one[measure] for one in each]
     info = {
         "codebase_version": "v3.0",
         "robot_type": data["robot"],
@@ -189,54 +167,62 @@ def files(
         "chunks_size": 1000,
         "data_files_size_in_mb": 100,
         "video_files_size_in_mb": 200,
-        "fps": data["fps"],
+        "fps": fps,
         "splits": {"train": f"0:{episodes}"},
-        "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
-        "video_path": None
-        if pictures is None
-        else "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4",
+        "data_path": f"data/{CHUNK}.parquet",
+        "video_path": video_path,
         "features": features,
     }
-    overall = {name: statistics(values) for name, values in measures.items()}
-    return found | {
+    stats = {name: statistics(values) for name, values in columns.items()}
+    tasks = {"task_index": [0], "task": [data["task"]]}
+    return members | {
         "meta/info.json": json.dumps(info, indent=1).encode(),
-        "meta/stats.json": json.dumps(overall, indent=1).encode(),
-        "meta/tasks.parquet": parquet(
-            {"task_index": [0], "task": [data["task"]]}, index="task"
-        ),
+        "meta/stats.json": json.dumps(stats, indent=1).encode(),
+        "meta/tasks.parquet": parquet(tasks, PANDAS),
         f"meta/episodes/{FILE}.parquet": parquet(table),
     }
 
 
-def parquet(columns: Mapping[str, Any], index: str = "") -> bytes:
+def joined(episodes: np.ndarray) -> np.ndarray:
+    """Return the rows of all episodes one after the other."""
+    return episodes.reshape(-1, *episodes.shape[2:])
+
+
+def pandas_column(name: str, kind: str, numpy_kind: str) -> dict[str, Any]:
+    """Return what pandas stores about a column."""
+    kinds = {"pandas_type": kind, "numpy_type": numpy_kind}
+    return {"name": name, "field_name": name, "metadata": None} | kinds
+
+
+# Pandas, with which LeRobot reads the tasks, takes their texts as the index.
+PANDAS = {
+    "index_columns": ["task"],
+    "columns": [
+        pandas_column("task_index", "int64", "int64"),
+        pandas_column("task", "unicode", "object"),
+    ],
+    "column_indexes": [],
+}
+
+
+def parquet(
+    columns: Mapping[str, Any], pandas: Mapping[str, Any] | None = None
+) -> bytes:
     """Return a table; an array of two axes has one list in each row.
 
-    pandas reads the column `index`, if one is given, as the index of the table.
+    Args:
+        columns: by name.
+        pandas: what pandas stores about the table.
     """
     arrays = {
-        name: pa.FixedSizeListArray.from_arrays(
-            pa.array(values.ravel()), values.shape[1]
-        )
-        if np.ndim(values) == 2 and isinstance(values, np.ndarray)
+        name: pa.FixedSizeListArray.from_arrays(values.ravel(), values.shape[1])
+        if isinstance(values, np.ndarray) and values.ndim == 2
         else pa.array(values)
         for name, values in columns.items()
     }
     table = pa.table(arrays)
-    if index:
-        kinds = {True: ("int64", "int64"), False: ("unicode", "object")}
-        names = [
-            {"name": name, "field_name": name, "metadata": None}
-            | dict(
-                zip(
-                    ("pandas_type", "numpy_type"),
-                    kinds[of.type == pa.int64()],
-                    strict=True,
-                )
-            )
-            for name, of in arrays.items()
-        ]
-        about = {"index_columns": [index], "columns": names, "column_indexes": []}
-        table = table.replace_schema_metadata({"pandas": json.dumps(about)})
+    if pandas:
+        table = table.replace_schema_metadata({"pandas": json.dumps(pandas)})
     target = pa.BufferOutputStream()
     pq.write_table(table, target)
     return bytes(target.getvalue())
@@ -247,42 +233,38 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
 
     Pictures (n, height, width, 3) have them for each colour as (3, 1, 1), from 0 to 1.
     """
-    count, of_pictures = len(values), values.ndim == 4
-    if of_pictures:
-        values = values.reshape(-1, values.shape[-1]) / 255
+    count, shape = len(values), (-1,)
+    if values.ndim == 4:
+        values, shape = values.reshape(-1, values.shape[-1]) / 255, (-1, 1, 1)
     values = values.astype(np.float64).reshape(len(values), -1)
-    found = {"min": values.min(0), "max": values.max(0), "mean": values.mean(0)}
-    found |= {"std": values.std(0)}
-    levels = np.quantile(values, QUANTILES, axis=0)
-    found |= {
-        f"q{100 * q:02.0f}": level for q, level in zip(QUANTILES, levels, strict=True)
+    measures = {
+        "min": values.min(0),
+        "max": values.max(0),
+        "mean": values.mean(0),
+        "std": values.std(0),
     }
-    shape = (-1, 1, 1) if of_pictures else (-1,)
-    return {what: of.reshape(shape).tolist() for what, of in found.items()} | {
-        "count": [count]
-    }
+    levels = np.quantile(values, [*QUANTILES.values()], axis=0)
+    measures |= zip(QUANTILES, levels, strict=True)
+    lists = {name: value.reshape(shape).tolist() for name, value in measures.items()}
+    return lists | {"count": [count]}
 
 
 def about_video(pictures: np.ndarray, fps: int) -> dict[str, Any]:
     """Return the feature of the pictures."""
-    height, width, channels = pictures.shape[2:]
-    facts = {
-        "height": height,
-        "width": width,
-        "channels": channels,
+    names = ["height", "width", "channels"]
+    shape = list(pictures.shape[2:])
+    info = dict(zip(names, shape, strict=True)) | {
         "fps": fps,
         "codec": "h264",
+        "pix_fmt": PIXELS,
+        "is_depth_map": False,
     }
-    facts |= {"pix_fmt": PIXELS, "is_depth_map": False}
-    names = ["height", "width", "channels"]
-    info = {f"video.{name}": value for name, value in facts.items()} | {
-        "has_audio": False
-    }
+    video_info = {f"video.{name}": value for name, value in info.items()}
     return {
         "dtype": "video",
-        "shape": [height, width, channels],
+        "shape": shape,
         "names": names,
-        "info": info,
+        "info": video_info | {"has_audio": False},
     }
 
 
@@ -293,7 +275,7 @@ def video(pictures: np.ndarray, fps: int) -> bytes:
         stream = file.add_stream("libx264", rate=fps, options=OPTIONS)
         stream.height, stream.width = pictures.shape[2:4]
         stream.pix_fmt = PIXELS
-        for picture in pictures.reshape(-1, *pictures.shape[2:]):
+        for picture in joined(pictures):
             file.mux(stream.encode(av.VideoFrame.from_ndarray(picture)))
         file.mux(stream.encode())
     return target.getvalue()

@@ -13,8 +13,6 @@ from urllib.parse import urljoin
 from docutils.parsers.rst.directives.misc import TestDirective
 from markdown_it.token import Token
 from myst_parser.parsers.directives import parse_directive_text
-from sphinx.config import Config
-from sphinx.directives.code import LiteralInclude, LiteralIncludeReader
 
 from robo_genesis.pipeline.pages.page_rules import (
     ADMONITIONS,
@@ -22,6 +20,7 @@ from robo_genesis.pipeline.pages.page_rules import (
     PARSER,
     SOLUTION,
 )
+from robo_genesis.site.text.excerpts import excerpt
 
 # Words that replace a role whose text only the site can write.
 UNTITLED = {
@@ -117,13 +116,6 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
         case "figure":
             return f"*On the site, a figure: {plain(body, writer)}*"
     return ""
-
-
-def excerpt(folder: Path, first_line: str, content: str) -> str:
-    """Return the part of a file that a `literalinclude` on a page in a folder shows."""
-    found = parse_directive_text(LiteralInclude, first_line, content)
-    path = (folder / found.arguments[0]).resolve()
-    return LiteralIncludeReader(str(path), found.options, Config()).read()[0]
 
 
 def _inline(lines: list[str], writer: Writer) -> str:

@@ -31,7 +31,6 @@ A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 
 import re
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -52,15 +51,15 @@ from robo_genesis.site.evidence.values import COUNTED, measured
 from robo_genesis.site.figures.case_labels import label
 from robo_genesis.site.pages import PageDirective
 
-EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
-
 # The options by order; `{}` is the smallest difference that counts.
 LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
+EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
 CLOSE = "about the same (less than {} apart)"
 UNDECIDED = "this record cannot tell"
 UNKNOWN = "unknown"  # The key of the option that no order was observed
-JUDGED = ("right", "low", "high")  # The keys of an answer that is a number
-WRONG = "x57.3"  # Represents the keys of typical wrong numbers, which `FACTOR` matches
+
+# The keys of an answer that is a number, and what is said of it.
+JUDGED = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 
 # The key of a typical wrong number: the value times this factor.
@@ -75,58 +74,48 @@ class question(between):  # noqa: N801 - docutils names nodes in lower case
     """A question; its text is between the parts that the build writes."""
 
 
-def asked(value: float | None = None, tolerance: float = 0.0, **shown: Any) -> question:
+def asked(**facts: Any) -> question:
     """Return a question: a multiple choice, or for a number if the right `value` is given.
 
     `choice.js` announces the feedback of the chosen option, or that which fits what is
     typed.
 
     Args:
-        value: the right number.
-        tolerance: how far from it a number counts as right.
-        shown: `name` of its fields, unique on the page; `answer`, what was measured,
+        facts: `name` of its fields, unique on the page; `answer`, what was measured,
             and its `origin`. Of a choice also `options`, for each one (text, right,
-            cause). Of a number its `unit`, empty for none, and `feedback`, (key, text)
-            by the keys of the directive.
+            cause). Of a number its `value`, `tolerance` and `unit`, empty for none, and
+            `feedback`, (key, text) by the keys of the directive.
     """
-    right = (
-        ""
-        if value is None
-        else f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
-    )
-    closing = filled(Path(__file__).with_name("question.html"), **shown)
-    return question(
-        opening=f'<fieldset class="choice"{right}><legend>', closing=closing
-    )
+    whole = filled(Path(__file__).with_name("question.html"), **facts)
+    opening, closing = whole.split("TEXT", 1)
+    return question(opening=opening, closing=closing)
 
 
 def split_causes(
-    content: Sequence[str], keys: Sequence[str]
+    content: Sequence[str], keys: Sequence[str], factors: bool = False
 ) -> tuple[str, dict[str, str]]:
     """Return the question, and the cause of each answer that has one.
 
     Args:
         content: lines; each cause begins a line with `- key:`.
-        keys: the valid keys; `WRONG` represents all keys of its form.
+        keys: the valid keys.
+        factors: whether a key may also be that of a typical wrong number.
 
     Raises:
         LookupError: a key is not valid or given twice; the message lists the valid
             ones.
     """
-    question, *items = re.split(r"\n(?=[-*] )", "\n".join(content))
+    text, *items = re.split(r"\n(?=[-*] )", "\n".join(content))
     causes: dict[str, str] = {}
-    for item in items:
-        found = CAUSE.fullmatch(item.strip())
-        known = found and (
-            found[1] in keys or (WRONG in keys and FACTOR.fullmatch(found[1]))
-        )
-        if found is None or not known or found[1] in causes:
+    for item in map(str.strip, items):
+        parts = CAUSE.fullmatch(item)
+        key, cause = parts.groups() if parts else ("", "")
+        known = key in keys or (factors and FACTOR.fullmatch(key))
+        if not known or key in causes:
             valid = ", ".join(f"`- {key}: …`" for key in keys)
-            raise LookupError(
-                f"{item.strip()!r} is not a cause. Valid, once each: {valid}."
-            )
-        causes[found[1]] = " ".join(found[2].split())
-    return " ".join(question.split()), causes
+            raise LookupError(f"{item!r} is not a cause. Valid, once each: {valid}.")
+        causes[key] = " ".join(cause.split())
+    return " ".join(text.split()), causes
 
 
 class Question(PageDirective):
@@ -136,13 +125,14 @@ class Question(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the question with a number that no other has."""
-        text, node = self.ask(f"choice-{self.env.new_serialno('choice')}")
+        text, facts = self.ask()
+        node = asked(name=f"choice-{self.env.new_serialno('choice')}", **facts)
         words, messages = self.parse_inline(text, lineno=self.lineno)
         node += words
         return [node, *messages, *([html(HIDES)] if "hides" in self.options else [])]
 
-    def ask(self, name: str) -> tuple[str, question]:
-        """Return the question's text, and its node with everything that was measured."""
+    def ask(self) -> tuple[str, dict[str, Any]]:
+        """Return the question's text, and its facts; see `asked`."""
         raise NotImplementedError
 
 
@@ -152,55 +142,28 @@ class Choice(Question):
     required_arguments = 4
     option_spec = {"absent": flag, "hides": flag}  # noqa: RUF012 - as docutils declares it
 
-    def ask(self, name: str) -> tuple[str, question]:
+    def ask(self) -> tuple[str, dict[str, Any]]:
         """See `Question.ask`."""
-        lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
-        found, answer, origin = measured_order(
-            lesson_page, metric, cases, "absent" in self.options
+        page, metric, *cases = self.arguments
+        measure, answer, origin = measured_order(
+            page, metric, cases, absent="absent" in self.options
         )
-        smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
-        resolution = small(smallest, found.unit)
-        shown = options(found.unit, found.order, resolution, causes, found.margin)
-        return text, asked(name=name, answer=answer, origin=origin, options=shown)
-
-
-def percents(text: str) -> float:
-    """Return the tolerance of a number in percent.
-
-    Raises:
-        ValueError: it is not a number between 0 and 100.
-    """
-    with suppress(ValueError):
-        if 0 < (value := float(text)) < 100:
-            return value
-    raise ValueError(
-        f"{text!r} is not a tolerance. Give percents above 0 and below 100: 0.5."
-    )
+        shown = options(measure, causes)
+        return text, {"options": shown, "answer": answer, "origin": origin}
 
 
 class Number(Question):
     """Ask for the value of one metric."""
 
     required_arguments = 2
-    option_spec = {  # noqa: RUF012 - as docutils declares it
-        "tolerance": percents,
-        "unit": unchanged,
-        "hides": flag,
-    }
+    option_spec = {"tolerance": float, "unit": unchanged, "hides": flag}  # noqa: RUF012 - as above
 
-    def ask(self, name: str) -> tuple[str, question]:
+    def ask(self) -> tuple[str, dict[str, Any]]:
         """See `Question.ask`."""
-        page, metric = self.arguments
-        text, causes = split_causes(self.content, [*JUDGED, WRONG])
-        if "tolerance" not in self.options:
-            raise LookupError(
-                "the option tolerance is missing. Give percents: `:tolerance: 20`."
-            )
+        text, causes = split_causes(self.content, [*JUDGED], factors=True)
         percent, unit = self.options["tolerance"], self.options.get("unit", "")
-        return text, asked(
-            name=name, **asked_number(page, metric, percent, causes, unit)
-        )
+        return text, asked_number(*self.arguments, percent, causes, unit)
 
 
 def asked_number(
@@ -210,7 +173,7 @@ def asked_number(
     causes: Mapping[str, str],
     unit: str = "",
 ) -> dict[str, Any]:
-    """Return the attributes of a question for a number.
+    """Return the facts of a question for a number; see `asked`.
 
     Args:
         lesson_page: as `l04/lab`.
@@ -228,17 +191,16 @@ def asked_number(
     record = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)[case][metric]
     if record.value is None:
         raise LookupError(f"{lesson_page} did not observe {name}. Ask with {{choice}}.")
-    verdicts = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
-    verdicts |= {key: "No." for key in causes if key not in JUDGED}
-    feedback = [
-        (key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()
-    ]
+    verdicts = JUDGED | {key: "No." for key in causes if key not in JUDGED}
     value = 1000 * record.value if unit and unit not in COUNTED else record.value
     return {
         "value": value,
         "tolerance": abs(value) * percent / 100,
         "unit": unit or ("" if record.unit == "1" else record.unit),
-        "feedback": feedback,
+        "feedback": [
+            (key, f"{verdict} {causes.get(key, '')}".strip())
+            for key, verdict in verdicts.items()
+        ],
         "answer": f"{text}; answers within {percent:g} % count as right.",
         "origin": origin,
     }
@@ -261,44 +223,45 @@ def measured_order(
             the known ones; or the second case is, and must be absent.
         BundleRefused: the bundle cannot be read.
     """
-    observed = cases[:1] if absent else cases
-    *_, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in observed)
-    records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
     lesson_name = lesson_page.split("/")[0]
-    lesson, unit = find_lesson(lesson_name), records[cases[0]][metric].unit
+    lesson = find_lesson(lesson_name)
     if absent and any(cases[1] in page.runs for page in lesson.pages.values()):
         raise LookupError(
             f"{lesson_name} records {cases[1]}; ask for it without `:absent:`."
         )
+    for case in cases[:1] if absent else cases:
+        _, origin = measured(lesson_page, f"{case}.{metric}")
+    records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
+    unit = records[cases[0]][metric].unit
     first, second = (None if absent else records[case][metric].value for case in cases)
-    noun, resolution = (
-        lesson.about_metrics("noun")[metric],
+    noun = lesson.about_metrics("noun")[metric]
+    measure = Comparison(
+        noun,
+        unit,
+        first,
+        second,
         lesson.spec.RESOLUTION[unit],
+        declared_margin(lesson_name, metric),
     )
-    margin = declared_margin(lesson_name, metric)
-    found = Comparison(noun, unit, first, second, resolution, margin)
     if absent:
-        return found, f"The record of {lesson_page} has no such run.", origin
+        return measure, f"The record of {lesson_page} has no such run.", origin
     names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
-    return found, measured_sentence(names, found), origin
+    return measure, measured_sentence(names, measure), origin
 
 
-def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
+def measured_sentence(names: tuple[str, str], measure: Comparison) -> str:
     """Return a sentence with the values of one metric in two cases."""
-    if found.first is None or found.second is None:
-        return comparison_sentence(names, found)
-    values, unit = (found.first, found.second), found.unit
+    if measure.first is None or measure.second is None:
+        return comparison_sentence(names, measure)
+    values, unit = (measure.first, measure.second), measure.unit
     texts = [format_value(value, unit) for value in values]
     if unit in ("m", "rad", "m/s") and any(0 < abs(value) < 0.1 for value in values):
-        texts = [
-            f"{round(1000 * value, 3) + 0.0:.3g} {SCALED[unit]}" for value in values
-        ]
-    pairs = ", ".join(
-        f"{text} for {name}" for name, text in zip(names, texts, strict=True)
-    )
-    sentence = f"{found.label[0].upper()}{found.label[1:]}: {pairs}."
-    if found.order == "equal" and found.margin and found.first != found.second:
-        sentence += f" A difference below {small(found.margin, unit)} does not count."
+        scaled = (round(1000 * value, 3) + 0.0 for value in values)
+        texts = [f"{value:.3g} {SCALED[unit]}" for value in scaled]
+    noun = measure.label[0].upper() + measure.label[1:]
+    sentence = f"{noun}: {texts[0]} for {names[0]}, {texts[1]} for {names[1]}."
+    if measure.order == "equal" and measure.margin and values[0] != values[1]:
+        sentence += f" A difference below {small(measure.margin, unit)} does not count."
     return sentence
 
 
@@ -311,36 +274,34 @@ def small(value: float, unit: str) -> str:
 
 def declared_margin(lesson: str, metric: str) -> float:
     """Return the margin that a lesson declares for orderings of a metric, 0 if it declares none."""
-    found = (
-        m for _, name, _, m in find_lesson(lesson).spec.RELATIONS if name == metric
+    relations = find_lesson(lesson).spec.RELATIONS
+    return max(
+        (margin for _, name, _, margin in relations if name == metric), default=0.0
     )
-    return max(found, default=0.0)
 
 
 def options(
-    unit: str,
-    order: str | None,
-    resolution: str,
-    causes: Mapping[str, str],
-    margin: float,
+    measure: Comparison, causes: Mapping[str, str]
 ) -> list[tuple[str, bool, str]]:
     """Return each option, whether it was measured, and its cause; exactly one is true.
 
     Args:
-        unit: of the metric.
-        order: the order that was measured, None where no order was observed.
-        resolution: the smallest difference that counts, as text.
+        measure: the two cases.
         causes: the cause of each answer by its key, or a part of them.
-        margin: that the lesson declares for this metric, 0 for none.
     """
+    unit = measure.unit
     words = dict(EARLIER if unit == "s" else LOWER)
-    words["equal"] = words["equal"].format(resolution)
-    if unit == "1":
+    if measure.margin:
+        words["equal"] = CLOSE.format(small(measure.margin, unit))
+    elif unit == "1":
         words["equal"] = "the same"
-    if margin:
-        words["equal"] = CLOSE.format(small(margin, unit))
-    told = [(text, order == name, causes.get(name, "")) for name, text in words.items()]
-    return [*told, (UNDECIDED, order is None, causes.get(UNKNOWN, ""))]
+    else:
+        words["equal"] = words["equal"].format(small(measure.resolution, unit))
+    keys: dict[str | None, str] = {**words, None: UNDECIDED}
+    return [
+        (text, key == measure.order, causes.get(key or UNKNOWN, ""))
+        for key, text in keys.items()
+    ]
 
 
 def setup(app: Sphinx) -> None:

@@ -17,6 +17,7 @@ from robo_genesis.site.course import sizes
         (":::{admonition} Title\n:class: tip dropdown\nIn it.\n:::\nB.", 1),
         ("::::{dropdown} Fold\n:::{note}\nIn it.\n:::\nIn it.\n::::\nB.", 1),
         ("```python\ncode\n```\nB.", 1),
+        ("{term}`DOFs<degree of freedom>`", 1),
         ("```{math}\nx + 1\n```\nB.", 1),
     ],
 )

@@ -10,12 +10,12 @@ from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, paragr
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.course import course_map
-from robo_genesis.site.text import glossary
 
 # What stands alone on the page, and what is said of its line.
 TEXT = {
     r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
     "{py:func}`module`": "reference target not found: module",
+    "{term}`gain`": "term not in glossary: 'gain'",
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
     "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
     "```{course-map}\n```": "the book has no page gone",
@@ -45,9 +45,6 @@ OTHERS = {
         "the picture innocent.svg lies below evidence/",
     ],
     "free": ["a cell shows a table, but the page declares no bundle"],
-    "glossary": [
-        f"glossary_forms.yml names '{n}', which is not in th" for n in ("gain", "force")
-    ],
 }
 """What is said of the other pages."""
 
@@ -64,11 +61,9 @@ def report(tmp_path_factory):
         "lessons/l02-two/lecture": "# Two\n\nText.\n",
         "lab": notebook(cell(WRITE_BUNDLE), imports, *CELLS, front=LAB_FRONT) + LAB,
         "free": notebook(imports, cell("table", INPUTS), cell("table")),
-        "glossary": "# Glossary\n\n```{glossary}\nDOF\n  One axis of motion.\n```\n",
         "timed": notebook(cell("")),
     }
     book = make_book(folder, **pages)
-    (book / glossary.FORMS).write_text("forms: {gain: [gains]}\nunlinked: [force]")
     published = {"id": "L01", "title": "One", "page": "gone", "outcomes": ["go"]}
     (book / course_map.FILE).write_text(yaml.safe_dump([published]))
     frame = book / "evidence/l04/amdgpu/frames/final.svg"

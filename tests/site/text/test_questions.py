@@ -30,8 +30,10 @@ from robo_genesis.site.text import questions
     ],
 )
 def test_exactly_the_measured_option_is_right(unit, order, metric, text):
+    values = {"lower": (2, 1), "equal": (1, 1), "higher": (1, 2), None: (None, None)}
     margin = questions.declared_margin("l04", metric)
-    shown = questions.options(unit, order, "0.1 mm", {}, margin)
+    measure = Comparison("noun", unit, *values[order], 1e-4, margin)
+    shown = questions.options(measure, {})
     assert [name for name, right, _ in shown if right] == [text]
 
 
@@ -88,45 +90,30 @@ def test_the_answer_has_both_values_in_a_readable_unit(unit, values, margin, sai
     assert questions.measured_sentence(("A", "B"), found).startswith(said)
 
 
-KEYS = [*questions.LOWER, questions.UNKNOWN]
-NUMERIC = [*questions.JUDGED, questions.WRONG]
-
-
 @pytest.mark.parametrize(
-    ("lines", "keys", "causes"),
+    ("lines", "factors", "causes"),
     [
-        ("", KEYS, {}),
+        ("", False, {}),
         (
-            "- lower: Not before\n  it.\n- unknown: No.",
-            KEYS,
-            {"lower": "Not before it.", "unknown": "No."},
+            "- low: Not before\n  it.\n- right: Y.",
+            False,
+            {"low": "Not before it.", "right": "Y."},
         ),
-        ("- x57.3: In degrees.", NUMERIC, {"x57.3": "In degrees."}),
-        ("- x57.3: In degrees.", KEYS, None),
-        ("- x5.: No.", NUMERIC, None),
-        ("- lowest: No.", KEYS, None),
-        ("- no cause", KEYS, None),
-        ("- lower: a\n- lower: b", KEYS, None),
+        ("- x57.3: In degrees.", True, {"x57.3": "In degrees."}),
+        ("- x57.3: In degrees.", False, None),
+        ("- x5.: No.", True, None),
+        ("- lowest: No.", False, None),
+        ("- no cause", False, None),
+        ("- low: a\n- low: b", False, None),
     ],
 )
-def test_the_causes_of_valid_keys_follow_a_question(lines, keys, causes):
-    asked = ["When does", "it end?", "", *lines.splitlines()]
+def test_the_causes_of_valid_keys_follow_a_question(lines, factors, causes):
+    asked = ["When does", "it end?", "", *lines.splitlines()], ["low", "right"], factors
     if causes is None:
-        with pytest.raises(
-            LookupError, match=rf"is not a cause.*Valid.*`- {keys[0]}: …`"
-        ):
-            questions.split_causes(asked, keys)
+        with pytest.raises(LookupError, match=r"is not a cause.*`- low: …`"):
+            questions.split_causes(*asked)
     else:
-        assert questions.split_causes(asked, keys) == ("When does it end?", causes)
-
-
-def test_a_tolerance_is_a_share_in_percent():
-    assert questions.percents("0.5") == 0.5
-    for text in ("0", "100", "nan", "20 %"):
-        with pytest.raises(
-            ValueError, match=f"'{text}' is not a tolerance. Give percents above 0"
-        ):
-            questions.percents(text)
+        assert questions.split_causes(*asked) == ("When does it end?", causes)
 
 
 def written(node):
@@ -137,7 +124,8 @@ MEASURED = {"answer": "G1 < G2", "origin": "Measured"}
 
 
 def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
-    shown = questions.options("s", "higher", "5 ms", {"lower": "F < 9"}, 0.0)
+    measure = Comparison("noun", "s", 1, 2, 0.005)
+    shown = questions.options(measure, {"lower": "F < 9"})
     html = written(questions.asked(name="choice-3", options=shown, **MEASURED))
     assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
         ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
@@ -176,7 +164,8 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(
     page,
 ):
-    shown = questions.options("s", None, "5 ms", {"lower": "Why"}, 0.0)
+    measure = Comparison("noun", "s", None, None, 0.005)
+    shown = questions.options(measure, {"lower": "Why"})
     first = questions.asked(name="choice-3", options=shown, **MEASURED)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
     second = questions.asked(name="choice-4", **MEASURED, **given)

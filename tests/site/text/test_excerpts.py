@@ -2,7 +2,7 @@
 
 import pytest
 
-from robo_genesis.site.text.left_out import without_docstrings
+from robo_genesis.site.text.excerpts import without_docstrings
 
 FUNCTION = '''\
     def first(x):

@@ -1,0 +1,43 @@
+"""With `SOLUTIONS=0`, pages, search index and executed notebooks have no solutions and answers.
+
+The pages' sources, which contain them, are not published. A question that the page
+itself marks keeps its feedback.
+"""
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.config import Config
+from sphinx.transforms import SphinxTransform
+
+from robo_genesis.core.project import solutions_shown
+from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
+
+# The second is the class that a code cell has from its tag.
+MARKS = {SOLUTION, f"tag_{SOLUTION}"}
+
+
+class LeaveOutSolutions(SphinxTransform):
+    """Remove what is marked as a solution, before anything refers to it."""
+
+    default_priority = 200
+
+    def apply(self, **kwargs: object) -> None:
+        """Remove them from the page; the outputs of cells below a solution follow from it."""
+        for node in [*self.document.findall(nodes.Element)]:
+            classes = [*node["classes"], *node.get("container_classes", ())]
+            if MARKS.intersection(classes):
+                note = nodes.paragraph("", "", nodes.emphasis("", NO_SOLUTION))
+                node.replace_self([note] if "cell" in classes else [])
+
+
+def hide_sources(app: Sphinx, config: Config) -> None:
+    """Publish no page's source."""
+    config.html_copy_source = False
+    config.html_theme_options["use_download_button"] = False  # it leads to the source
+
+
+def setup(app: Sphinx) -> None:
+    """Register what leaves solutions out, if they are not shown."""
+    if not solutions_shown():
+        app.add_transform(LeaveOutSolutions)
+        app.connect("config-inited", hide_sources)
