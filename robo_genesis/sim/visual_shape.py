@@ -178,7 +178,7 @@ def write_shape(folder: Path, parts: Sequence[Part]) -> Path:
     meshes = {f"vertices_m_{k}": part.vertices for k, part in enumerate(parts)}
     meshes |= {f"faces_{k}": part.faces for k, part in enumerate(parts)}
     meshes |= {f"hinge_{k}": p.hinge.line for k, p in enumerate(parts) if p.hinge}
-    facts = {
+    facts: dict[str, Any] = {
         "link": [part.link for part in parts],
         "rgb": [part.rgb for part in parts],
         "joint": [part.hinge.joint if part.hinge else "" for part in parts],

@@ -1,7 +1,7 @@
 """Files to download from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
 
-```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` the
-first. The files are written into the site while the page is read, so that the page can
+```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` all
+but the last. The files are written into the site while the page is read, so that the page can
 show their sizes.
 """
 
@@ -61,8 +61,9 @@ class RunCommands(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the block of code."""
-        install, run = run_commands(self.config.torch_index)
-        text = install if self.arguments == ["install"] else f"{install}\n{run}"
+        commands = run_commands(self.config.torch_index)
+        lines = commands[:-1] if self.arguments == ["install"] else commands
+        text = "\n".join(lines)
         return [nodes.literal_block(text, text, language="bash")]
 
 

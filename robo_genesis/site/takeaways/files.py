@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import cycle
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import numpy as np
@@ -209,9 +210,7 @@ def csv_text(trace: TimeSeries, described: bundle.Arrays, case: str) -> str:
     return csv_bytes([list(columns), *zip(*columns.values(), strict=True)]).decode()
 
 
-def _by_state(
-    trace: TimeSeries, field: str, dims: Sequence[str]
-) -> list[Sequence[np.generic | None]]:
+def _by_state(trace: TimeSeries, field: str, dims: Sequence[str]) -> list[Any]:
     """Return the numbers of a field at each state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
     if dims[0] not in ("state", "step"):

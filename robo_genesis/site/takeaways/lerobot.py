@@ -233,9 +233,9 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
 
     Pictures (n, height, width, 3) have them for each colour as (3, 1, 1), from 0 to 1.
     """
-    count, shape = len(values), (-1,)
+    count, shape = len(values), [-1]
     if values.ndim == 4:
-        values, shape = values.reshape(-1, values.shape[-1]) / 255, (-1, 1, 1)
+        values, shape = values.reshape(-1, values.shape[-1]) / 255, [-1, 1, 1]
     values = values.astype(np.float64).reshape(len(values), -1)
     measures = {
         "min": values.min(0),

@@ -58,7 +58,7 @@ CLOSE = "about the same (less than {} apart)"
 UNDECIDED = "this record cannot tell"
 UNKNOWN = "unknown"  # The key of the option that no order was observed
 
-# The keys of an answer that is a number, and what is said of it.
+# The keys of an answer that is a number, and its feedback.
 JUDGED = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 
@@ -163,7 +163,8 @@ class Number(Question):
         """See `Question.ask`."""
         text, causes = split_causes(self.content, [*JUDGED], factors=True)
         percent, unit = self.options["tolerance"], self.options.get("unit", "")
-        return text, asked_number(*self.arguments, percent, causes, unit)
+        page, name = self.arguments
+        return text, asked_number(page, name, percent, causes, unit)
 
 
 def asked_number(
@@ -297,11 +298,9 @@ def options(
         words["equal"] = "the same"
     else:
         words["equal"] = words["equal"].format(small(measure.resolution, unit))
-    keys: dict[str | None, str] = {**words, None: UNDECIDED}
-    return [
-        (text, key == measure.order, causes.get(key or UNKNOWN, ""))
-        for key, text in keys.items()
-    ]
+    words[UNKNOWN] = UNDECIDED
+    right = measure.order or UNKNOWN
+    return [(text, key == right, causes.get(key, "")) for key, text in words.items()]
 
 
 def setup(app: Sphinx) -> None:

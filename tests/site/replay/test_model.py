@@ -150,11 +150,15 @@ def test_links_of_another_robot_or_of_one_name_are_refused(shape, links, message
 
 
 def test_a_shape_comes_back_from_its_file(shape, tmp_path):
+    hinge = visual_shape.Hinge("joint4", np.eye(3)[:2])
+    shape = [shape[0], replace(shape[1], hinge=hinge)]
     file = visual_shape.write_shape(tmp_path / "new", shape)
     for part, back in zip(shape, visual_shape.load_shape(file), strict=True):
         assert (back.link, back.rgb) == (part.link, part.rgb)
         assert np.array_equal(back.vertices, part.vertices)
         assert np.array_equal(back.faces, part.faces)
+    assert back.hinge.joint == "joint4"
+    assert np.array_equal(back.hinge.line, hinge.line)
 
 
 def body(name, *geoms):
@@ -167,7 +171,10 @@ def body(name, *geoms):
         )
         for mesh, pos, quat in geoms
     ]
-    return SimpleNamespace(links=[SimpleNamespace(name=name, vgeoms=vgeoms)])
+    axis = np.array([[0.0, 0, 1]])
+    joint = SimpleNamespace(name="j", n_dofs=1, pos=[1, 2, 3], dofs_motion_ang=axis)
+    links = [SimpleNamespace(name=name, vgeoms=vgeoms, joints=[joint])]
+    return SimpleNamespace(links=links)
 
 
 def test_meshes_are_placed_in_their_link_and_joined_by_colour():
@@ -182,6 +189,10 @@ def test_meshes_are_placed_in_their_link_and_joined_by_colour():
     arm = body("arm", (red, [0, 0, 0], upright), (blue, [0, 0, 0], upright), turned)
     first, second = visual_shape.read_shape(arm)
     assert (first.rgb, second.rgb) == ((255, 0, 0), (0, 0, 255))
+    assert (first.hinge.joint, first.hinge.line.tolist()) == (
+        "j",
+        [[1, 2, 3], [0, 0, 1]],
+    )
     assert first.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
     assert first.vertices[3:] == pytest.approx(
         np.array([[0, 1, 5], [-1, 0, 5], [0, 0, 6]])

@@ -13,6 +13,7 @@ from robo_genesis.site.replay.scenery import Camera, Scenery
 
 RED, BLUE, GREY = (255, 0, 0), (0, 0, 255), (200, 200, 200)
 GROUND = np.array([170, 180, 192])  # what is behind the picture
+WIDTH, HEIGHT = poster.WIDTH // poster.FINER, poster.HEIGHT // poster.FINER
 CAMERA = Camera(np.array([0.0, 0.5, 0.0]), 3.0)
 
 
@@ -36,14 +37,14 @@ def middle(image):
 
 def test_a_link_is_drawn_where_the_camera_sees_it():
     image = drawn(box("box", rgb=RED))
-    assert image.shape == (poster.HEIGHT, poster.WIDTH, 3)
+    assert image.shape == (HEIGHT, WIDTH, 3)
     red, green, blue = middle(image)
     assert red > 100 > max(green, blue)
     assert image[0, 0].tolist() == pytest.approx(GROUND, abs=2)
     rows, columns = np.nonzero(np.abs(image - GROUND).max(axis=2) > 40)
     centre = rows.min() + rows.max(), columns.min() + columns.max()
-    assert centre == pytest.approx((poster.HEIGHT, poster.WIDTH), abs=12)
-    height = poster.HEIGHT / (2 * 3.0 * np.tan(np.radians(15)))  # pixels of a metre
+    assert centre == pytest.approx((HEIGHT, WIDTH), abs=12)
+    height = HEIGHT / (2 * 3.0 * np.tan(np.radians(15)))  # pixels of a metre
     assert np.ptp(rows) == pytest.approx(0.25 * height, rel=0.1)
 
 
@@ -61,7 +62,7 @@ def test_the_copy_at_the_target_is_translucent():
     above = drawn(box("box", rgb=GREY), target={"box": beside})
     assert middle(above).tolist() == pytest.approx(middle(alone).tolist(), abs=6)
     rows = np.nonzero(np.abs(above - alone).max(axis=2) > 40)[0]
-    shade = above[(rows.min() + rows.max()) // 2, poster.WIDTH // 2]
+    shade = above[(rows.min() + rows.max()) // 2, WIDTH // 2]
     colour, opacity = 0.92 * np.array(model.GHOST[:3]), model.GHOST[3]
     assert shade.tolist() == pytest.approx(
         opacity * colour + (1 - opacity) * GROUND, abs=10

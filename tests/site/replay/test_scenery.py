@@ -16,12 +16,11 @@ from without_sphinx import box
 from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.bodies import channels as body_channels
-from robo_genesis.sim.visual_shape import WORLD, Part, floor, slab
+from robo_genesis.sim.visual_shape import WORLD, Hinge, Part, floor, slab
 from robo_genesis.site.replay import scenery
 
-AXIS = np.array([0.48, -0.6, 0.64])
-POINT = np.array([0.1, 0.2, 0.3])
-"""A point of the axis of the joint [m]; as the axis, in the frame of the link above it."""
+LINE = np.array([[0.1, 0.2, 0.3], [0.48, -0.6, 0.64]])
+"""A point and the direction of the axis of the joint, in the frame of the link that turns."""
 
 START, TARGET = -2.0, -1.75
 LINKS = ("base", "upper", "fore", "hand")
@@ -31,70 +30,64 @@ POSES_AT_REST = [
 ]
 
 
-def turned(angle: float, sag: float = 0.0) -> list[np.ndarray]:
-    """Return the poses of the links after a turn of the joint, and of the base by `sag` [rad]."""
-    upper = POSES_AT_REST[1]
-    joint = upper @ rotation_matrix(angle, AXIS, POINT) @ np.linalg.inv(upper)
-    all_of_it = rotation_matrix(sag, [0, 1, 0])
-    above, below = (all_of_it @ pose for pose in POSES_AT_REST[:2]), POSES_AT_REST[2:]
-    return [*above, *(all_of_it @ joint @ pose for pose in below)]
+def turned(angle: float) -> list[np.ndarray]:
+    """Return the poses of the links after a turn of the joint above `fore` [rad]."""
+    fore, turn = POSES_AT_REST[2], rotation_matrix(angle, LINE[1], LINE[0])
+    moved = fore @ turn @ np.linalg.inv(fore)
+    return [*POSES_AT_REST[:2], *(moved @ pose for pose in POSES_AT_REST[2:])]
 
 
-def turning(target=TARGET, final=-1.8, unit="rad", off=0.0) -> Runs:
-    """Runs of a joint that turns while the base sags; `off` is an error of its record [rad]."""
-    q = np.linspace(START, final, 11)
-    poses = np.array([turned(angle - START, 0.1 * (angle - START)) for angle in q])
-    quat = np.array(
-        [[quaternion_from_matrix(pose) for pose in poses_] for poses_ in poses]
-    )
-    pos, zero = poses[..., :3, 3], np.zeros((11, 4, 3))
-    quat *= np.sign(quat[..., :1])
+def turning() -> Runs:
+    """Runs of a joint that turns."""
+    q = np.linspace(START, -1.8, 11)
+    poses = np.array([turned(angle - START) for angle in q])
+    quat = [[quaternion_from_matrix(pose) for pose in state] for state in poses]
+    zero = np.zeros((11, 4, 3))
     trace = BodyTrace(
         t=0.01 * np.arange(11),
-        link_pos=pos.astype(np.float32),
-        link_quat=quat.astype(np.float32),
+        link_pos=poses[..., :3, 3].astype(np.float32),
+        link_quat=np.array(quat, np.float32),
         link_vel=zero,
         link_ang=zero,
     )
-    position = Channel("position", "q", unit, 4, {"run": q + np.linspace(0, off, 11)})
-    level = Level("target", "position", "target", "", {"run": (target,)}, {"run": "x"})
+    position = Channel("position", "q", "rad", 4, {"run": q})
+    level = Level("target", "position", "target", "", {"run": (TARGET,)}, {"run": "x"})
     replay = Replay(("run",), "joint", "arm")
     return Runs(replay, "joint", {"run": trace}, LINKS, [position], {}, [level])
 
 
-def test_the_axis_of_a_joint_is_found_while_other_joints_move():
-    found = scenery.find_hinge(turning())
-    assert found is not None
-    assert (found.parent, found.moved) == (1, (2, 3))
-    assert found.axis == pytest.approx(AXIS, abs=1e-5)
-    assert np.cross(found.point - POINT, AXIS) == pytest.approx(np.zeros(3), abs=1e-5)
+SHAPES = [replace(box(link), hinge=None) for link in LINKS]
+SHAPES[2] = replace(SHAPES[2], hinge=Hinge("joint", LINE))
 
 
-@pytest.mark.parametrize("final", [-1.8, -2.2])
-def test_the_pose_at_the_target_is_that_of_the_joint_alone(final):
-    runs = turning(final=final)
-    found = scenery.target_poses(runs, scenery.find_hinge(runs))
+def test_the_pose_at_the_target_is_that_of_the_joint_alone():
+    runs = turning()
+    found = scenery.scenery(SHAPES, runs).target
     expected = dict(zip(LINKS, turned(TARGET - START), strict=True))
     assert list(found) == ["fore", "hand"]
     for link, pose in found.items():
         assert pose == pytest.approx(expected[link], abs=1e-5)
-
-
-@pytest.mark.parametrize("other", [{"unit": "m"}, {"final": START}, {"off": 0.01}])
-def test_a_record_that_shows_no_such_turn_has_no_axis(other):
-    assert scenery.find_hinge(turning(**other)) is None
-
-
-def test_runs_with_several_targets_show_none():
-    runs = turning()
     level = replace(runs.levels[0], values={"run": (TARGET,), "other": (0.0,)})
-    runs = replace(runs, levels=[level])
-    assert scenery.target_poses(runs, scenery.find_hinge(runs)) == {}
+    several = scenery.scenery(SHAPES, replace(runs, levels=[level]))
+    assert (several.axis, several.target) == (True, {})
+
+
+def test_the_rod_lies_on_the_axis_and_no_other_joint_has_one():
+    runs = turning()
+    rod = scenery.scenery(SHAPES, runs).parts[-1]
+    above, fore = POSES_AT_REST[1:3]
+    ends = (np.linalg.inv(fore) @ above)[:3, :3] @ rod.vertices.T
+    ends = ends.T + (np.linalg.inv(fore) @ above)[:3, 3] - LINE[0]
+    off = np.linalg.norm(np.cross(ends, LINE[1]), axis=1)
+    assert (rod.link, off.max()) == (
+        "upper",
+        pytest.approx(scenery.AXIS_RADIUS, abs=1e-5),
+    )
+    assert not scenery.scenery(SHAPES, replace(runs, subject="other")).axis
 
 
 def test_an_arm_gets_floor_axis_and_target_and_the_view_of_all_of_it():
-    shape = [box(link) for link in LINKS]
-    found = scenery.scenery(shape, turning())
+    found = scenery.scenery(SHAPES, turning())
     assert found.axis
     assert found.followed is None
     assert [part.link for part in found.parts] == [*LINKS, WORLD, WORLD, "upper"]
@@ -148,16 +141,6 @@ def test_the_picture_holds_all_points_and_no_more_room_than_stated():
     half = (camera.distance - back) * np.tan(scenery.FIELD / 2)
     share = np.maximum(np.abs(right) / scenery.ASPECT, np.abs(up)) / half
     assert share.max() == pytest.approx(1 / scenery.ROOM)
-
-
-def test_the_camera_is_given_in_the_notation_of_the_viewer():
-    camera = scenery.Camera(np.array([0.1, 0.25, -1.0]), 1.5)
-    assert (camera.orbit, camera.target) == (
-        "30deg 78deg 1.5000m",
-        "0.1000m 0.2500m -1.0000m",
-    )
-    assert camera.axes @ camera.axes.T == pytest.approx(np.eye(3))
-    assert np.linalg.det(camera.axes) == pytest.approx(1)
 
 
 PLACES = ((-0.5, 0.0), (0.5, 0.25))
