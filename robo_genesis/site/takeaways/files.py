@@ -102,9 +102,7 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
     shutil.copy(project.ROOT / "requirements.lock", constraints)
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(config.torch_index, student.name)
-    origin = partial(
-        origin_of, page, bundle.read_manifest(run), commands, config
-    )
+    origin = partial(origin_of, page, bundle.read_manifest(run), commands, config)
     needed = {
         project.ENGINE: project.engine_pin(),
         project.COURSE: package_facts()["version"],
