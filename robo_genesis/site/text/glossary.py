@@ -4,7 +4,6 @@ import re
 from typing import Any
 
 from docutils import nodes
-from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.transforms.post_transforms import SphinxPostTransform
@@ -44,14 +43,6 @@ class TitleTerms(SphinxPostTransform):
             link["classes"].append("term-link")
 
 
-def note_glossary(app: Sphinx, document: nodes.document) -> None:
-    """Note that a page with a term shows a part of the glossary."""
-    links = document.findall(addnodes.pending_xref)
-    if any(link["reftype"] == "term" for link in links):
-        app.env.note_dependency(app.env.doc2path(GLOSSARY, base=False))
-
-
 def setup(app: Sphinx) -> None:
     """Register the titles."""
     app.add_post_transform(TitleTerms)
-    app.connect("doctree-read", note_glossary)
