@@ -82,22 +82,6 @@ def driver(machine: ProbedMachine) -> str:
     return f"{name} {driver_version(machine.backend, machine.root)}"
 
 
-def card(machine: ProbedMachine) -> str:
-    """The driver lists a card."""
-    nodes = machine.root / "sys/class/kfd/kfd/topology/nodes"
-    versions = []
-    for path in sorted(nodes.glob("*/properties")):
-        words = path.read_text("utf8").split()
-        properties = dict(zip(words[::2], words[1::2], strict=False))
-        versions.append(properties.get("gfx_target_version", "0"))
-    if cards := [version for version in versions if version != "0"]:  # 0: a processor
-        return f"gfx_target_version {', '.join(cards)}"
-    raise StepError(
-        f"{nodes} names no card, expected one with a gfx_target_version. "
-        "Check with rocminfo that the driver supports the card."
-    )
-
-
 def linker(machine: ProbedMachine) -> str:
     """`ld.lld`, with which the engine's compiler links each kernel, is where it looks."""
     given = machine.environ.get("ROCM_PATH")
@@ -198,7 +182,6 @@ CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
     "amdgpu": (
         (devices,),
         (driver,),
-        (card,),
         (linker,),
         (visibility,),
         (torch, device, device_code, hip_runtime, kernel),

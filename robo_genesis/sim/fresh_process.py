@@ -29,35 +29,22 @@ def run_python(
     Raises:
         StartError: it took too long, ended with another status, or printed nothing.
     """
+    command = [sys.executable, *arguments]
+    how: dict[str, Any] = {"capture_output": True, "text": True, "timeout": TIMEOUT}
     try:
-        done = subprocess.run(
-            [sys.executable, *arguments],
-            env=os.environ | changed,
-            capture_output=True,
-            text=True,
-            timeout=TIMEOUT,
-            check=False,
-        )
+        done = subprocess.run(command, env=os.environ | changed, **how)
     except subprocess.TimeoutExpired as error:
-        problem = f"had not ended after {TIMEOUT} s and was killed"
-        raise StartError(_report(problem, error.stdout, error.stderr)) from error
+        raise StartError(
+            f"The process had not ended after {TIMEOUT} s and was killed."
+        ) from error
     if done.returncode not in statuses or not done.stdout.strip():
+        last = "\n".join((done.stdout + done.stderr).splitlines()[-10:])
         valid = " or ".join(map(str, statuses))
-        problem = (
-            f"ended with {ended(done.returncode)}, expected {valid} and some output"
+        raise StartError(
+            f"The process ended with {ended(done.returncode)}, expected {valid} and some output. "
+            f"Its last lines:\n{last}"
         )
-        raise StartError(_report(problem, done.stdout, done.stderr))
     return done.stdout
-
-
-def _report(problem: str, *outputs: str | bytes | None) -> str:
-    """Return what is wrong with a process, with its last lines; a killed one leaves bytes."""
-    texts = (
-        o.decode("utf8", "replace") if isinstance(o, bytes) else o or ""
-        for o in outputs
-    )
-    last = "\n".join("".join(texts).splitlines()[-10:])
-    return f"The process {problem}. Its last lines:\n{last}"
 
 
 def last_value(printed: str) -> Any:

@@ -66,8 +66,6 @@ class Synthetic:
         for path in ("dev/kfd", "dev/dri/renderD128", LLD):
             self.write(path, "")
         self.write("sys/module/amdgpu/version", "6.16\n")
-        self.card(0, node=0)
-        self.card(90402)
         self.loaded(OWN)
         self.write("torch.py", TORCH)
         self.told()
@@ -83,10 +81,6 @@ class Synthetic:
 
     def told(self, **values) -> None:
         self.write("torch.json", json.dumps(TOLD | values))
-
-    def card(self, version: int, node: int = 1) -> None:
-        text = f"simd_count 304\ngfx_target_version {version}\n"
-        self.write(f"sys/class/kfd/kfd/topology/nodes/{node}/properties", text)
 
     def loaded(self, *files: str) -> None:
         lines = [
@@ -141,7 +135,6 @@ def test_an_amd_machine_is_fine(machine, expected):
     assert found == {
         "devices": "may open kfd renderD128",
         "driver": "amdgpu 6.16",
-        "card": "gfx_target_version 90402",
         "linker": f"{machine.root}/opt/rocm/llvm/bin/ld.lld",
         "visibility": "no variable hides a card",
         "torch": "2.13.0+rocm7.1, built for HIP 7.1.2",
@@ -163,7 +156,6 @@ FAULTS = [
     (M.close, ["kfd"], "devices", "broken", "open renderD128, expected kfd and a renderD"),
     (M.close, ["renderD128"], "devices", "broken", "usermod -aG render,video"),
     (M.removed, ["sys/module/amdgpu/version"], "driver", "ok", "amdgpu of the kernel "),
-    (M.card, [0], "card", "broken", "names no card"),
     (M.removed, [LLD], "linker", "broken", "in llvm/bin of ROCM_PATH (unset)"),
     (M.variables, ["1", "ROCR"], "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
     (M.variables, ["1", "HIP"], "visibility", "warning", "set it alone"),
@@ -258,7 +250,7 @@ def test_a_torch_that_does_not_answer_is_named_with_the_fix(
     machine.write("torch.py", torch)
     backend, states, found = machine.probe()
     assert backend == "cpu"
-    assert [*states.values()] == ["ok"] * 5 + ["broken"] + ["not run"] * 4
+    assert [*states.values()] == ["ok"] * 4 + ["broken"] + ["not run"] * 4
     assert f"Torch of {sys.executable} ended without an answer: " in found["torch"]
     assert said in found["torch"]
 
