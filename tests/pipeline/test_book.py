@@ -56,11 +56,15 @@ def built(tmp_path_factory) -> SimpleNamespace:
         if "] render " in line:
             (book / "index.md").write_text("# Home\n\nEdited meanwhile.\n")
 
-    last = build(folder, say=edit_meanwhile)
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setenv("SOLUTIONS", "1")  # as the command sets it
+        last = build(folder, say=edit_meanwhile)
+        record = book / "_build" / up_to_date.RECORD
+        assert not record.exists()  # so it is built again
+        again = build(folder)
     assert marker.read_text() != "the old site"
     assert not gone.exists()  # the book no longer has the page
-    assert not (book / "_build" / up_to_date.RECORD).exists()  # so it is built again
-    return SimpleNamespace(folder=folder, said=said, last=last, again=build(folder))
+    return SimpleNamespace(folder=folder, said=said, last=last, again=again)
 
 
 def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
@@ -82,7 +86,7 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
 
 def test_a_build_without_work_repeats_the_last_lines_and_loads_no_heavy_package(built):
     arguments = ("--book", str(built.folder / "book"))
-    said, loaded = run_watched("book.py", *arguments, RENDER="1", RELEASE="0")
+    said, loaded = run_watched("book.py", *arguments)
     assert said.splitlines() == [
         "Nothing changed: the site is up to date.",
         *built.again,
@@ -184,7 +188,7 @@ def test_a_site_with_problems_is_not_published(tmp_path):
 def test_a_broken_page_fails_with_status_1_a_report_and_the_old_site(tmp_path):
     broken = cell("import sys\nprint('engine: last words', file=sys.stderr)\n1 / 0")
     marker = old_site(make_book(tmp_path, broken=notebook(broken), good=LAB))
-    report = fails("book.py", tmp_path, JOBS="2")
+    report = fails("book.py", tmp_path, "--jobs=2")
     assert "1 of 2 pages failed." in report
     assert "broken, code cell 1, line 12: 1 / 0" in report
     log = tmp_path / "cache/logs/broken.log"
@@ -248,7 +252,7 @@ def test_an_end_by_signal_leaves_the_old_site_and_no_process(
     )
     book = make_book(tmp_path, **dict(zip(("one", "two"), pages, strict=True)))
     marker = old_site(book)
-    process = start("book.py", tmp_path, own_group=True, JOBS="2")
+    process = start("book.py", tmp_path, "--jobs=2", own_group=True)
     wait(process, *pids)
     below = {
         child.pid: child
@@ -291,42 +295,21 @@ def test_sphinx_ends_with_a_killed_build(tmp_path):
     assert marker.read_text() != "the old site"
 
 
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"RENDER": "yes"}, "RENDER='yes' is not valid. Choices: 0, 1."),
-        (
-            {"SOLUTIONS": "no"},
-            "'no' is not valid: 0 leaves solutions out. Choices: 0, 1.",
-        ),
-        (
-            {"ROBO_GENESIS_BACKEND": "auto"},
-            "records accelerators. Unset it. Choices: cpu.",
-        ),
-        ({"JOBS": "0"}, "JOBS='0' is not valid. Give a number"),
-        ({"RELEASE": "1", "RENDER": "0"}, "RENDER='0' is not valid with RELEASE=1"),
-        (
-            {"RELEASE": "1"},
-            "is not valid with RELEASE=1, which builds the commit's book.",
-        ),
-        (
-            {"SITE_URL": "example.org/course"},
-            "SITE_URL='example.org/course' is not valid. Give an",
-        ),
-    ],
-)
-def test_invalid_settings_are_refused_before_any_page(tmp_path, settings, said):
+def test_an_invalid_address_is_refused_before_any_page(tmp_path):
     make_book(tmp_path, page=notebook(cell("1")))
-    assert said in fails("book.py", tmp_path, **settings)
+    report = fails("book.py", tmp_path, "--site-url=example.org/course")
+    assert "SITE_URL='example.org/course' is not valid. Give an" in report
     assert not (tmp_path / "cache" / "pages").exists()
 
 
-@pytest.mark.parametrize("script", ["book.py", "execute.py"])
-def test_a_bad_source_is_refused_before_any_page(tmp_path, script):
-    make_book(tmp_path, page=notebook(cell("1")), bad="# Bad\n\n:::{note}\n")
-    report = fails(script, tmp_path, PAGE="page", TO=str(tmp_path / "to"))
-    assert f"{tmp_path}/book/bad.md:3: the block :::{{note}} has no end" in report
-    assert not (tmp_path / "cache" / "pages").exists()
+def test_a_page_of_the_book_is_executed_alone_into_the_store(tmp_path):
+    make_book(tmp_path, lab=LAB, page=notebook(cell("1")))
+    folders = "--book", str(tmp_path / "book"), "--cache", str(tmp_path / "cache")
+    said = run_watched("execute.py", *folders, "page")[0]
+    assert "Executed page: " in said
+    assert [p.name for p in (tmp_path / "cache/pages").iterdir()] == ["page"]
+    report = fails("execute.py", tmp_path, "l05/lab")
+    assert "'l05/lab' is not valid. Executed pages of this book: lab, page." in report
 
 
 def test_another_installed_engine_stops_the_build_before_any_page(

@@ -18,7 +18,6 @@ from robo_genesis.core.files import NO_SOURCE, derived, files_below, json_digest
 from robo_genesis.core.project import PUBLISHED, ROOT, ProjectError
 from robo_genesis.pipeline.pages import page_rules as rules
 from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
-from robo_genesis.pipeline.up_to_date import FILES
 
 # The name of a lesson's lab, and the file with its work sheet.
 LAB, WORK_SHEET = "lab", "worksheet.md"
@@ -86,8 +85,6 @@ class Page:
 def find_pages(book: Path) -> list[Page]:
     """Return the executed pages of a book, in the order of its table of contents.
 
-    Whatever can be refused before a page is executed is refused here, for all commands.
-
     Args:
         book: the folder with `_toc.yml`.
 
@@ -95,28 +92,20 @@ def find_pages(book: Path) -> list[Page]:
         The MyST text notebooks among the pages that the table of contents names.
 
     Raises:
-        PageError: naming file, line and cure of each problem of the book's and the
-            package's files.
+        PageError: naming file, line and cure of each problem of the book's pages.
     """
-    own = sorted(files_below(book, (PUBLISHED, f".{PUBLISHED}"), NO_SOURCE))
-    others = [
-        *files_below(ROOT / PACKAGE, left_out=NO_SOURCE),
-        *(ROOT / name for name in FILES),
-    ]
-    _refuse(_said(path, rules.file_problems(path)) for path in [*own, *others])
     files = page_files(book)
-    found = [_said(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)]
-    sheets = [path for path in own if path.name == WORK_SHEET]
-    found += [
-        _said(path, rules.sheet_problems(path.read_text("utf8"))) for path in sheets
+    own = sorted(files_below(book, (PUBLISHED, f".{PUBLISHED}"), NO_SOURCE))
+    problems = [
+        _report(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)
     ]
     pages: list[Page] = []
     measuring: dict[tuple[str | None, str | None], Path] = {}
     for name, path in files.items():
         try:
-            notebook = _read(path, name, book / TOC)
+            notebook = _read(path, book / TOC)
         except PageError as error:
-            found.append(str(error))
+            problems.append(str(error))
             continue
         if notebook is None:
             continue
@@ -124,20 +113,21 @@ def find_pages(book: Path) -> list[Page]:
         other = measuring.setdefault(measures, path) if measures[0] else path
         if other != path:
             line = _line_of(f"{PACKAGE}:", path)
-            found.append(_said(path, [(line, TWICE.format(*measures, other))]))
+            problems.append(_report(path, [(line, TWICE.format(*measures, other))]))
         pages.append(Page(name, path, notebook, *measures))
-    _refuse(found)
+    if problems:
+        raise PageError("\n".join(problems))
     return pages
 
 
-def _read(path: Path, name: str, toc: Path) -> NotebookNode | None:
+def _read(path: Path, toc: Path) -> NotebookNode | None:
     """Return a page that has code cells; raise PageError with all that it may not contain."""
-    if ".." in name or not path.is_file():
-        raise PageError(
-            _said(toc, [(_line_of(name, toc), f"there is no {path}. {CREATE}")])
-        )
+    if not path.is_file():
+        line = _line_of(path.stem, toc)
+        raise PageError(_report(toc, [(line, f"there is no {path}. {CREATE}")]))
     notebook = read_notebook(path)
-    _refuse([_said(path, rules.page_problems(path.read_text("utf8"), notebook))])
+    if problems := [*rules.page_problems(path.read_text("utf8"), notebook)]:
+        raise PageError(_report(path, problems))
     return notebook
 
 
@@ -148,7 +138,7 @@ def page_files(book: Path) -> dict[str, Path]:
         site_map = parse_toc_yaml(toc)
     except (OSError, ValueError, yaml.YAMLError, MalformedError) as error:
         raise PageError(
-            _said(toc, [(1, f"it cannot be read: {error}\nCorrect it.")])
+            _report(toc, [(1, f"it cannot be read: {error}\nCorrect it.")])
         ) from error
     if site_map.globs():
         raise PageError(
@@ -161,8 +151,8 @@ def page_files(book: Path) -> dict[str, Path]:
 def _is_stray(path: Path, book: Path, files: Mapping[str, Path]) -> bool:
     """Whether a file looks like a page, and no line of the table of contents names it."""
     hidden = any(part.startswith("_") for part in path.relative_to(book).parts)
-    is_text = path.suffix.lower() in PAGES and path.name != WORK_SHEET
-    return is_text and not hidden and path not in files.values()
+    is_page = path.suffix.lower() in PAGES and path.name != WORK_SHEET
+    return is_page and not hidden and path not in files.values()
 
 
 def _line_of(word: str, path: Path) -> int:
@@ -171,26 +161,18 @@ def _line_of(word: str, path: Path) -> int:
     return 1 + next((n for n, line in enumerate(lines) if word in line), 0)
 
 
-def _line_of_error(error: Exception, path: Path) -> int:
-    """Return the line of what the reader of a page, of YAML or of notebooks does not accept."""
-    if found := re.search(r"at line (\d+)", str(error)):
-        return int(found[1])
-    if found := re.search(r"line (\d+), column", str(error)):
-        return int(found[1]) + 1  # of the front matter
-    name = [*getattr(error, "path", [""])][-1]
-    return _line_of(f"{name}: {getattr(error, 'instance', '')}", path)
+def _line_of_error(error: Exception) -> int:
+    """Return the line of what the reader of a page or of YAML does not accept."""
+    if at := re.search(r"at line (\d+)", str(error)):
+        return int(at[1])
+    at = re.search(r"line (\d+), column", str(error))  # of the front matter
+    return int(at[1]) + 1 if at else 1
 
 
-def _said(path: Path, problems: Iterable[rules.Problem]) -> str:
+def _report(path: Path, problems: Iterable[rules.Problem]) -> str:
     """Return a line for each problem of a file."""
     name = str(path).removeprefix(f"{ROOT}/")
-    return "\n".join(f"{name}:{line}: {what}" for line, what in problems)
-
-
-def _refuse(problems: Iterable[str]) -> None:
-    """Raise PageError if there is any problem."""
-    if said := "\n".join(filter(None, problems)):
-        raise PageError(said)
+    return "\n".join(f"{name}:{line}: {problem}" for line, problem in problems)
 
 
 def read_notebook(path: Path) -> NotebookNode | None:
@@ -206,7 +188,7 @@ def read_notebook(path: Path) -> NotebookNode | None:
         notebook = deepcopy(_parsed(path, text)) if text.startswith("---") else None
     except Exception as error:  # the parser raises exceptions of many types
         why = f"the page cannot be read: {error}\nFront matter and options of cells are YAML."
-        raise PageError(_said(path, [(_line_of_error(error, path), why)])) from error
+        raise PageError(_report(path, [(_line_of_error(error), why)])) from error
     return notebook if _is_notebook(text) else None
 
 

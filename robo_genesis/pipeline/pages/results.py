@@ -15,7 +15,7 @@ from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
 from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
 from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
-from robo_genesis.pipeline.pages.book import Page
+from robo_genesis.pipeline.pages.book import Page, code_cells
 from robo_genesis.pipeline.pages.guards import contradicted
 from robo_genesis.pipeline.pages.page_rules import first_line
 
@@ -23,30 +23,22 @@ LOG_LINES = 15
 Status = Literal["executed", "reused", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 
-# What a cell may put out. HTML could hide or imitate what the site says about its
-# evidence.
+# What a cell may put out. The course's style has no form for other kinds, such as HTML.
 KINDS = PICTURES | {"text/plain", "text/markdown"}
 
 INSTEAD = (
-    "Show a table as `Markdown(tables.markdown(rows))` of robo_genesis.core, with the rows "
-    "`frame.to_dict('records')` of pandas; frames and arrays in a figure, as `plotting.stacked` "
-    "does; and a motion by the directive {replay}."
+    "Show a table as `Markdown(tables.markdown(rows))` of robo_genesis.core, frames and arrays in "
+    "a figure, and a motion by the directive {replay}."
 )
 TAG_IT = (
     "Tag it figure, and describe the picture in the option `mystnb: {image: {alt: …}}`."
 )
-MOST_LINES, MOST_LETTERS, MOST_IN_PICTURE = 1_000, 100_000, 2_000_000
-LESS = (
-    f"A page shows at most {MOST_LINES:,} lines and {MOST_LETTERS:,} characters of a cell, and "
-    f"{MOST_IN_PICTURE:,} of a picture. Print a summary, or draw fewer points."
-)
+MOST_LETTERS, MOST_IN_PICTURE = 100_000, 2_000_000
 ANEW = (
     "It differs in each run, or is a command for a terminal. Print names and values; a semicolon "
     "at the end of the last line hides the value of a call."
 )
 
-# Begins the kind of an output that is kept for another place of its page.
-GLUED = "application/papermill.record/"
 # Addresses and temporary folders, which differ in each run, and characters for
 # terminals.
 CHANGING = re.compile(
@@ -115,7 +107,7 @@ def find_bundle(left: Path, run_id: str) -> Path | None:
     for manifest in sorted(left.glob("*/manifest.json")):
         try:
             found = json.loads(manifest.read_text("utf8"))["run_id"]
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        except (OSError, ValueError, KeyError):
             continue
         if found == run_id:
             return manifest.parent
@@ -144,11 +136,8 @@ def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
         executed: the same code cells with outputs.
     """
     source = page.notebook
-    ran = [cell for cell in executed.cells if cell.cell_type == "code"]
-    places = [
-        index for index, cell in enumerate(source.cells) if cell.cell_type == "code"
-    ]
-    for index, cell in zip(places, ran, strict=True):
+    places = [k for k, cell in enumerate(source.cells) if cell.cell_type == "code"]
+    for index, cell in zip(places, code_cells(executed), strict=True):
         metadata = source.cells[index].metadata
         if wrong := _wrong_output(metadata.get("tags", []), cell.outputs):
             return at_cell(page, index, *wrong)
@@ -163,51 +152,29 @@ def _wrong_output(
 ) -> tuple[str, str] | None:
     """Return the name of the first rule that the outputs of a cell break, with reason and cure."""
     data = [item for out in outputs for item in out.get("data", {}).items()]
-    shown = PICTURES.intersection(kind for kind, _ in data)
-    data = [(kind.removeprefix(GLUED), content) for kind, content in data]
     odd = ", ".join(sorted({kind for kind, _ in data} - KINDS))
+    if odd:
+        return "OutputKind", f"the cell puts out {odd}. {INSTEAD}"
     pictures = [content for kind, content in data if kind in PICTURES]
-    colours = ", ".join(
-        sorted({each for of in pictures for each in outside_the_palette(of)})
-    )
+    if pictures and "figure" not in tags:
+        return "FigureUntagged", f"the cell shows a picture. {TAG_IT}"
+    if "figure" in tags and not pictures:
+        return "FigureMissing", "the cell is tagged figure, but shows none."
+    if colours := {each for of in pictures for each in outside_the_palette(of)}:
+        return "Colour", f"the cell draws in {', '.join(colours)}. {VALID_COLOURS}"
     texts = [out.get("text", out.get("evalue", "")) for out in outputs]
-    texts += [content for kind, content in data if kind.startswith("text/")]
-    lines, size = sum(len(text.splitlines()) for text in texts), sum(map(len, texts))
-    too_long = lines > MOST_LINES or size > MOST_LETTERS
-    changing = CHANGING.search("\n".join(texts))
-    rules = (
-        (
-            "FigureMissing",
-            "figure" in tags and not shown,
-            "is tagged figure, but shows none.",
-        ),
-        ("OutputKind", odd, f"puts out {odd}. {INSTEAD}"),
-        (
-            "FigureUntagged",
-            shown and "figure" not in tags,
-            f"shows a picture. {TAG_IT}",
-        ),
-        (
-            "FigureOfInputs",
-            pictures and "inputs" in tags,
-            "has the tag inputs, for tables alone.",
-        ),
-        ("Colour", colours, f"draws in {colours}. {VALID_COLOURS}"),
-        (
+    texts += [content for kind, content in data if kind not in PICTURES]
+    size = sum(map(len, texts))
+    if size > MOST_LETTERS or any(len(of) > MOST_IN_PICTURE for of in pictures):
+        return (
             "OutputSize",
-            too_long,
-            f"puts out {lines:,} lines, {size:,} characters. {LESS}",
-        ),
-        (
-            "OutputSize",
-            any(len(of) > MOST_IN_PICTURE for of in pictures),
-            f"draws more. {LESS}",
-        ),
-        ("OutputChanges", changing, f"puts out {changing and changing[0]!r}. {ANEW}"),
-    )
-    return next(
-        ((name, f"the cell {why}") for name, broken, why in rules if broken), None
-    )
+            f"the cell puts out {size:,} characters and {len(pictures)} pictures. Valid are "
+            f"{MOST_LETTERS:,}, and {MOST_IN_PICTURE:,} of a picture. Print a summary, or draw "
+            "fewer points.",
+        )
+    if changing := CHANGING.search("\n".join(texts)):
+        return "OutputChanges", f"the cell puts out {changing[0]!r}. {ANEW}"
+    return None
 
 
 def _contradiction(
@@ -242,9 +209,7 @@ def at_cell(
         ran: the cell with its outputs; the traceback among them names the failing line.
     """
     cells, text = page.notebook.cells, []
-    with suppress(
-        OSError, UnicodeError
-    ):  # the page may have been edited since it was read
+    with suppress(OSError):  # the page may have been moved since it was read
         text = page.path.read_text("utf8").split("\n")
     lines = cells[index].source.splitlines() or [""]
     same = (

@@ -118,7 +118,7 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
             "the run left no l04/more/<backend>/manifest.json",
             None,
         ),
-        ("long", "OutputSize", "puts out 2 lines, 1,200,002 characters.", 1),
+        ("long", "OutputSize", "puts out 1,200,002 characters", 1),
         (
             "memory",
             "DeadKernelError",
