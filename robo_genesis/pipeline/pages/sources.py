@@ -11,10 +11,8 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property, partial
-from importlib.machinery import BYTECODE_SUFFIXES, EXTENSION_SUFFIXES
 from itertools import accumulate
 from pathlib import Path
-from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
 from robo_genesis.core import project
@@ -137,31 +135,6 @@ def lesson_modules(lesson: str, root: Path) -> list[str]:
         path.relative_to(root).with_suffix("") for path in files if path.suffix == ".py"
     )
     return [".".join(name.parts) for name in names]
-
-
-def require_keyed_imports(root: Path) -> None:
-    """Require that Python runs what the keys of pages cover; the checkout is its PYTHONPATH.
-
-    Raises:
-        ProjectError: naming each importable file or package beside the course's
-            package, and each file in it that Python would run in the place of a
-            module's source.
-    """
-    found = [
-        module.name for module in iter_modules([str(root)]) if module.name != PACKAGE
-    ]
-    found += [
-        path.relative_to(root).as_posix()
-        for path in files_below(root / PACKAGE)
-        if path.name.endswith((*EXTENSION_SUFFIXES, *BYTECODE_SUFFIXES))
-        or (path.name == "__init__.py" and path.parent.with_suffix(".py").is_file())
-    ]
-    if found:
-        raise project.ProjectError(
-            f"Python would import {', '.join(sorted(found))} in {root}, which no key of a page "
-            f"covers. Valid is the folder {PACKAGE}, where each module is one .py file. Move the "
-            "others to another folder or delete them."
-        )
 
 
 def measuring_modules(
