@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import wraps
-from inspect import signature
 from traceback import extract_tb
 from typing import Any, Concatenate, ParamSpec
 
@@ -108,13 +107,11 @@ def as_test(
     """Make a test from a generator of findings about its first argument, a student's function.
 
     The test ends with the first value that is not allowed, and the outcome names its
-    call. The test raises TypeError if it is called with wrong arguments. Other
-    exceptions are those of the student's function and fail the test.
+    call. An exception of the student's function fails the test as well.
     """
 
     @wraps(findings)
     def judge(function: Written, /, *given: Given.args, **named: Given.kwargs) -> Check:
-        signature(findings).bind(function, *given, **named)
         watched, judged, problem = Watched(function), 0, ""
         try:
             for judged, finding in enumerate(findings(watched, *given, **named), 1):  # noqa: B007

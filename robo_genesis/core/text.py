@@ -49,6 +49,9 @@ SCALED = {
 }
 
 
+# By unit, values below these are written in a smaller unit by `readable`.
+SHORT = {"m": 0.1, "J": 1.0}
+
 # A smaller unit still, and the hundredth of a share.
 MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "J": "µJ", "1": "%"}
 
@@ -105,6 +108,16 @@ def format_value(value: float | None, unit: str) -> str:
     if unit == "1":
         return f"{value} sample" if value == 1 else f"{value} samples"
     return f"{value:z.{DIGITS[unit]}f} {unit}"
+
+
+def readable(value: float | None, unit: str) -> str:
+    """Write a value with a unit of its size and three digits: `6.43 mm`; a longer one in metres."""
+    if value == 0 and unit in SHORT:
+        return f"0 {SCALED[unit]}"
+    if value is None or abs(value) >= SHORT.get(unit, 0.0):
+        return format_value(value, unit).replace("-", "−")
+    smaller = SCALED[unit] if abs(value) >= 1e-5 else MICRO[unit]
+    return scaled_value(value, smaller).replace("-", "−")
 
 
 def six_digits(value: float | None, unit: str) -> str:

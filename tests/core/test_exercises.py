@@ -32,10 +32,6 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
         ),
         (lambda values: values[:1], "twice.shape is 1, expected 3"),
         (
-            lambda values: values * np.nan,
-            "returned [nan, nan, nan]\n  twice[0], the first that differs, is nan, expected 0 ±",
-        ),
-        (
             lambda values: "no numbers",
             "([0, 1, 2]) returned no numbers: ValueError: could not",
         ),
@@ -51,25 +47,8 @@ def test_a_wrong_one_fails_and_its_check_says_what_was_found(function, says):
     assert says in check.detail
 
 
-@pytest.mark.parametrize(
-    ("shape", "says"),
-    [
-        (
-            (4, 3),
-            "twice[2], the first that differs, is [12, 14.5, 16], expected [12, 14, 16] ± ",
-        ),
-        (
-            (2, 3, 2),
-            "twice[1, 0], the first that differs, is [12, 14.5], expected [12, 14] ± 1",
-        ),
-    ],
-)
-def test_the_first_wrong_row_is_named_with_what_it_should_be(shape, says):
-    given = np.arange(12.0).reshape(shape)
+def test_the_first_wrong_row_is_named_with_what_it_should_be():
+    given = np.arange(12.0).reshape(4, 3)
     check = doubled(lambda values: 2 * values + 0.5 * np.isin(values, (7, 11)), given)
+    says = "twice[2], the first that differs, is [12, 14.5, 16], expected [12, 14, 16]"
     assert says in check.detail
-
-
-def test_wrong_arguments_of_the_test_itself_are_no_fault_of_the_student():
-    with pytest.raises(TypeError, match="missing a required argument: 'values'"):
-        doubled(lambda values: 2 * values)

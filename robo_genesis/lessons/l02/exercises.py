@@ -27,7 +27,6 @@ UNTIL_REST = 100  # Outer steps after which a dropped box lies on the ground
 def scene(make: Callable[..., Any], gs: Any, case: Drop) -> Iterator[Finding]:
     """Check `make(gs)`: a built scene with a ground, and the box of a case, which falls on it."""
     built, box = make(gs)
-    yield equal("is_built", bool(built.is_built), True)
     yield within("dt_s", float(built.dt), case.dt, 1e-9)
     yield equal("substeps", int(built.substeps), case.substeps)
     yield within("mass_kg", float(box.get_mass()), case.mass, 1e-3 * case.mass)
@@ -77,7 +76,6 @@ def usable_frame(usable: Callable[..., Any]) -> Iterator[Finding]:
         "background_alone": (background, False),
         "floats": (box / 255, False),
         "rows_and_columns_exchanged": (box.swapaxes(0, 1), False),
-        "no_colours": (box[..., 0], False),
     }
     for name, (rgb, expected) in frames.items():
         yield equal(name, bool(usable(rgb)), expected)
@@ -89,7 +87,6 @@ def stepped(fall: Callable[..., Any]) -> Iterator[Finding]:
     for name, g, h, n in (
         ("baseline", spec.BASELINE.gravity, spec.BASELINE.h, 40),
         ("on_the_moon", spec.MOON, 0.02, 7),
-        ("no_step", spec.BASELINE.gravity, 0.01, 0),
     ):
         expected = summed_drop(h, np.arange(n + 1), g)
         yield from same_array(f"{name}_m", fall(g, h, n), expected, 1e-9)

@@ -10,7 +10,7 @@ from typing import Any
 
 from robo_genesis.core.experiment import case_inputs, inputs
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
-from robo_genesis.sim.bodies.rigid_bodies import Drop
+from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS, Drop
 
 MEASURES = False
 
@@ -39,15 +39,7 @@ LABELS = {
 
 LINK = "box_baselink"  # The engine's name of the box's only link
 
-# `entities` counts those of the scene with the ground, the others belong to the box.
-EXPECTED_MODEL = {
-    "entities": 2,
-    "links": 1,
-    "geoms": 1,
-    "joints": 1,
-    "dofs": 6,
-    "qpos": 7,
-}
+EXPECTED_MODEL = MODEL_COUNTS
 
 # Tolerance of a float32 position of half a metre against the exact sum [m].
 FORMULA_TOLERANCE = 1e-6

@@ -16,6 +16,7 @@ from typing import Any
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA
 from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
+from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS
 
 MEASURES = False
 
@@ -99,15 +100,7 @@ ONE_FACTOR = {
     },
 }
 
-# `entities` counts those of the scene with the surface, the others belong to the cube.
-EXPECTED_MODEL = {
-    "entities": 2,
-    "links": 1,
-    "geoms": 1,
-    "joints": 1,
-    "dofs": 6,
-    "qpos": 7,
-}
+EXPECTED_MODEL = MODEL_COUNTS
 
 # Tolerances that only judge
 

@@ -7,7 +7,7 @@ import numpy as np
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.tables import as_table, metric_table
-from robo_genesis.core.text import NOT_OBSERVED, format_value
+from robo_genesis.core.text import NOT_OBSERVED, format_value, readable
 from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
 from robo_genesis.lessons.l03.metrics import (
     CLEAR,
@@ -15,7 +15,7 @@ from robo_genesis.lessons.l03.metrics import (
     LandingMetrics,
     SlideMetrics,
 )
-from robo_genesis.lessons.l03.text import millimetres, milliseconds, readable
+from robo_genesis.lessons.l03.text import millimetres, milliseconds
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 MEASURES = False

@@ -4,11 +4,9 @@ from types import SimpleNamespace
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import sentence_of
-from robo_genesis.core.text import MICRO, SCALED, blocks, format_value, scaled_value
+from robo_genesis.core.text import blocks, readable
 
 MEASURES = False
-
-SHORT = {"m": 0.1, "J": 1.0}  # By unit, smaller values are written in its thousandth
 
 # By title, what the lab says if a check passed, with the metrics of its runs.
 SENTENCES = {
@@ -80,16 +78,6 @@ def conclusions(run: Experiment) -> str:
         for title, sentences in SENTENCES.items()
     }
     return blocks(said)
-
-
-def readable(value: float | None, unit: str) -> str:
-    """Write a value with a unit of its size and three digits: `6.43 mm`; a longer one in metres."""
-    if value == 0 and unit in SHORT:
-        return f"0 {SCALED[unit]}"
-    if value is None or abs(value) >= SHORT.get(unit, 0.0):
-        return format_value(value, unit).replace("-", "−")
-    smaller = SCALED[unit] if abs(value) >= 1e-5 else MICRO[unit]
-    return scaled_value(value, smaller).replace("-", "−")
 
 
 def milliseconds(seconds: float) -> str:

@@ -3,11 +3,12 @@
 The script asks what a chosen run will show before it shows the run beside the last one.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.tables import as_table
@@ -65,16 +66,15 @@ def written(measured: StepMetrics) -> dict[str, str]:
 def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     """Describe a point, its overshoot, and whether it saturated."""
     name = f" (the case {NAMES[point]})" if point in NAMES else ""
-    overshoot = f"{share_text(measured.overshoot / point.step)} of the step"
-    count = measured.saturation_samples
-    force = (
-        f"Saturated: {count} of {samples} samples"
-        if count
-        else "Not saturated: no sample"
-    )
+    overshoot = "none"
+    if measured.overshoot > 0:
+        overshoot = f"{share_text(measured.overshoot / point.step)} of the step"
+    force = "Not saturated: no sample"
+    if count := measured.saturation_samples:
+        force = f"Saturated: {count} of {samples} samples"
     return (
         f"KP {point.kp:g}, KV {point.kv:g}, step {point.step:g} rad{name}. "
-        f"Overshoot: {overshoot if measured.overshoot > 0 else 'none'}. {force} at the force limit."
+        f"Overshoot: {overshoot}. {force} at the force limit."
     )
 
 
@@ -117,51 +117,36 @@ def explored(run: Experiment) -> dict[str, Any]:
 
 def _map(run: Experiment, step: float) -> dict[str, Any]:
     """Return the runs of one step: KP upwards, KV to the right, and the axes of their curves."""
-    cells = {point: _cell(run, point) for point in POINTS if point.step == step}
+    cells = [_cell(run, point) for point in POINTS if point.step == step]
     first = run.traces[POINTS[0].name]
     start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
     target, room = start + step, 0.08 * step
-    highest = max(
-        start + PACKED["q"] * max(max(cell["q"]) for cell in cells.values()), target
+    highest = max(start + PACKED["q"] * max(max(cell["q"]) for cell in cells), target)
+    q = _axis(
+        (start, start + step / 2, target), (start - room, highest + room), 3, "target"
     )
-    return {
-        "label": f"{step:g} rad",
-        "setting": f"step {step:g} rad",
-        "caption": "Map of the runs: KP upwards, KV to the right.",
-        "columns": [f"{kv:g}" for kv in KV],
-        "rows": [
-            {"label": f"{kp:g}", "cells": [cells[GridPoint(step, kp, kv)] for kv in KV]}
-            for kp in reversed(KP)
-        ],
-        "axes": {
-            "q": _axis(
-                (start, start + step / 2, target),
-                (start - room, highest + room),
-                3,
-                {target: "target"},
-            ),
-            "force": _axis(
-                (-limit, 0.0, limit),
-                (-1.15 * limit, 1.15 * limit),
-                0,
-                {-limit: "limit", limit: "limit"},
-            ),
-        },
-    }
+    force = _axis((-limit, 0.0, limit), (-1.15 * limit, 1.15 * limit), 0, "limit")
+    return maps.grid(
+        "Map of the runs: KP upwards, KV to the right.",
+        [f"{kv:g}" for kv in KV],
+        [f"{kp:g}" for kp in KP],
+        cells,
+        label=f"{step:g} rad",
+        setting=f"step {step:g} rad",
+        axes={"q": q, "force": force},
+    )
 
 
 def _axis(
-    ticks: Sequence[float],
-    ends: Sequence[float],
-    digits: int,
-    levels: Mapping[float, str],
+    ticks: Sequence[float], ends: Sequence[float], digits: int, mark: str
 ) -> dict[str, Any]:
-    """Return the value axis of a curve; `levels` are marks of the palette by their value."""
+    """Return the value axis of a curve, with a mark of the palette at its target or limits."""
+    marked = ticks[-1:] if mark == "target" else ticks[::2]
     return {
         "low": ends[0],
         "high": ends[1],
         "ticks": [{"value": tick, "label": decimal(tick, digits)} for tick in ticks],
-        "levels": [{"value": value, "mark": mark} for value, mark in levels.items()],
+        "levels": [{"value": value, "mark": mark} for value in marked],
     }
 
 
@@ -195,15 +180,14 @@ def _cell(run: Experiment, point: GridPoint) -> dict[str, Any]:
             "–" if value is None else decimal(value * CELLS[name][0], CELLS[name][1])
             for name, value in numbers.items()
         ],
-        "q": _integers(q[: drawn + 1] - q[0], PACKED["q"]),
-        "force": _integers(
-            trace.control_force[:drawn, ENTRY].astype(float), PACKED["force"]
-        ),
+        "q": _integers(q[: drawn + 1] - q[0], "q"),
+        "force": _integers(trace.control_force[:drawn, ENTRY].astype(float), "force"),
     }
 
 
-def _integers(values: FloatArray, unit: float) -> list[int]:
-    return [int(value) for value in np.rint(values / unit)]
+def _integers(values: FloatArray, name: str) -> list[int]:
+    packed: list[int] = np.rint(values / PACKED[name]).astype(int).tolist()
+    return packed
 
 
 @as_table

@@ -16,7 +16,6 @@ from robo_genesis.lessons.l04.spec import (
     STEP,
     changed,
 )
-from robo_genesis.sim.arm.joint_control import ControlCase
 
 MEASURES = False
 
@@ -130,17 +129,11 @@ GRID_CASES = {
 }
 
 
-def point_of(case: ControlCase) -> GridPoint:
-    """Return the grid point of a case."""
-    step = float(case.q_target[ENTRY]) - START_OF_STEP
-    gains = float(case.kp[ENTRY]), float(case.kv[ENTRY])
-    return GridPoint(
-        round(step, 9), *gains
-    )  # without rounding errors of the difference
-
-
 # The points of the lesson's own cases.
-CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}
+CASE_POINTS = {
+    name: GridPoint(STEP, float(case.kp[ENTRY]), float(case.kv[ENTRY]))
+    for name, case in COMPARED.items()
+}
 
 # What only judges
 
@@ -165,10 +158,6 @@ CHATTER_SHARE = (
 )
 # Largest spread of the engines at the finest step, by that at the lesson's step
 SPREAD_SHARE = 0.2
-
-# Smallest and largest value of each axis: no point is more violent than the compared
-# cases.
-BOUNDS = {"step": (0.0, STEP), "kp": (3500.0, 7000.0), "kv": (100.0, 300.0)}
 
 # By unit: largest difference between a run in the batch and the same case run alone.
 # Times and counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m.

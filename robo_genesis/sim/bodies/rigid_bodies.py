@@ -15,6 +15,17 @@ from robo_genesis.sim.session import CaseError, require_built
 
 Read = TypeVar("Read")
 
+# The engine's counts of a scene with a ground and one free body; all but `entities` are
+# those of the body.
+MODEL_COUNTS = {
+    "entities": 2,
+    "links": 1,
+    "geoms": 1,
+    "joints": 1,
+    "dofs": 6,
+    "qpos": 7,
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Drop:

@@ -36,10 +36,6 @@ SPOILED = {
         case("substeps_10", steps=21),
         {"stamps", "one_factor"},
     ),
-    "a box that hovers": (
-        trace(BASE, link_pos=put((8, 0, 2), 0.5)),
-        {"falls", "stepped_formula"},
-    ),
     "another rule of stepping": (
         copied(BASE, "substeps_4"),
         {"stepped_formula", "first_order", "shrinks"},
@@ -50,10 +46,6 @@ SPOILED = {
     ),
     "a push from the side": (
         trace(BASE, link_pos=put((4, 0, 0), 1e-4)),
-        {"straight_down"},
-    ),
-    "a box without an orientation": (
-        trace(BASE, link_quat=put(-1, (7, 0, 0, 0))),
         {"straight_down"},
     ),
     "a speed that is not g t": (
@@ -72,11 +64,6 @@ SPOILED = {
         reading("shapes", "duck_felt", 3534),
         {"two_geometries"},
     ),
-    "a tray in one piece": (reading("shapes", "tray_pieces", 1), {"two_geometries"}),
-    "a ball that fell through the lid": (
-        reading("trays", "hull", 0.0308),
-        {"invisible_lid"},
-    ),
     "a heavier box that falls faster": (
         reading("further", "heavier", 0.21),
         {"further_falls"},
@@ -85,17 +72,14 @@ SPOILED = {
         reading(life_cycle.GROUP, "scene.step before build", 1),
         {"sides_of_build"},
     ),
-    "a second factor": (case("substeps_4", seed=1), {"one_factor"}),
 }
 
 
 def test_a_sound_run_passes_all_checks_and_the_lab_says_so(run):
     assert failed(run) == set()
-    lab = replace(run, page=DROP)
-    assert [
-        name for name in text.SENTENCES if f"`{name}` failed" in text.conclusions(lab)
-    ] == []
-    assert "The box fell 0.2011 m in 0.20 s" in text.conclusions(lab)
+    said = text.conclusions(replace(run, page=DROP))
+    assert "` failed" not in said
+    assert "The box fell 0.2011 m in 0.20 s" in said
 
 
 @pytest.mark.parametrize("name", SPOILED)
@@ -104,35 +88,12 @@ def test_a_spoiled_run_fails_its_check_and_the_lab_says_which(run, name):
     spoiled = spoil(run)
     assert failed(spoiled) == names
     said = text.conclusions(spoiled)
-    assert {of for of in text.SENTENCES if f"`{of}` failed" in said} == names & {
-        *text.SENTENCES
-    }
+    assert all(f"`{of}` failed" in said for of in names & text.SENTENCES.keys())
 
 
 def test_each_check_has_a_run_that_fails_it(run):
     fails = {name for _, names in SPOILED.values() for name in names} | {"free_fall"}
     assert fails == {check.__name__ for check in run.page.checks}
-
-
-@pytest.mark.parametrize(
-    ("changes", "names"),
-    [
-        ({"density": 1000}, {"mass"}),
-        ({"height": 0.6}, {"start", "free_fall"}),
-        ({"steps": 10}, {"stamps", "free_fall"}),
-    ],
-)
-def test_the_task_of_the_lab_fails_the_checks_of_its_answer(
-    run, frames, changes, names
-):
-    case = replace(spec.BASELINE, **changes)
-    changed = replace(
-        reading("body", "mass", case.mass)(run),
-        page=DROP,
-        traces={"baseline": make_drop(case)},
-        frames=frames,
-    )
-    assert {check.name for check in changed.outcomes() if not check.passed} == names
 
 
 def test_tables_have_words_units_and_signs(run):

@@ -33,12 +33,10 @@ CASES = {
     "scene": {
         "right": scene_with(),
         "one substep": scene_with(substeps=1),
-        "another dt": scene_with(dt=0.02),
         "the default density": scene_with(rho=600),
         "the underside at half a metre": scene_with(height=0.55),
         "no ground": scene_with(ground=False),
         "fixed": scene_with(fixed=True),
-        "not built": scene_with(is_built=False),
     },
     "record": {
         "right": OURS,
@@ -48,11 +46,9 @@ CASES = {
             OURS(*of)[0],
             [-speed for speed in OURS(*of)[1]],
         ),
-        "heights alone": lambda *of: OURS(*of)[:1],
     },
     "usable_frame": {
         "right": FRAME,
-        "always": lambda rgb: True,
         "extremes": lambda rgb: FRAME(rgb) and rgb[..., 0].max() > 30,
         "any dtype": lambda rgb: (
             rgb.shape == (540, 720, 3) and bool((rgb != rgb[0, 0]).any())
@@ -65,7 +61,6 @@ CASES = {
         "right": STEPPED,
         "the school formula": lambda g, h, n: continuous_drop(h * np.arange(n + 1), g),
         "without the start": lambda g, h, n: STEPPED(g, h, n)[1:],
-        "another gravity": lambda g, h, n: STEPPED(9.81, h, n),
     },
 }
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.body_runs import body_at, slide_on_corners
+from lessons.body_runs import slide_on_corners
 from lessons.changed_runs import (
     case,
     copied,
@@ -54,15 +54,6 @@ def equal_tables(run):
     return run
 
 
-def without_substeps(run):
-    return replace(run, readings=run.readings | {"substeps": {}})
-
-
-def never_flying(run):
-    still = body_at([spec.DROPPED_BALL.rest_height] * 201)
-    return replace(run, traces=run.traces | {"bounce_sub20": still})
-
-
 def never_rebounding(run):
     for name in study_spec.STEP_CASES["h_5000us"]:
         height = run.traces[name].link_pos[:, 0, 2]
@@ -76,24 +67,18 @@ def never_rebounding(run):
 SPOILERS = {
     "structure": [reading("model", "links", 2)],
     "mass": [reading("mass", "ball", None)],
-    "settings": [reading("friction", "low_on_050", 0.45), without_substeps],
+    "settings": [reading("friction", "low_on_050", 0.45)],
     "stamps": [case("low_on_030", duration=2.01)],
     "one_factor": [case("bounce_sub4", spring=(1.0, 0.02))],
-    "lands": [
-        trace("baseline", contacts=np.zeros_like),
-        moved("baseline", -0.05, first=30),
-    ],
+    "lands": [trace("baseline", contacts=np.zeros_like)],
     "reported_late": [trace("dt10_sub1", penetration=lambda a: np.roll(a, -1))],
     "equal_step_equal_states": [moved("dt20_sub2", 1e-5, axis=0, first=5)],
     "settles": [moved("baseline", -0.05, first=30)],
     "stops": [moved("low_on_030", 0.5, "link_vel", 0, first=60)],
-    "friction_orders": [
-        moved("low_on_030", 0.5, "link_vel", 0, first=60),
-        moved("high_on_030", 0.01, axis=0, first=20),
-    ],
+    "friction_orders": [moved("high_on_030", 0.01, axis=0, first=20)],
     "near_coulomb": [moved("low_on_030", 0.5, "link_vel", 0, first=60)],
-    "level_in_flight": [moved("bounce_sub20", 0.002, first=10), never_flying],
-    "energy_converges": [metric("bounce_sub100", first_kept=of) for of in (90.0, None)],
+    "level_in_flight": [moved("bounce_sub20", 0.002, first=10)],
+    "energy_converges": [metric("bounce_sub100", first_kept=90.0)],
     "posture": [frames(initial="initial", final="initial")],
     "time_constants": [reading(study.GROUP, "h_20000us", 0.01)],
     "rebound_goes": [
@@ -103,10 +88,7 @@ SPOILERS = {
     "scatter_shrinks": [deeper("h_125us_10000")],
     "depth_by_hand": [deeper("h_125us_10000")],
     "first_step_decides": [deeper("h_10000us_10000")],
-    "clean_slides_stay_down": [
-        moved("low_on_030_elliptic", 0.001, first=10, end=12),
-        trace("low_on_030_elliptic", contacts=put(5, 3)),
-    ],
+    "clean_slides_stay_down": [trace("low_on_030_elliptic", contacts=put(5, 3))],
     "clean_slides_are_coulomb_s": [
         moved("high_on_030_elliptic", 0.001, axis=0, first=10)
     ],
@@ -119,10 +101,7 @@ SPOILERS = {
     "hop_follows_speed": [moved("hop_200mm_s", 0.002, first=1)],
     "default_cone_hops": [on_corners("high_on_050")],
     "stops_nearly_right": [moved("low_on_050", 0.05, axis=0, first=10)],
-    "hop_is_paid_by_friction": [
-        on_corners("high_on_050"),
-        moved("low_on_050", -0.1, "link_vel", 0, first=1, end=2),
-    ],
+    "hop_is_paid_by_friction": [on_corners("high_on_050")],
     "the_cone_alone_hops": [copied("low_on_050_convex", "low_on_050_elliptic")],
     "half_the_step_contradicts": [on_corners("high_on_050")],
     "one_stop_converges": [moved("stop_100us_low", 0.05, axis=0, first=10)],
@@ -135,12 +114,12 @@ SPOILERS = {
 
 @pytest.mark.parametrize(("check", "spoil"), each(SPOILERS))
 def test_a_spoiled_run_fails_its_check(experiments, check, spoil):
-    run = run_with(experiments, check)
-    assert (failed(run), failed(spoil(run))) == (set(), {check})
+    assert failed(spoil(run_with(experiments, check))) == {check}
 
 
-def test_each_check_has_a_spoiled_run(experiments):
+def test_each_check_has_a_spoiled_run_and_no_sound_run_fails(experiments):
     assert SPOILERS.keys() == checks_of(experiments)
+    assert [failed(run) for run in experiments.values()] == [set()] * len(experiments)
 
 
 def test_the_lab_says_what_its_runs_show_or_which_check_failed(experiments):

@@ -68,7 +68,6 @@ CASES = {
         "the default density": scene_with(rho=200),
         "the friction of the table": scene_with(friction=0.8),
         "a table at half height": scene_with(table=0.725),
-        "not built": scene_with(is_built=False),
     },
     "push": {
         "right": SOLVED["push"],
@@ -76,7 +75,6 @@ CASES = {
         "settled in milliseconds": pushed(
             ALONG_X, lambda seconds: round(1000 * seconds)
         ),
-        "along y": pushed((0, 1, 0, 0, 0, 0)),
         "all DOFs": pushed((1,) * 6),
     },
     "contact_reading": {
@@ -86,7 +84,6 @@ CASES = {
         ),
         "largest of nothing": read_as(lambda depths: depths.max().item()),
         "the first contact": read_as(lambda depths: next(iter(depths.tolist()), 0.0)),
-        "one value": lambda cube, table: (4,),
     },
     "landing": {
         "right": SOLVED["landing"],
@@ -102,22 +99,12 @@ CASES = {
             SOLVED["landing"](clear)[0],
             max(0.0, clear[clear.argmin() + 1 :].max(initial=0.0)),
         ),
-        "depth of what never lands": lambda clear: (
-            -clear.min(),
-            SOLVED["landing"](clear)[1],
-        ),
     },
     "stopping": {
         "right": SOLVED["stop"],
         "the first slow sample": first_slow,
         "speed with its sign": lambda t, x, speed: SOLVED["stop"](
             t, x, np.maximum(speed, 0)
-        ),
-        "position for distance": lambda t, x, speed: (
-            SOLVED["stop"](t, x, speed)[0],
-            None
-            if SOLVED["stop"](t, x, speed)[0] is None
-            else SOLVED["stop"](t, x, speed)[1] + x[0],
         ),
         "end of the window for not observed": end_for_none,
     },

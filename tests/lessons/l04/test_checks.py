@@ -17,16 +17,12 @@ from lessons.changed_runs import (
 )
 from lessons.experiments import checks_of, each, run_with
 
-from robo_genesis.core.checks import CheckFailed, require
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.laws import laws_of_motion
-from robo_genesis.lessons.l04.pages import LAB
-from robo_genesis.lessons.l04.study_checks import study_factors
 
 K = spec.ENTRY
 GRID_G2 = study_spec.CASE_POINTS["G2"].name
 IMPLICIT_G2 = "MuJoCo_implicitfast_G2_substeps_2"
-REPORTED = ("passive_damping", "inertia_Genesis", "mass_KV_300", "gravity_G1")
 
 
 def overshoot(name, value):
@@ -58,138 +54,73 @@ def moving_at_the_end(run):
 
 SPOILERS = {
     "mapping": [
-        reading("model", "links", 10),
-        joints(names=("base", *LAB.joints[1:])),
         joints(types=("SPHERICAL",) * 9),
         joints(dofs_idx_local=np.arange(9) // 2),
     ],
-    "configuration": [
-        case("baseline", kp=put(0, np.nan)),
-        case("baseline", kv=spec.BASELINE.kv[:8]),
-        joints(lower=put(0, -np.inf)),
-        joints(types=("SPHERICAL",) * 9),
-    ],
-    "target_limits": [
-        case("baseline", q_start=put(8, 0.05)),
-        joints(upper=put(3, -1.9)),
-    ],
+    "target_limits": [joints(upper=put(3, -1.9))],
     "baseline_approaches": [metric("baseline", final_error=0.25)],
-    "stamps": [case("baseline", steps=119), trace("G2", t=lambda t: t * (1 + 1e-6))],
+    "stamps": [case("baseline", steps=119)],
     "same_start": [
         trace("G2", start_qd=put(1, 1e-6)),
-        trace("G3", q=put((0, 0), 1e-6)),
         trace("G3", link_pos=put((0, 1, 2), 0.6)),
     ],
-    "one_factor": [
-        case("G3", kp=put(0, 4501.0)),
-        case("G1", kp=spec.G2.kp),
-        case("G2", seed=1),
-    ],
-    "control_law": [case("baseline", kv=put(K, 349.0)), copied("G1", "G2")],
-    "not_observed": [
-        metric("G1", rise_time=None),
-        metric("G1", rise_time=1.2),
-        metric("G2", settling_time=None),
-        metric("G2", settling_time=0.01),
-    ],
+    "one_factor": [case("G3", kp=put(0, 4501.0)), case("G2", seed=1)],
+    "control_law": [copied("G1", "G2")],
     "measurements": [trace("G1", control_force=put((4, 0), -87.1))],
-    "saturation": [
-        metric("G2", saturation_samples=999),
-        metric("G2", saturation_duration=9.0),
-        trace("G1", effort_limit=put(0, 90.0)),
-    ],
-    "posture": [frames(), lambda run: replace(run, rendered=False)],
-    "claimed_orders": [copied("G2", "G1"), overshoot("G3", 0.1)],
+    "saturation": [trace("G1", effort_limit=put(0, 90.0))],
+    "posture": [frames()],
+    "claimed_orders": [overshoot("G3", 0.1)],
     "clipped_start": [
         trace("G1", start_control_force=put(K, 80.0)),
-        copied("G2", "G1"),
         copied("G3", "G2"),
         trace("G2", control_force=np.abs),
-        trace("G1", qd=put((6, K), 0.0)),
-        trace("G3", control_force=np.abs),
     ],
     "gravity_support": [reading(study.GROUP, "gravity_G2", 30.0), moving_at_the_end],
-    "ends_at_rest": [
-        metric("G3", final_velocity=-0.02),
-        metric("G1", final_error=0.011),
-    ],
-    "same_beginning": [
-        copied("G2_longer", "G1"),
-        trace("G2_longer", qd=put((3, 0), 9.0)),
-    ],
+    "ends_at_rest": [metric("G1", final_error=0.011)],
+    "same_beginning": [trace("G2_longer", qd=put((3, 0), 9.0))],
     "same_metrics": [metric("G2_longer", settling_time=1.5)],
-    "same_model": [reading(study.GROUP, name, 1.01) for name in REPORTED],
+    "same_model": [reading(study.GROUP, "inertia_Genesis", 1.01)],
     "implicit_term": [reading(study.GROUP, "mass_KV_300", 2.5)],
-    "clipped_before_parting": [
-        trace("G2", start_control_force=put(K, 80.0)),
-        as_theory,
-    ],
-    "small_step_unsaturated": [
-        trace("G2_small", start_control_force=put(K, -87.0)),
-        trace("G2_hold", control_force=put((7, K), 87.0)),
-    ],
+    "clipped_before_parting": [as_theory],
+    "small_step_unsaturated": [trace("G2_hold", control_force=put((7, K), 87.0))],
     "theory_small_step": [lifted("G1_small", 0.001), as_theory],
-    "stepped_model": [lifted("G1_small", 0.001), overshoot("G2", 0.1)],
+    "stepped_model": [overshoot("G2", 0.1)],
     "model_predicts": [overshoot("G1", 0.01), lifted("G2_small", 0.0001)],
     "stable_engines": [copied("G2", "MuJoCo_Euler_G2_substeps_2")],
-    "first_step": [
-        copied("G3", "G2"),
-        trace("G3", start_control_force=put(K, 40.0)),
-        trace("MuJoCo_implicitfast_G3_substeps_2", qd=put((0, K), 0.5)),
-    ],
-    "convergence": [
-        overshoot("G2_substeps_4", 0.07),
-        overshoot("G2_substeps_50", 0.07),
-    ],
+    "first_step": [copied("G3", "G2")],
+    "convergence": [overshoot("G2_substeps_4", 0.07)],
     "one_limit": [overshoot("G2_substeps_50", 0.0415)],
     "second_engine_order": [copied(IMPLICIT_G2, "MuJoCo_implicitfast_G1_substeps_2")],
-    "order_at_finer_step": [
-        copied("G2_substeps_4", "G1_substeps_4"),
-        copied("G3_substeps_20", "G2_substeps_20"),
-    ],
+    "order_at_finer_step": [copied("G3_substeps_20", "G2_substeps_20")],
     "grid_matches_cases": [
         trace(GRID_G2, q=put((60, K), 0.0)),
-        metric(GRID_G2, saturation_samples=99),
         metric(GRID_G2, rise_time=None),
-    ],
-    "grid_within_gains": [
-        case(GRID_G2, kp=put(K, 7001.0)),
-        case(GRID_G2, kv=put(K, 99.0)),
-        case(GRID_G2, q_target=put(K, -1.74)),
-        case(GRID_G2, kv=put(0, 99.0)),
     ],
 }
 
 
 @pytest.mark.parametrize(("check", "spoil"), each(SPOILERS))
 def test_a_spoiled_run_fails_its_check(experiments, monkeypatch, check, spoil):
-    sound = run_with(experiments, check)
-    assert not failed(sound)
-    run = spoil(sound)
+    run = spoil(run_with(experiments, check))
     monkeypatch.setattr(spec, "CASES", {case: run.cases[case] for case in spec.CASES})
-    with pytest.raises(
-        CheckFailed, match=rf"^L04 CHECK: FAILED \[{check}\] \S.* expected "
-    ):
-        require("l04", run.outcomes())
+    assert failed(run) == {check}
 
 
-def test_each_check_has_a_spoiled_run(experiments):
+def test_each_check_has_a_spoiled_run_and_no_sound_run_fails(experiments):
     assert {*SPOILERS, "study_factors"} == checks_of(experiments)
+    assert [failed(run) for run in experiments.values()] == [set()] * len(experiments)
 
 
 def test_a_study_case_with_a_second_factor_fails(experiments, monkeypatch):
     second = replace(study_spec.STEP_CASES["G1_small"], seed=1)
     monkeypatch.setitem(study_spec.STEP_CASES, "G1_small", second)
-    found = [one for one in study_factors(experiments["formula"]) if not one.passed]
-    assert [one.found for one in found] == ["seed, q_target[joint4]"]
+    assert "study_factors" in failed(experiments["formula"])
 
 
 @pytest.mark.parametrize(
     ("name", "spoil"),
     [
         ("assigned", trace("assigned", qd=put((3, 1), 0.1))),
-        ("assigned", trace("assigned", internal_force=put(..., 1e-6))),
-        (IMPLICIT_G2, trace(IMPLICIT_G2, qd=put((9, 1), 0.1))),
         (IMPLICIT_G2, copied(IMPLICIT_G2, "G2")),
     ],
 )

@@ -12,18 +12,11 @@ MODEL = spec.EXPECTED_MODEL
 @pytest.mark.parametrize(
     ("module", "name", "other", "pages"),
     [
-        (spec, "STEPPED_JOINT", "joint2", PAGES),
         (spec, "EXPECTED_MODEL", {**MODEL, "cameras": 1}, PAGES),  # its names are read
         (spec, "EXPECTED_MODEL", {**MODEL, "links": 12}, ()),
         (spec, "RISE_FRACTION", 0.8, PAGES),
-        (spec, "SETTLING_BAND", 0.02, PAGES),
-        (spec, "SATURATION_THRESHOLD", 0.9, PAGES),
         (spec, "RELATIONS", (), ()),
-        (study_spec, "AT_REST", 0.02, ()),
         (study_spec, "KP", (3500.0, 7000.0), ("batch",)),
-        (study_spec, "SECOND_RUNS", {}, ("integrator",)),
-        (study_spec, "STEP_CASES", {}, ("formula",)),
-        (study_spec, "LONGER_CASES", {}, ("lecture",)),
         (study_spec, "EXAMPLE_CASES", {}, ("lecture",)),
     ],
 )
