@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from lessons.body_runs import body_at
 
+from robo_genesis.core.text import readable
 from robo_genesis.lessons.l03 import (
     metrics,
     plots,
@@ -19,7 +20,6 @@ from robo_genesis.lessons.l03.metrics import (
     bounce_metrics,
     landing_metrics,
 )
-from robo_genesis.lessons.l03.text import readable
 from robo_genesis.sim.bodies.contacts import TOP
 
 PUSH = replace(spec.PUSHED, gravity=10.0)  # at 2 m/s with μ = 0.5
