@@ -64,7 +64,7 @@ def three_drops(run: Experiment) -> Iterator[dict[str, str]]:
     ):
         yield {
             "drop": name,
-            "distance [m]": decimal(drop, 6),
+            "distance [m]": decimal(float(drop), 6),
             "against the measurement [mm]": signed(1000 * (drop - found.drop), 4),
         }
 

@@ -171,7 +171,7 @@ SVG, SHOW = "image/svg+xml", SOURCES[1]
         (
             SHOW,
             lambda ran: function(ran).update(
-                function="robo_genesis.lessons.l02.text.readable"
+                function="robo_genesis.core.text.readable"
             ),
             "it cannot be called on the bundle",
         ),
