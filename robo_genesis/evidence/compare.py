@@ -3,21 +3,22 @@
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.core.comparison import differences
+from robo_genesis.core.comparison import Relation, differences
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, rows
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.rows import PageSpecification, Row, Section, Side, worst
+from robo_genesis.evidence.rows import Section, Side, worst
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_lesson, find_page
 
 SAME = "Both have the same cases, metrics, checks, labels and joints."
+NO_ORDERING = "The lesson claims no ordering."
 NO_PERFORMANCE = "No performance is recorded yet."
 
 
@@ -51,22 +52,20 @@ class BundleComparison:
         return worst([state for state in states if state != rows.SHOWN])
 
 
-def specification(lesson: str, page: str) -> PageSpecification:
-    """Return what this checkout declares about the cases of a page.
+def claims_of(lesson: str, page: str) -> list[Relation]:
+    """Return the orderings that a lesson claims of the cases of a page.
 
     Raises:
         BundleRefused: `lesson`, the lesson or the page does not exist.
     """
     try:
-        found, run = find_lesson(lesson), find_page(lesson, page)
+        relations, runs = (
+            find_lesson(lesson).spec.RELATIONS,
+            find_page(lesson, page).runs,
+        )
     except LookupError as error:
         raise BundleRefused("lesson", str(error)) from error
-    cases = [case for case in found.spec.CASES if case in run.runs]
-    metrics = {case: tuple(found.metrics[case].about("unit")) for case in cases}
-    relations = tuple(
-        claim for claim in found.spec.RELATIONS if {*claim[0]} <= {*cases}
-    )
-    return PageSpecification(metrics, found.spec.TOLERANCES, relations)
+    return [relation for relation in relations if {*relation[0]} <= {*runs}]
 
 
 def compare(old: Path, new: Path) -> BundleComparison:
@@ -81,7 +80,7 @@ def compare(old: Path, new: Path) -> BundleComparison:
     """
     a, b = read_side(old), read_side(new)
     was, now = a.manifest, b.manifest
-    spec = specification(now.lesson, now.page)
+    claims = claims_of(now.lesson, now.page)
     if (was.lesson, was.page) != (now.lesson, now.page):
         raise BundleRefused(
             "lesson",
@@ -89,31 +88,30 @@ def compare(old: Path, new: Path) -> BundleComparison:
             "Give two bundles of the same page.",
         )
     obstacles = tuple(_obstacles(was, now))
-    repeat = (
-        "repeat" if was.source == now.source else "same engine and backend, other code"
-    )
+    same_code = was.source == now.source
+    repeat = "repeat" if same_code else "same engine and backend, other code"
     axis = " and ".join(axes(was, now)) or repeat
-    parts = () if obstacles else tuple(_sections(a, b, spec))
+    sections = () if obstacles else tuple(_sections(a, b, claims))
     notes = tuple(_notes(was, now))
     places = (a.folder, b.folder)
-    return BundleComparison(was, now, places, axis, obstacles, notes, parts)
+    return BundleComparison(was, now, places, axis, obstacles, notes, sections)
 
 
-def _sections(old: Side, new: Side, spec: PageSpecification) -> list[Section]:
+def _sections(old: Side, new: Side, claims: Sequence[Relation]) -> list[Section]:
     """Return all sections, the worst first."""
-
-    def values(kind: str) -> Iterator[Row]:
-        return rows.values(old, new, spec, kind)
-
-    relations = rows.relations(old, new, spec)
+    both, tolerances = (old, new), find_lesson(new.manifest.lesson).spec.TOLERANCES
+    values = {
+        kind: rows.values(*both, tolerances, kind)
+        for kind in ("exact", "value", "performance")
+    }
     sections = (
-        rows.section("Coverage", rows.coverage(old, new, spec), SAME),
-        rows.section("Invariants", rows.invariants(old, new)),
-        rows.section("Relations", relations, "The lesson claims no ordering."),
-        rows.section("Exact counts", values("exact"), "There are no counts."),
-        rows.section("Values", values("value"), "There are no values."),
-        rows.section("Arrays", rows.arrays(old, new, spec), "There are no arrays."),
-        rows.section("Performance", values("performance"), NO_PERFORMANCE),
+        rows.section("Coverage", rows.coverage(*both), SAME),
+        rows.section("Invariants", rows.invariants(*both)),
+        rows.section("Relations", rows.relations(*both, claims), NO_ORDERING),
+        rows.section("Exact counts", values["exact"], "There are no counts."),
+        rows.section("Values", values["value"], "There are no values."),
+        rows.section("Arrays", rows.arrays(*both, tolerances), "There are no arrays."),
+        rows.section("Performance", values["performance"], NO_PERFORMANCE),
     )
     return sorted(sections, key=lambda part: -rows.SEVERITY.index(part.state))
 
@@ -183,9 +181,6 @@ def _obstacles(old: Manifest, new: Manifest) -> Iterator[str]:
     )
     for path, was, now in differences(asked, asked_now):
         yield f"{path} differs: {quoted(was)} and {quoted(now)}."
-    for word, run in (("old", old), ("new", new)):
-        if run.backend.actual != run.backend.actual_at_end:
-            yield f"The backend of the {word} bundle changed during the run."
     if len(differing := axes(old, new)) > 1:
         yield f"Two axes differ: {' and '.join(differing)}. Change one at a time."
 
@@ -200,13 +195,6 @@ def _notes(old: Manifest, new: Manifest) -> Iterator[str]:
     devices = [(run.backend.device_name, run.host.cpu) for run in (old, new)]
     if devices[0] != devices[1]:
         yield "The devices differ."
-    if old.environment != new.environment:
-        was, now = (
-            ", ".join(f"{name}={value}" for name, value in run.environment.items())
-            or "none"
-            for run in (old, new)
-        )
-        yield f"The switches of the engine differ: {was}; {now}."
     for word, one, other in (("gained", new, old), ("lost", old, new)):
         for warning in dict.fromkeys(one.warnings):
             if warning not in other.warnings:

@@ -2,7 +2,6 @@
 
 import base64
 import hashlib
-import importlib.metadata
 import math
 import os
 import platform
@@ -11,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from datetime import UTC, datetime
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -83,7 +83,7 @@ class Recorder:
     def facts(self) -> list[dict[str, str]]:
         """Return engine, backend, rendering and folder of the run as rows of a table."""
         engine, backend = self.engine, self.engine.backend
-        found = {
+        facts = {
             "Genesis": engine.version,
             "requested backend": backend.requested,
             "actual backend": f"{backend.actual} ({backend.device_name})",
@@ -95,7 +95,7 @@ class Recorder:
             "run": self.run_id[:8],
             "outputs": f"{self.lesson}/{self.page}/{backend.actual}",
         }
-        return [{"what": name, "value": value} for name, value in found.items()]
+        return [{"what": name, "value": value} for name, value in facts.items()]
 
     def write(
         self,
@@ -188,21 +188,16 @@ def require_complete(run: Experiment) -> None:
             f"The page has the runs {', '.join(present) or 'none'}; its declaration names "
             f"{', '.join(required)}. Run each declared case, or correct the declaration."
         )
-    values = {
-        name: metric["value"]
-        for name, metric in bundle.by_full_name(run.records()).items()
-    }
-    odd = [name for name, value in values.items() if not math.isfinite(value or 0)]
-    for group, declared in run.page.groups(run.rendered).items():
-        odd += [
-            f"{group}.{name}"
-            for name, value in run.readings[group].items()
-            if not declared.possible(name, value)
-        ]
+    metrics = bundle.by_full_name(run.records())
+    odd = [
+        name
+        for name, metric in metrics.items()
+        if not math.isfinite(metric["value"] or 0)
+    ]
     if odd:
         raise RecordError(
-            f"Not finite or beyond limits: {', '.join(dict.fromkeys(odd))}. A bundle needs others. "
-            "Find out where the run diverges, then run the page again."
+            f"Not finite: {', '.join(odd)}. Find out where the run diverges, then run the "
+            "page again."
         )
 
 
@@ -211,16 +206,14 @@ def files_match_wheel(*distributions: str) -> bool:
 
     A package without recorded digests, such as an editable one, does not match.
     """
-    for name in distributions:
-        files = [f for f in importlib.metadata.distribution(name).files or [] if f.hash]
-        if not any(f.suffix == ".py" for f in files) or not all(
-            map(_is_unchanged, files)
-        ):
-            return False
-    return True
+    listed = [file for name in distributions for file in metadata.files(name) or ()]
+    files = [file for file in listed if file.hash]
+    return any(file.suffix == ".py" for file in files) and all(
+        map(_is_unchanged, files)
+    )
 
 
-def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
+def _is_unchanged(file: metadata.PackagePath) -> bool:
     path = Path(str(file.locate()))
     if file.hash is None or not path.is_file():
         return False
@@ -230,10 +223,7 @@ def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
 
 def host_record(cpu: str | None) -> dict[str, Any]:
     """Describe the machine and every installed package."""
-    found = [
-        *importlib.metadata.distributions()
-    ]  # of two of one name, Python imports the first
-    packages = {d.metadata["Name"]: d.version for d in reversed(found)}
+    packages = {one.name: one.version for one in metadata.distributions()}
     return {
         "os": platform.platform(),
         "machine": platform.machine(),

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import astuple
 from pathlib import Path
 
+from robo_genesis.core.comparison import differences
+from robo_genesis.core.document import Cells, Document, Part
 from robo_genesis.core.text import printable
-from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.document import Cells, Document, Part
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import (
     DIFFERS,
@@ -116,7 +116,7 @@ def document(comparison: BundleComparison) -> Document:
         )
         for part in comparison.sections
     ]
-    parts.append(Part("The two bundles", _origin(comparison)))
+    parts.append(Part("The two bundles", _circumstances(comparison)))
     return Document(title(comparison), verdict(comparison), parts, comparison.remarks)
 
 
@@ -134,26 +134,11 @@ def _table(rows: Sequence[Row]) -> list[Cells]:
     return [tuple(row[k] for k in kept) for row in [COLUMNS, *cells]]
 
 
-def _origin(comparison: BundleComparison) -> list[Cells]:
-    old, new = _facts(comparison.old), _facts(comparison.new)
-    rows = [
-        ("folder", *comparison.folders),
-        *((what, old[what], new[what]) for what in old),
-    ]
-    return [("", "old", "new"), *rows]
-
-
-def _facts(manifest: Manifest) -> dict[str, str]:
-    engine, backend, git = manifest.engine, manifest.backend, manifest.git
-    dirty = " with changes" if git and git.dirty else ""
-    return {
-        "engine": f"{engine.version}, quadrants {engine.quadrants_version}",
-        "precision": engine.precision,
-        "backend": f"{backend.actual} (requested: {backend.requested})",
-        "device": backend.device_name,
-        "torch": backend.torch_version,
-        "host": f"{manifest.host.os}, {manifest.host.cpu}",
-        "measured": manifest.started,
-        "run": manifest.run_id,
-        "commit": f"{git.commit}{dirty}" if git else "unknown",
-    }
+def _circumstances(comparison: BundleComparison) -> list[Cells]:
+    """Return head and rows of what differs between the manifests."""
+    old, new = (
+        manifest.model_dump(exclude={"files", "checks", "warnings"})
+        for manifest in (comparison.old, comparison.new)
+    )
+    rows = [(what, str(was), str(now)) for what, was, now in differences(old, new)]
+    return [("", "old", "new"), ("folder", *comparison.folders), *rows]

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,10 +11,12 @@ from robo_genesis.core.comparison import (
     HELD,
     WITHIN_MARGIN,
     Relation,
+    agree,
     allowed,
+    differences,
     outcome,
 )
-from robo_genesis.core.text import six_digits
+from robo_genesis.core.text import quoted, six_digits
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import (
     Arrays,
@@ -32,7 +35,7 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "not comparable",
 )
 
-MISSING = "missing"
+Tolerance = tuple[float, float]  # atol, rtol
 
 # State and verdict of a claimed ordering by its outcomes in the two runs.
 #
@@ -48,19 +51,6 @@ VERDICTS = {
         "broken in one, undecided in the other",
     ),
 }
-
-
-@dataclass(frozen=True, slots=True)
-class PageSpecification:
-    """What a lesson declares about the runs of one of its pages.
-
-    `metrics` gives the required metrics of each case; `tolerances` is unit, metric,
-    group of metrics, case or array → (atol, rtol).
-    """
-
-    metrics: Mapping[str, tuple[str, ...]]
-    tolerances: Mapping[str, tuple[float, float]]
-    relations: tuple[Relation, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,36 +112,24 @@ def section(title: str, rows: Iterator[Row], empty: str = "") -> Section:
     return Section(title, tuple(found), empty)
 
 
-def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
+def coverage(old: Side, new: Side) -> Iterator[Row]:
     """Both sides have the same cases, metrics, checks, labels and joints."""
-    here, there = _content(old), _content(new)
-    declared = {f"case {case}" for case in spec.metrics}
-    declared |= {
-        f"metric {case}.{name}"
-        for case, names in spec.metrics.items()
-        for name in names
+    for what, here, there in differences(_content(old), _content(new), agree):
+        yield Row(DIFFERS, what, quoted(here), quoted(there))
+
+
+def _content(side: Side) -> dict[str, Any]:
+    """Return each thing that a bundle has, with its description, by its kind."""
+    units = {
+        name: f"{metric.unit}, {metric.kind}" for name, metric in side.numbers.items()
     }
-    for name in sorted({*here, *there, *declared}):
-        both = here.get(name, MISSING), there.get(name, MISSING)
-        if both[0] != both[1] or MISSING in both:
-            yield Row(DIFFERS, name, *both)
-
-
-def _content(side: Side) -> dict[str, str]:
-    """Return each thing that a bundle has, with its description; names begin with the kind."""
-    content = {f"case {name}": "present" for name in side.traces}
-    content |= {f"check {name}": "present" for name in side.checks}
-    for name, metric in side.numbers.items():
-        content[f"metric {name}"] = f"{metric.unit}, {metric.kind}"
-    for name, labels in side.arrays.coords.items():
-        content[f"axis {name}"] = ", ".join(labels)
-    for joint in side.arrays.joints:
-        limits = (six_digits(limit, joint.unit) for limit in (joint.lower, joint.upper))
-        places = f"DOF {joint.dof_idx_local}, qpos {joint.q_idx_local}"
-        content[f"joint {joint.name}"] = (
-            f"{joint.type_}, {places}, {' to '.join(limits)}"
-        )
-    return content
+    return {
+        "case": dict.fromkeys(side.traces, "present"),
+        "check": dict.fromkeys(side.checks, "present"),
+        "metric": units,
+        "axis": side.arrays.coords,
+        "joint": {joint.name: joint.model_dump() for joint in side.arrays.joints},
+    }
 
 
 def invariants(old: Side, new: Side) -> Iterator[Row]:
@@ -163,29 +141,27 @@ def invariants(old: Side, new: Side) -> Iterator[Row]:
         yield Row(EQUAL if all(both) else DIFFERS, name, here, there)
 
 
-def relations(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
+def relations(old: Side, new: Side, claims: Sequence[Relation]) -> Iterator[Row]:
     """Both sides show each ordering that the lesson claims."""
-    for relation in spec.relations:
-        (first, second), metric, claim, margin = relation
-        outcomes = [outcome(side.numbers, relation) for side in (old, new)]
+    numbers = {**old.numbers, **new.numbers}
+    for claimed in claims:
+        (first, second), metric, claim, margin = claimed
+        outcomes = [outcome(side.numbers, claimed) for side in (old, new)]
         state, verdict = VERDICTS[frozenset(held for held, _ in outcomes)]
-        units = [
-            m.unit
-            for side in (old, new)
-            if (m := side.numbers.get(f"{first}.{metric}"))
-        ]
         what = f"{metric}: {second} {claim} than {first}, {verdict}"
         here, there = (f"{held}: {text}" for held, text in outcomes)
-        limit = f"margin {six_digits(margin, units[0] if units else '1')}"
+        known = numbers.get(f"{first}.{metric}")
+        limit = f"margin {six_digits(margin, known.unit if known else '1')}"
         yield Row(state, what, here, there, allowed=limit)
 
 
-def values(old: Side, new: Side, spec: PageSpecification, kind: str) -> Iterator[Row]:
+def values(
+    old: Side, new: Side, tolerances: Mapping[str, Tolerance], kind: str
+) -> Iterator[Row]:
     """The metrics of one class agree within atol + rtol · the larger magnitude.
 
     Counts have no tolerance. Performance is shown and does not affect the verdict.
     """
-    limits = spec.tolerances if kind == "value" else {}
     for name, a in old.numbers.items():
         b = new.numbers.get(name)
         if b is None or not a.kind == b.kind == kind or a.unit != b.unit:
@@ -196,12 +172,13 @@ def values(old: Side, new: Side, spec: PageSpecification, kind: str) -> Iterator
         elif a.value is None or b.value is None:
             yield Row(EQUAL if a.value == b.value else DIFFERS, name, *text)
         else:
-            here, there = (np.array(float(value)) for value in (a.value, b.value))
             group, _, metric = name.partition(".")
-            yield _largest(name, (metric, group), here, there, a.unit, limits)
+            limits = tolerances if kind == "value" else {}
+            both = np.array([float(a.value)]), np.array([float(b.value)])
+            yield _largest(name, (metric, group), *both, a.unit, limits)
 
 
-def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
+def arrays(old: Side, new: Side, tolerances: Mapping[str, Tolerance]) -> Iterator[Row]:
     """Arrays have the same shape, and their values agree within atol + rtol · the larger magnitude.
 
     A tolerance is declared by the name of a case or an array or, except for counts, by
@@ -209,18 +186,19 @@ def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     tolerance most.
     """
     for case in [name for name in old.traces if name in new.traces]:
-        for field, (name, *_) in old.traces[case].arrays().items():
+        for field, stored in old.traces[case].arrays().items():
             a, b = (
                 getattr(side.traces[case], field, np.empty(0)) for side in (old, new)
             )
-            what, unit = f"{case} {name}", old.arrays.cases[case].variables[name].unit
+            what = f"{case} {stored.name}"
             if a.shape != b.shape or a.dtype != b.dtype:
-                here, there = (f"{of.dtype}, shape {of.shape}" for of in (a, b))
+                here, there = (f"{one.dtype}, shape {one.shape}" for one in (a, b))
                 yield Row(DIFFERS, what, here, there)
             elif np.array_equal(a, b):
                 yield Row(EQUAL, what, str(a.shape), str(b.shape))
             else:
-                yield _largest(what, (case, name), a, b, unit, spec.tolerances)
+                unit = old.arrays.cases[case].variables[stored.name].unit
+                yield _largest(what, (case, stored.name), a, b, unit, tolerances)
 
 
 def _largest(
@@ -229,9 +207,9 @@ def _largest(
     a: np.ndarray,
     b: np.ndarray,
     unit: str | list[str],
-    tolerances: Mapping[str, tuple[float, float]],
+    tolerances: Mapping[str, Tolerance],
 ) -> Row:
-    """Return the row of two numbers or arrays: of the value that exceeds its tolerance most.
+    """Return the row of two arrays: of the value that exceeds its tolerance most.
 
     Args:
         what: the text of the row; the place in an array is added.
@@ -242,23 +220,22 @@ def _largest(
         unit: a list if the last axis has DOFs.
         tolerances: by name or unit.
     """
-    units = np.broadcast_to(np.array(unit), a.shape)
+    units = [unit] if isinstance(unit, str) else unit
     own = next((tolerances[name] for name in names if name in tolerances), None)
     by_unit = {} if np.issubdtype(a.dtype, np.integer) else tolerances
-    each = [own or by_unit.get(str(u), (0.0, 0.0)) for u in units.flat]
-    limits = np.reshape(each, (*a.shape, 2))
+    limits = [own or by_unit.get(name, (0.0, 0.0)) for name in units]
     here, there = a.astype(np.float64), b.astype(np.float64)
-    delta, room = there - here, allowed(here, there, limits[..., 0], limits[..., 1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.where(
-            delta == 0, 0.0, np.abs(delta) / room
-        )  # infinite without a tolerance
-    unbound = np.isinf(shares)
-    rank = np.where(unbound, np.abs(delta), 0) if unbound.any() else shares
-    at = np.unravel_index(np.argmax(rank if rank.any() else np.abs(delta)), a.shape)
-    state = DIFFERS if shares[at] > 1 else WITHIN if delta[at] else EQUAL
-    place = f"[{', '.join(map(str, at))}]" if at else ""
-    old, new, apart, limit = (
-        six_digits(float(x[at]), str(units[at])) for x in (here, there, delta, room)
+    room = allowed(here, there, *np.transpose(limits))
+    apart = np.abs(there - here)
+    without = np.where(apart == 0, 0.0, np.inf)  # a share of no tolerance
+    shares = np.divide(apart, room, out=without, where=room > 0)
+    last = np.lexsort((apart.ravel(), shares.ravel()))[-1]
+    at = np.unravel_index(last, a.shape)
+    state = DIFFERS if shares[at] > 1 else WITHIN if apart[at] else EQUAL
+    place = f"[{', '.join(map(str, at))}]" if a.size > 1 else ""
+    own_unit = units[int(at[-1]) % len(units)]
+    was, now, delta, limit = (
+        six_digits(float(array[at]), own_unit)
+        for array in (here, there, there - here, room)
     )
-    return Row(state, f"{what}{place}", old, new, apart, limit, float(shares[at]))
+    return Row(state, f"{what}{place}", was, now, delta, limit, float(shares[at]))

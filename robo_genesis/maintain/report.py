@@ -10,10 +10,10 @@ from pathlib import Path
 
 from bs4 import BeautifulSoup
 
+from robo_genesis.core.document import Document, Part
 from robo_genesis.core.project import STORE
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.document import Document, Part
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import SEVERITY, worst
 from robo_genesis.pipeline.bundles.status import (

@@ -13,7 +13,6 @@ from pathlib import Path
 from robo_genesis.core.project import BOOK, PUBLISHED
 from robo_genesis.core.text import printable
 from robo_genesis.evidence import report
-from robo_genesis.evidence.advice import advice
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.refusals import BundleRefused
@@ -21,13 +20,39 @@ from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
     Status,
     bundle_status,
-    changes,
     recorded_folders,
     recorded_status,
 )
 
 NO_BUNDLE = (
     "No bundle is recorded in book/evidence, and none is built. `make book` builds one."
+)
+
+
+OWN = "Otherwise your bundle answers your own question and is not evidence for the course's page."
+EDITED = (
+    "The recorded {} are not those of the recorded {}. If you edited neither file, your copy of "
+    "the course {}: use one copy for both."
+)
+
+# What a refusal means for somebody who recorded a bundle at home, by its code; other
+# codes mean damage, for which the message is enough.
+ADVICE = {
+    "stale": "Engine, settings, cells or modules differ from those of this course. Install the "
+    "versions of the lock (pip install -r requirements.lock), then run the unchanged page "
+    f"again. {OWN}",
+    "older-schema": "The bundle was recorded with an older state of this course. "
+    "Run the page again with the present one.",
+    "failed": "The files are sound, but a check of the run itself failed. If you changed the "
+    "experiment, this can be your result; otherwise, restart the kernel and run all cells.",
+    "metrics": EDITED.format("metrics", "arrays", "computes metrics in another way"),
+    "checks": EDITED.format("outcomes of the checks", "runs", "has other checks"),
+    "cases": f"The bundle does not have exactly the page's runs. Run the page again. {OWN}",
+}
+
+RUN_BY_HAND = (
+    "A notebook that is run by hand does not name its code cells, so nobody can tell whether they "
+    "are the page's. To record them, run: make evidence LESSON={lesson} BACKEND=cpu TO=folder."
 )
 
 
@@ -72,10 +97,11 @@ def one_bundle(folder: Path, book: Path) -> tuple[Status, list[str]]:
     status, lines, run = bundle_status(folder, book=book), [], None
     with suppress(BundleRefused):
         run = read_manifest(folder)
-    if status.code:
-        stale = changes(run, book) if run and status.code == "stale" else []
-        kinds = tuple(dict.fromkeys(kind for kind, _ in stale))
-        lines = [f"What this means: {text}" for text in advice(status.code, kinds, run)]
+    if status.code in ADVICE:
+        text = ADVICE[status.code]
+        if run and status.code == "stale" and run.source.page is None:
+            text = RUN_BY_HAND.format(lesson=run.lesson)
+        lines = [f"What this means: {text}"]
     if run and run.page == RECORDED_PAGE:
         reference = built(book, run.lesson)
         if reference.is_dir() and folder.resolve() != reference.resolve():

@@ -12,7 +12,7 @@ from robo_genesis.evidence.bundle import (
     read_manifest,
     read_metrics,
 )
-from robo_genesis.evidence.compare import specification
+from robo_genesis.evidence.compare import claims_of
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
 from robo_genesis.pipeline.pages.guards import contradicted
@@ -44,12 +44,12 @@ RECORDED_WITH = "it was recorded with {name} {{}}; this site uses {{}}"
 # What a stale bundle's change is called, by the beginning of its path in the evidence
 # key.
 CHANGES = {
-    "engine.version": ("engine", RECORDED_WITH.format(name="Genesis")),
-    "engine.quadrants_version": ("engine", RECORDED_WITH.format(name="Quadrants")),
-    "source.page": ("page", "the {page}'s code changed since"),
-    "source.modules": ("modules", "the course's code changed since"),
-    "parameters": ("parameters", "the parameters changed since"),
-    "seed": ("seed", "the seed changed since"),
+    "engine.version": RECORDED_WITH.format(name="Genesis"),
+    "engine.quadrants_version": RECORDED_WITH.format(name="Quadrants"),
+    "source.page": "the {page}'s code changed since",
+    "source.modules": "the course's code changed since",
+    "parameters": "the parameters changed since",
+    "seed": "the seed changed since",
 }
 
 
@@ -167,7 +167,7 @@ def bundle_status(
 def not_shown(folder: Path, manifest: Manifest) -> list[str]:
     """Return a line for each claimed ordering that an accepted bundle does not show."""
     numbers, lines = by_full_name(read_metrics(folder)), []
-    for relation in specification(manifest.lesson, manifest.page).relations:
+    for relation in claims_of(manifest.lesson, manifest.page):
         (first, second), metric, claim, _ = relation
         held, values = outcome(numbers, relation)
         if held != HELD:
@@ -185,24 +185,14 @@ def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
     """
-    text = "; ".join(text for _, text in changes(manifest, book, root))
-    text = text or "it answers an older question"
+    differing, texts = changed(manifest, root, book), []
+    for start, words in CHANGES.items():
+        for path, here, there in differing:
+            if path.startswith(start):
+                texts.append(words.format(here, there, page=manifest.page))
+                break
+    text = "; ".join(texts) or "it answers an older question"
     return f"{text[0].upper()}{text[1:]}."
-
-
-def changes(
-    manifest: Manifest, book: Path, root: Path = project.ROOT
-) -> list[tuple[str, str]]:
-    """Return (kind, words) of each change since a bundle was recorded; see `why_stale`.
-
-    The kinds are those of `advice.BY_CHANGE`.
-    """
-    differing = changed(manifest, root, book)
-    return [
-        (kind, words.format(here, there, page=manifest.page))
-        for start, (kind, words) in CHANGES.items()
-        for path, here, there in [d for d in differing if d[0].startswith(start)][:1]
-    ]
 
 
 def recorded_folders(book: Path) -> list[Path]:

@@ -19,7 +19,6 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.text import listed
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import course_marks, find_replay
 from robo_genesis.site.evidence.plain_nodes import (
@@ -32,6 +31,7 @@ from robo_genesis.site.evidence.plain_nodes import (
 from robo_genesis.site.evidence.runs import BACKEND, PageRun, page_run, recorded_runs
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
+from robo_genesis.site.replay.recorded_runs import read_runs
 
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
 AS_NEEDED = [

@@ -26,7 +26,6 @@ from robo_genesis.core import project
 from robo_genesis.core.files import derived, write_whole
 from robo_genesis.core.markup import filled
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.sim import visual_shape
@@ -36,6 +35,7 @@ from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls, viewer
+from robo_genesis.site.replay.recorded_runs import read_runs
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
 from robo_genesis.site.text.questions import question
 

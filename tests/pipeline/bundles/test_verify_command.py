@@ -14,7 +14,6 @@ from spoilers import (
 )
 
 from robo_genesis.core.project import ProjectError, engine_pin
-from robo_genesis.evidence import advice
 from robo_genesis.pipeline.bundles import overview
 
 
@@ -96,15 +95,11 @@ def test_one_folder_is_checked_alone(check, recorded, folder, tmp_path):
 
 
 ADVICE = {
-    "an older engine": advice.BY_CHANGE["engine"],
-    "no page digest": advice.RUN_BY_HAND.format(lesson="l04"),
-    "another module": advice.BY_CHANGE["modules"],
-    "other parameters": advice.BY_CHANGE["parameters"],
-    "an earlier form": advice.BY_CODE["older-schema"],
-    "a metric of another rule": advice.BY_CODE["metrics"],
-    "another found value": advice.BY_CODE["checks"],
-    "a failed check": advice.BY_CODE["failed"],
-    "a dropped case": advice.BY_CODE["cases"],
+    "an older engine": overview.ADVICE["stale"],
+    "no page digest": overview.RUN_BY_HAND.format(lesson="l04"),
+    "an earlier form": overview.ADVICE["older-schema"],
+    "a metric of another rule": overview.ADVICE["metrics"],
+    "a failed check": overview.ADVICE["failed"],
     "no log": None,
 }
 

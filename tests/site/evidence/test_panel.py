@@ -15,7 +15,7 @@ from without_sphinx import Panel, box, rows_of
 from robo_genesis.core import project
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.files import put
-from robo_genesis.evidence import bundle, recorder, replay_data, report
+from robo_genesis.evidence import bundle, recorder, report
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
@@ -24,6 +24,7 @@ from robo_genesis.site.evidence import ledger as sphinx_ledger
 from robo_genesis.site.evidence import ledger_data, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.runs import PageRun
+from robo_genesis.site.replay import recorded_runs
 
 FILMED = Replay(("G1",), "box", "box")
 SCRIPT = "<script>alert(1)</script>"
@@ -87,7 +88,7 @@ def test_what_a_run_says_reaches_no_parser(tmp_path, record, monkeypatch):
     write_shape(folder, tmp_path)
     trace = read_any_trace(folder, bundle.read_arrays(folder), "G1")
     turned = dataclasses.replace(trace, link_pos=trace.link_pos[:, [2, 1, 0]])
-    monkeypatch.setattr(replay_data, "read_any_trace", lambda *asked: turned)
+    monkeypatch.setattr(recorded_runs, "read_any_trace", lambda *asked: turned)
     monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: [])
     panel = Panel(tmp_path / "book").panel(accepted("l04/lab", folder, recorded=True))
     raw = [node.astext() for node in panel.findall(nodes.raw)]

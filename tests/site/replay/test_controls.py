@@ -11,9 +11,9 @@ import pytest
 from bs4 import BeautifulSoup
 
 from robo_genesis.core.channels import Runs
-from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import find_replay
 from robo_genesis.site.replay import controls, viewer
+from robo_genesis.site.replay.recorded_runs import read_runs
 from robo_genesis.site.replay.scenery import Camera, Scenery
 
 
