@@ -166,7 +166,7 @@ def _of_block(token: Token, lines: Sequence[str], at: int) -> Iterator[Problem]:
     if not any(_ends(line, mark) for line in end) or any(map(another.match, inner)):
         yield at, UNCLOSED.format(mark + token.info, mark)
     elif directive and directive[1] not in VERBATIM:
-        # An inner directive in the first line is no option of the outer one.
+        # An inner directive in the first line is not an option of the outer one.
         nested = token.type == "colon_fence" and token.content.startswith(":::")
         content = "\n" * nested + token.content
         parsed = parse_directive_text(TestDirective, directive[2], content)
