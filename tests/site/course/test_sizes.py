@@ -53,23 +53,6 @@ def test_a_page_s_size(tmp_path):
     }
 
 
-def test_the_minutes_of_a_lab_contain_its_functions_a_run_and_the_work_sheet(tmp_path):
-    stubs = [
-        new_code_cell(f"def f{k}(x):\n    raise NotImplementedError") for k in range(3)
-    ]
-    solution = new_code_cell(
-        "def f0(x):\n    return x", metadata={"tags": ["hide-cell"]}
-    )
-    lab = new_notebook(cells=[new_markdown_cell("word " * 400), *stubs, solution])
-    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(
-        0.6 + 3 * 10 + 5
-    )
-    (tmp_path / "worksheet.md").touch()
-    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == 3 + round(
-        0.6 + 3 * 10 + 5 + 10
-    )
-
-
 @pytest.mark.parametrize(
     ("kind", "name", "limit"),
     [

@@ -180,39 +180,6 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(
     assert violations(page, ".explorer", preload=False) == []
 
 
-@pytest.mark.browser
-def test_the_last_run_stays_beside_the_chosen_one(open_block, folder, tmp_path):
-    """The explorer of L04 tests questions and curves."""
-    axis = {"low": -1, "high": 30, "ticks": [], "levels": []}
-    drawn = {
-        "key": "q",
-        "name": "Position",
-        "title": "q",
-        "unit": 1,
-        "zero": 0,
-        "first": 0,
-    }
-    data = maps() | {
-        "curves": {"of": "joint4", "dt": 0.1, "until": 0.3, "drawn": [drawn]}
-    }
-    for one in data["maps"]:
-        one |= {"setting": f"height {one['run']}", "axes": {"q": axis}}
-        for row in one["rows"]:
-            row["cells"] = [
-                c | {"q": [0, c["answer"], 2 * c["answer"]]} for c in row["cells"]
-            ]
-    words = {"lower": "earlier", "higher": "later", "margin": 0.0, "within": "5 ms"}
-    data["measures"][0] |= {"noun": "time", "column": 0} | words
-    page = open_block(block_of(tmp_path, folder, data), **PHONE)
-    page.get_by_role("gridcell", name="z 0, x 0.3, accepted").tap()
-    assert page.locator(".ghost").count() == 0
-    page.get_by_role("button", name="Skip").click()
-    assert texts(page, "dd.last") == ["last run: 20", "last run: 0.500"]
-    label = page.locator(".ghost-label").text_content()
-    assert label == "last run: z 0, x 0.2, accepted"
-    assert violations(page, ".explorer", preload=False) == []
-
-
 @pytest.fixture
 def picture(tmp_path, folder) -> nodes.Node:
     """A picture whose floor has a hole and whose sphere is 1 mm too deep."""

@@ -130,25 +130,6 @@ def test_many_triangles_become_few_near_the_surface_and_few_stay(shape):
     assert len(replay_model.simplified(shape[1]).faces) == len(shape[1].faces)
 
 
-def test_colours_are_those_of_the_model_in_linear_light(model):
-    factors = {m.name: m.pbrMetallicRoughness.baseColorFactor for m in model.materials}
-    assert factors["[255, 255, 255]"] == [1, 1, 1, 1]
-    assert factors["[64, 0, 0]"] == pytest.approx([0.0513, 0, 0, 1], abs=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("links", "message"),
-    [
-        (LINKS[:2], "parts of hand; the record knows link0, link4"),
-        (("box", "box"), r"of the world: box\. Give each a name"),
-        (("box", "world"), r"of the world: world\. Give each a name"),
-    ],
-)
-def test_links_of_another_robot_or_of_one_name_are_refused(shape, links, message):
-    with pytest.raises(ValueError, match=message):
-        visual_shape.check_links(shape if links == LINKS[:2] else [], links)
-
-
 def test_a_shape_comes_back_from_its_file(shape, tmp_path):
     hinge = visual_shape.Hinge("joint4", np.eye(3)[:2])
     shape = [shape[0], replace(shape[1], hinge=hinge)]
@@ -206,17 +187,6 @@ def test_links_of_a_body_can_have_other_names():
     assert visual_shape.read_shape(box, ["left"])[0].link == "left"
     with pytest.raises(ValueError, match="2 names given for 1 links: box_baselink"):
         visual_shape.read_shape(box, ["left", "right"])
-
-
-def test_what_belongs_to_no_link_stands_still(model):
-    (still,) = (node for node in model.nodes if node.name == replay_model.STILL)
-    assert model.nodes.index(still) in model.nodes[0].children
-    assert still.name not in moved(model)
-    primitive = model.meshes[still.mesh].primitives[0]
-    corners = values(model, primitive.attributes.POSITION)
-    assert np.ptp(corners, axis=0).tolist() == [2, 2, 0]
-    up = values(model, primitive.attributes.NORMAL)
-    assert up == pytest.approx(np.tile([0, 0, 1], (len(corners), 1)))
 
 
 def test_copies_of_links_stand_translucent_at_their_target(model):

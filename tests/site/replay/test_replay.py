@@ -8,7 +8,6 @@ import gzip
 import re
 import shutil
 import sys
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -27,7 +26,6 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_any_trace, write_traces
 from robo_genesis.sim import visual_shape
-from robo_genesis.site.evidence.panel import response
 from robo_genesis.site.replay import viewer
 from robo_genesis.site.replay.directive import replay_block
 
@@ -63,18 +61,6 @@ def block(dropped, tmp_path) -> nodes.Node:
     return replay_block(Panel(tmp_path / "book"), KEY, dropped)
 
 
-def test_pictures_draw_what_the_bundle_holds(dropped, tmp_path):
-    env = Panel(tmp_path / "book").env
-    panel = response(env, "panel", dropped, DROPPED, "cpu")
-    (drawn,) = panel.findall(nodes.image)
-    both = "Height and vertical velocity of the box over time on cpu"
-    assert drawn["alt"] == f"{both}, with the cases high and low drawn over each other."
-    other = response(env, "o", dropped, replace(DROPPED, cases=("low", "high")), "cpu")
-    files = [next(of.findall(nodes.image))["uri"] for of in (panel, other)]
-    first, second = ((tmp_path / "book" / uri[1:]).read_bytes() for uri in files)
-    assert first != second
-
-
 def test_the_block_plays_the_record_and_names_no_other_s_model(
     block, dropped, tmp_path
 ):
@@ -108,22 +94,6 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(
     assert base64.b64decode(packed[1]) == (written / f"{NAME}.glb").read_bytes()
     weight = len(gzip.compress(script)) + len(gzip.compress(viewer.viewer()))
     assert f"Play loads the box in 3D: {round(weight / 1000)} kB." in text
-
-
-def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(
-    dropped, tmp_path
-):
-    written = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
-    replay_block(Panel(tmp_path / "book"), KEY, dropped)
-    model = written.read_bytes()
-    block = replay_block(Panel(tmp_path / "book"), KEY, dropped, brief=True)
-    assert written.read_bytes() == model
-    rows = rows_of([block])
-    assert rows[21] == ["0.2", "1.8", "0.8"]  # heights: high, low
-    assert not list(block.findall(nodes.list_item))
-    opening = next(iter(block.findall(nodes.raw))).astext()
-    assert "height" in opening
-    assert "velocity" not in opening
 
 
 def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_path):
@@ -255,18 +225,3 @@ def test_without_3d_or_file_the_plots_play_and_it_is_said(
     assert page.locator("model-viewer").count() == 0
     assert page.locator(".play").inner_text() == "Pause"
     page.problems.clear()  # the browser names the missing file
-
-
-@pytest.mark.browser
-def test_two_replays_of_a_page_are_two(block, dropped, tmp_path, open_block):
-    other = replay_block(Panel(tmp_path / "book"), "l99/lab/cpu", dropped)
-    page = open_block(nodes.container("", block, other))
-    first, second = (
-        f".replay[data-name=replay-l99-{name}-cpu]" for name in ("lecture", "lab")
-    )
-    choose(page, "low", 7, second)
-    assert page.locator(f"{first} input:checked").input_value() == "high"
-    assert page.locator(f"{first} input[type=range]").input_value() == "0"
-    for replay in (first, second):
-        show_model(page, replay)
-    assert page.locator("model-viewer").count() == 2

@@ -132,17 +132,6 @@ def test_tiles_lie_on_the_widest_still_part_and_a_marker_in_the_air_is_no_ground
         assert tiles.vertices[:, 2].max() == pytest.approx(scenery.RAISED)
 
 
-def test_the_picture_holds_all_points_and_no_more_room_than_stated():
-    points = np.random.default_rng(1).uniform([0, -1, 2], [0.5, 0, 4], (200, 3))
-    camera = scenery.fitted(points)
-    right, up, back = (
-        camera.axes @ (points[:, [0, 2, 1]] * [1, 1, -1] - camera.centre).T
-    )
-    half = (camera.distance - back) * np.tan(scenery.FIELD / 2)
-    share = np.maximum(np.abs(right) / scenery.ASPECT, np.abs(up)) / half
-    assert share.max() == pytest.approx(1 / scenery.ROOM)
-
-
 PLACES = ((-0.5, 0.0), (0.5, 0.25))
 SHAPE = [Part("box", (1, 2, 3), np.eye(3), np.array([[0, 1, 2]])), floor(2.0)]
 

@@ -99,18 +99,6 @@ def test_each_part_of_a_work_sheet_follows_what_it_belongs_to(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("sheet", "said"),
-    [
-        ("# Sheet\n\n## 1. Measured\n", "no part to fill in before the run"),
-        ("# Sheet\n\n## Guess, before the run\n", "Number it, as in"),
-    ],
-)
-def test_a_work_sheet_without_predictions_or_numbers_is_refused(tmp_path, sheet, said):
-    with pytest.raises(ValueError, match=said):
-        sheet_of(tmp_path, sheet, cell("x = 1"))
-
-
-@pytest.mark.parametrize(
     ("installed", "said"),
     [
         (PINNED, None),

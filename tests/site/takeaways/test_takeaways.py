@@ -13,8 +13,6 @@ import numpy as np
 from nbformat.v4 import new_markdown_cell, new_notebook
 
 from robo_genesis.core import project
-from robo_genesis.core.trace import Episodes
-from robo_genesis.evidence import trace_files
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways import files
 
@@ -30,28 +28,6 @@ def start(contract):
 session.start = start
 print(json.dumps([*doctor.examine()][-1]))
 """
-
-
-def test_a_table_of_episodes_names_environment_joint_and_finger(
-    tmp_path, traces, joints
-):
-    q = np.repeat(traces["G2"].q[:, None], 2, axis=1) * np.array([[1], [2]], np.float32)
-    n = len(q)
-    run = Episodes(
-        t=traces["G2"].t,
-        phase=np.ones((n, 2), np.int8),
-        q=q,
-        object_pos=np.zeros((n, 2, 3), np.float32),
-        object_quat=np.ones((n, 2, 4), np.float32),
-        force=np.tile(np.float32([[1, 2], [3, 4]]), (n, 1, 1)),
-        touches=np.zeros((n, 2), np.int8),
-    )
-    described = write_traces(tmp_path, {"batch": run}, joints, LINKS)
-    last = [*csv.DictReader(io.StringIO(files.csv_text(run, described, "batch")))][-1]
-    assert float(last["force env 1 left [N]"]) == 3
-    assert np.float32(last["q env 1 joint4 [rad]"]) == q[-1, 1, 3]
-    assert np.float32(last["q env 0 finger_joint2 [m]"]) == q[-1, 0, 8]
-    assert trace_files.read_any_trace(tmp_path, described, "batch").q.shape == q.shape
 
 
 def test_each_number_is_in_its_table_with_its_unit_and_none_is_made_up(

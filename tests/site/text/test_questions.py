@@ -54,20 +54,6 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
     )
 
 
-def test_where_no_run_was_recorded_the_record_cannot_tell(outputs):
-    found, said, _ = questions.measured_order(
-        "l04/lab", "overshoot", ["G1", "load"], absent=True
-    )
-    assert (found.order, found.unit) == (None, "rad")
-    assert said == "The record of l04/lab has no such run."
-    for cases, said in (
-        (["G1", "G2_longer"], "records G2_longer; ask"),
-        (["G9", "no_run"], "G9"),
-    ):
-        with pytest.raises(LookupError, match=said):
-            questions.measured_order("l04/lab", "overshoot", cases, absent=True)
-
-
 @pytest.mark.parametrize(
     ("unit", "values", "margin", "said"),
     [
