@@ -17,7 +17,7 @@ from robo_genesis.pipeline.pages.book import find_pages
 
 pytestmark = pytest.mark.engine
 
-REMOVED, KEPT = ("l03",), "l01"
+REMOVED, KEPT = "l03", "l01"
 UNIT_TESTS = (
     "core",
     "evidence",
@@ -75,33 +75,20 @@ def build(work):
     return work / "book" / "_build" / "html", said
 
 
-@pytest.fixture(scope="module", params=REMOVED)
-def without(request, tmp_path_factory):
-    """The name of a lesson, and a copy of the checkout without that lesson."""
-    work = copy_checkout(tmp_path_factory.mktemp("without") / "checkout")
-    remove(work, request.param)
-    return request.param, work
-
-
 @pytest.mark.slow
-def test_the_rest_of_the_code_does_without_a_lesson(without):
-    _, work = without
+def test_the_rest_of_the_course_does_without_a_lesson(tmp_path, build_output):
+    work = copy_checkout(tmp_path / "checkout")
+    remove(work, REMOVED)
     import_contracts(work)
     run_in(work, "python", "-m", "ruff", "check", "--no-cache", ".")
     git_needed = "--ignore=tests/maintain/test_new_lesson.py"
-    assert "passed" in unit_tests(
-        work, *(f"tests/{place}" for place in UNIT_TESTS), git_needed
-    )
-
-
-@pytest.mark.slow
-def test_the_book_without_a_lesson_builds(without, build_output):
-    lesson, work = without
+    places = (f"tests/{place}" for place in UNIT_TESTS)
+    assert "passed" in unit_tests(work, *places, git_needed)
     site, _ = build(work)
     cards = [card["id"] for card in parsed(site, "index").select("ul.course-map > li")]
-    assert f"lesson-{lesson}" not in cards
-    assert {f"lesson-{name}" for name in LESSONS if name != lesson} <= {*cards}
-    assert f"{lesson}/lab" not in parsed(site, "evidence/ledger").get_text()
+    assert f"lesson-{REMOVED}" not in cards
+    assert {f"lesson-{name}" for name in LESSONS if name != REMOVED} <= {*cards}
+    assert f"{REMOVED}/lab" not in parsed(site, "evidence/ledger").get_text()
 
 
 def test_a_new_lesson_is_on_the_site_at_once(tmp_path, build_output):
