@@ -338,8 +338,8 @@ SAVED = ["--report", "report.json"]
         (None, SAVED, ("'report.json' cannot be read as a report", "No such file")),
         ("no JSON", SAVED, (f"make a new one with {doctor.MAKE_REPORT}",)),
         ('{"format": 3}', SAVED, ("its format is 3, expected 4",)),
-        (None, ["--like", "nowhere"], ("'nowhere' is neither a folder nor a zip",)),
-        (None, ["--like", "other.zip"], ("'other.zip' has no manifest.json",)),
+        (None, ["--like", "nowhere"], ("nowhere is neither a folder nor a zip",)),
+        (None, ["--like", "other.zip"], ("manifest.json cannot be read",)),
         (None, ["--json", "--like", ""], ("--json is alone: compare",)),
     ],
 )
