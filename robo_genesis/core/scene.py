@@ -1,5 +1,7 @@
 """Constants of the course scene, with units."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -26,6 +28,19 @@ CAMERA = {
 
 # Rows, columns and colour channels of one camera frame.
 FRAME_SHAPE = (CAMERA_RES[1], CAMERA_RES[0], 3)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stepped:
+    """Time steps of a run: `dt` is the outer step [s], which has `substeps` solver steps."""
+
+    dt: float = DT
+    substeps: int = SUBSTEPS
+
+    @property
+    def h(self) -> float:
+        """Length of one solver step [s]."""
+        return self.dt / self.substeps
 
 
 def read_only(values: ArrayLike) -> FloatArray:

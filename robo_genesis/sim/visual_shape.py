@@ -50,18 +50,10 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
     Args:
         entity: a robot, or a single body such as a box.
         names: of its links in the record, if they differ from those of the engine.
-
-    Raises:
-        ValueError: the number of names is not that of the links.
     """
     import trimesh  # loads slowly
 
     names = [link.name for link in entity.links] if names is None else names
-    if len(names) != len(entity.links):
-        raise ValueError(
-            f"{len(names)} names given for {len(entity.links)} links: "
-            f"{', '.join(link.name for link in entity.links)}. Give one per link, in this order."
-        )
     parts = []
     for name, link in zip(names, entity.links, strict=True):
         by_colour: dict[tuple[int, int, int], list[tuple[FloatArray, np.ndarray]]] = {}
@@ -154,16 +146,8 @@ def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
     """Require that each part belongs to one link of the record, or to the world.
 
     Raises:
-        ValueError: a part belongs to a link that is not in the record, or two links
-            have one name.
+        ValueError: a part belongs to a link that is not in the record.
     """
-    twice = sorted({link for link in links if links.count(link) > 1 or link == WORLD})
-    if twice:
-        raise ValueError(
-            "The record has two links of one name, or one with the name of the world: "
-            f"{', '.join(twice)}. Give each a name of its own when the bundle is written, and the "
-            "same to read_shape."
-        )
     unknown = sorted({part.link for part in shape} - {*links, WORLD})
     if unknown:
         raise ValueError(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from robo_genesis.core.checks import Finding, at_most, equal, model_counts
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l01 import machine, spec
-from robo_genesis.sim.bodies.falling import free_fall
+from robo_genesis.sim.bodies.laws import free_fall
 from robo_genesis.sim.common_checks import posture, stamps, start
 
 

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from robo_genesis.sim.bodies import soft_contact
 from robo_genesis.sim.bodies.contacts import ContactCase
-from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 # The rules by which engines combine the coefficients of two surfaces, by their names in
 # a text.
@@ -61,7 +61,7 @@ def kept_at_bounces(damping_ratio: float) -> float:
 
 def contact_seconds(case: ContactCase) -> float:
     """Return the time constant T that is in force in a case without a spring of its own [s]."""
-    return mujoco_contacts.time_constant(case.h, case.time_constant)
+    return soft_contact.time_constant(case.h, case.time_constant)
 
 
 def impact_speed(case: ContactCase) -> float:

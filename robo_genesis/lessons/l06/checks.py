@@ -16,18 +16,12 @@ from robo_genesis.core.checks import (
 )
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study, throughput
-from robo_genesis.sim.arm.franka import EFFORT_LIMIT, JOINT_NAMES, per_joint
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.kinematics import ARM, Pose, distance_and_angle, hand_pose
-from robo_genesis.sim.arm.laws import driven_run, model_joints
+from robo_genesis.sim.arm.laws import driven_run
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import kept
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
-
-# A hand that turns sideways pushes its fingers, which hold each other. That force is
-# not in the law. It is up to 0.34 N here, and 2.3 N with 20 times the limits, because
-# the hand turns faster. Tolerance of an internal force with the usual limits [N·m or
-# N].
-NET_FORCE = per_joint(*(1e-2,) * 7, 0.6, 0.6)
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
@@ -220,13 +214,11 @@ def equal_work(run: Experiment) -> Iterator[Finding]:
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """At each sample links, forces and velocities are those of its own robot."""
-    yield from kept("the joint map", model_joints(run.joints))
+    """At each sample links and control forces are those of its own robot."""
     for name, world in run.cases.items():
         trace = run.traces[name]
         case = world.commanding(trace.target)
-        room = NET_FORCE * world.effort_limit / EFFORT_LIMIT
-        yield from kept(name, driven_run(trace, case, run.links, room, world.load))
+        yield from kept(name, driven_run(trace, case, run.links))
 
 
 WITHOUT_CAMERA = (

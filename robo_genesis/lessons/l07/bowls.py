@@ -8,7 +8,7 @@ import numpy as np
 
 from robo_genesis.core.experiment import Readings, inputs, json_value
 from robo_genesis.core.metrics import CaseMetrics, metric
-from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
+from robo_genesis.core.scene import FloatArray, Stepped
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies import bowl
@@ -27,7 +27,7 @@ BALLS = tuple(f"ball_{k}" for k in range(1, 13))
 
 
 @dataclass(frozen=True, slots=True)
-class BowlCase:
+class BowlCase(Stepped):
     """Balls that fall into a fixed bowl on the floor, in layers of four.
 
     `choice` is a key of `CHOICES`, `radius` that of the balls [m], `shift` their start
@@ -37,17 +37,10 @@ class BowlCase:
 
     choice: str = "default"
     radius: float = 0.008
-    substeps: int = SUBSTEPS
     shift: float = 0.0
     seed: int = 0
     drop: float = 0.02
     steps: int = 200
-    dt: float = DT
-
-    @property
-    def h(self) -> float:
-        """Length of one solver step [s]."""
-        return self.dt / self.substeps
 
     @property
     def starts(self) -> FloatArray:
@@ -78,9 +71,11 @@ ATTACKS = {
 
 # Balls as thick as the wall, from above the rim, and from a start inside the bowl.
 SMALL = {
-    "small_in_default_h1000us": BowlCase("default", 0.002, 10, steps=150),
-    "small_in_pieces_h1000us": BowlCase("pieces", 0.002, 10, steps=150),
-    "small_from_inside_h1000us": BowlCase("default", 0.002, 10, drop=-0.036, steps=150),
+    "small_in_default_h1000us": BowlCase("default", 0.002, substeps=10, steps=150),
+    "small_in_pieces_h1000us": BowlCase("pieces", 0.002, substeps=10, steps=150),
+    "small_from_inside_h1000us": BowlCase(
+        "default", 0.002, substeps=10, drop=-0.036, steps=150
+    ),
 }
 
 CASES = BIG | ATTACKS | SMALL

@@ -1,4 +1,4 @@
-"""Boxes at rest on a level and on a tilted table: cases, formulas, and the criterion of rest."""
+"""Boxes at rest on a level and on a tilted table: cases, and the criterion of rest."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,7 +10,6 @@ from robo_genesis.core.experiment import inputs
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
-from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 # A body is at rest if it moves less than this [m] in a window of this length [s].
 WINDOW, BOUND = 0.2, 2e-4
@@ -140,29 +139,6 @@ TOLERANCES: dict[str, tuple[float, float]] = {
 # By unit, the difference below which two values are equal. float32 changes a creep by
 # up to 3e-6 m/s at a solver step of 1 ms.
 RESOLUTION = {"m": 1e-5, "m/s": 5e-6, "%": 1.0}
-
-
-def formulas(case: ContactCase, in_mujoco: bool = False) -> tuple[float, float]:
-    """Return the depth [m] and the creep [m/s] of a box on four contacts, which grow with (1−d)/d.
-
-    The impedance d depends on the depth, so both are found by iteration. With the
-    pyramid, Genesis divides both μ² by impratio, MuJoCo one of them.
-    """
-    d, most, four = mujoco_contacts.IMPEDANCE[0], mujoco_contacts.IMPEDANCE[1], 4
-    seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
-    pyramid, stiffer, square = (
-        case.cone == "pyramidal",
-        case.impratio or 1.0,
-        case.friction**2,
-    )
-    edges = 1 + square / (1.0 if in_mujoco else stiffer)
-    sinking = square * edges / 2 / stiffer if pyramid else 1.0
-    sliding = (edges if pyramid else 1.0) / stiffer
-    for _ in range(30):
-        share = (1 - d) / d * case.gravity / four
-        depth = share * np.cos(case.tilt) * seconds**2 / d * sinking
-        d = mujoco_contacts.impedance(depth)
-    return float(depth), float(share * np.sin(case.tilt) * seconds / 2 * sliding)
 
 
 def in_scope(case: ContactCase) -> bool:

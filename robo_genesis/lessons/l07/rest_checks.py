@@ -9,9 +9,10 @@ from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, ru
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l07 import rest
 from robo_genesis.sim.bodies.contacts import SETTINGS
-from robo_genesis.sim.bodies.laws import body_on_surface
+from robo_genesis.sim.bodies.laws import repeated_steps, reported_depth
+from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 from robo_genesis.sim.common_checks import stamps
-from robo_genesis.sim.laws import copied, kept
+from robo_genesis.sim.laws import kept
 
 SHARE, DEPTH = (
     0.02,
@@ -42,11 +43,11 @@ def settings(run: Experiment) -> Iterator[Finding]:
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """At each sample a body moves and touches as the contact model makes it, also in MuJoCo."""
+    """Each reported depth is that of the body's shape, and MuJoCo repeats most steps of Genesis."""
     for name, case in run.cases.items():
         trace = run.traces[name]
-        of_twin = copied(trace, run.traces, rest.TWINS) if name in rest.TWINS else ()
-        yield from kept(name, chain(of_twin, body_on_surface(trace, case)))
+        steps = () if name in rest.TWINS else repeated_steps(trace, case)
+        yield from kept(name, chain(reported_depth(trace, case), steps))
 
 
 def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
@@ -55,7 +56,7 @@ def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
     forces that pull, the box creeps faster than it says.
     """
     for name in (name for scene in rest.PYRAMIDS.values() for name in scene):
-        found, (_, expected) = run.metrics[name].creep, rest.formulas(run.cases[name])
+        found, (_, expected) = run.metrics[name].creep, depth_and_creep(run.cases[name])
         if rest.in_scope(run.cases[name]):
             yield within(f"{name}.creep_m_s", found, expected, SHARE * expected + STILL)
         else:
@@ -65,7 +66,7 @@ def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
 def sinks_as_computed(run: Experiment) -> Iterator[Finding]:
     """On a level table each box sinks in as the formula says, within 2 %, with either cone."""
     for name in (*rest.SCENES["tilt_0"], *rest.SCENES["elliptic_0"]):
-        depth, _ = rest.formulas(run.cases[name])
+        depth, _ = depth_and_creep(run.cases[name])
         yield within(
             f"{name}.sunk_m", run.metrics[name].sunk, depth, SHARE * depth + DEPTH
         )
@@ -103,7 +104,7 @@ def round_cone_holds(run: Experiment) -> Iterator[Finding]:
     alone by at most a twentieth.
     """
     for name in (*rest.SCENES["elliptic_10"], *rest.SCENES["elliptic_20"]):
-        found, (_, expected) = run.metrics[name].creep, rest.formulas(run.cases[name])
+        found, (_, expected) = run.metrics[name].creep, depth_and_creep(run.cases[name])
         share = share_of(run, name, name.replace("elliptic", "tilt"))
         yield at_most(f"{name}.share", share, HELD)
         yield within(f"{name}.creep_m_s", found, expected, ROUNDING)

@@ -25,7 +25,7 @@ MINIMUM_HARDWARE = "cpu"
 EXPECTED_MODEL = franka.MODEL_COUNTS
 
 # Settings of the solver, and the orientation of the hand.
-ONE_START, DOWN = reaching.ONE_START, lifting.DOWN
+ONE_START, DOWN = reaching.ONE_START, reaching.DOWN
 
 KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
 KP[7:], KV[7:] = 480.0, 20.0  # Fingers that close on 50 mm press with 12 N

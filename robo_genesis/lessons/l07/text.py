@@ -7,6 +7,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal, scaled_value
 from robo_genesis.lessons.l07 import bowls, rest, rungs, spec
 from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
+from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 
 MEASURES = False
 
@@ -115,7 +116,7 @@ def creep_table(run: Experiment, which: str) -> str:
     rows = []
     for name in CREEPS[which]:
         of, twin = run.metrics[name], run.metrics.get(f"mujoco_{name}")
-        depth, creep = rest.formulas(run.cases[name])
+        depth, creep = depth_and_creep(run.cases[name])
         found = {
             "creep": of.creep,
             "formula": creep,

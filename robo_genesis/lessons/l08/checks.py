@@ -18,13 +18,13 @@ from robo_genesis.core.checks import (
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Episodes
 from robo_genesis.lessons.l08 import dataset, metrics, spec
-from robo_genesis.sim.arm import lifting, picking
+from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.kinematics import ARM, hand_pose
-from robo_genesis.sim.arm.laws import commanded, model_joints
+from robo_genesis.sim.arm.laws import driven_run
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import posture, stamps
-from robo_genesis.sim.laws import apart, kept, unit_quaternions
+from robo_genesis.sim.laws import apart, kept
 
 
 def structure(run: Experiment) -> Iterator[Finding]:
@@ -152,38 +152,25 @@ def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """Each batch begins where its case puts robot and object. An episode that is recorded
-    at all steps has the states of its batch, and at each sample links and control
-    forces of the driven robot.
+    """Each batch begins where its case puts robot and object. In an episode that is
+    recorded at all steps, links and control forces are those of the driven robot.
     """
-    yield from kept("the joint map", model_joints(run.joints))
     for name, case in run.cases.items():
         trace = run.traces[name]
-        batch = isinstance(case, picking.PickCase)
-        laws = begins(trace, case) if batch else of_batch(run, name, *spec.ROWS[name])
+        laws = (
+            begins(trace, case)
+            if isinstance(case, picking.PickCase)
+            else driven_run(trace, case.commanding(trace.target), run.links[:-1])
+        )
         yield from kept(name, laws)
 
 
 def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
-    """Yield a start that is not that of the case, or no orientation."""
-    yield from unit_quaternions(trace.object_quat)
+    """Yield a start that is not that of the case."""
     place = np.column_stack([case.starts, np.full(len(case.starts), case.size[2] / 2)])
     start = {"q": case.q_start, "object_pos": place, "object_quat": case.turns}
     for array, expected in start.items():
-        yield from apart("start", array, getattr(trace, array)[0], expected, 1e-6)
-
-
-def of_batch(run: Experiment, name: str, whole: str, row: int) -> Iterator[Finding]:
-    """Yield what an episode does not share with its batch, or with a driven robot."""
-    trace, case, batch = run.traces[name], run.cases[name], run.traces[whole]
-    pos, quat = trace.link_pos[:, -1], trace.link_quat[:, -1]
-    for array, values in (("q", trace.q), ("object_pos", pos), ("object_quat", quat)):
-        expected = getattr(batch, array)[:, row]
-        found = values[:: spec.ASKEW.commands]
-        yield from apart("pose", f"{array} of the batch", found, expected, 0.0)
-    yield from unit_quaternions(trace.link_quat)
-    robot = lifting.without_bodies(trace, 1)
-    yield from commanded(robot, case.commanding(trace.target), run.links[:-1])
+        yield from apart(f"start of {array}", getattr(trace, array)[0], expected, 1e-6)
 
 
 # Between two samples, how far an object moves before the descent, and by how much the

@@ -1,4 +1,4 @@
-"""Boxes that two pads hold: cases, formulas of depth and creep, and what a reader may change."""
+"""Boxes that two pads hold: cases, metrics, and what a reader may change."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,10 +9,7 @@ import numpy as np
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim.bodies import grippers
-from robo_genesis.sim.bodies.grippers import CONTACTS, PAD, SIZE, HeldCase
-from robo_genesis.sim.mujoco import contacts as mujoco_contacts
-from robo_genesis.sim.mujoco.grippers import ratio_of
+from robo_genesis.sim.bodies.grippers import PAD, SIZE, HeldCase
 
 # Runs that differ from `base` in one setting, by setting and name.
 SCANS: Mapping[str, Mapping[str, float]] = {
@@ -127,38 +124,6 @@ TOLERANCES: dict[str, tuple[float, float]] = {
 }
 
 RESOLUTION = {"m/s": 5e-6}
-
-
-def formulas(case: HeldCase, in_mujoco: bool = False) -> tuple[float, float]:
-    """Return the depth [m] and the creep [m/s] of a held box; see the page for their derivation.
-
-    The impedance d depends on the depth, so both are found by iteration.
-    """
-    d, most, mu = (
-        mujoco_contacts.IMPEDANCE[0],
-        mujoco_contacts.IMPEDANCE[1],
-        case.friction,
-    )
-    seconds = most * mujoco_contacts.time_constant(case.h, case.time_constant)
-    k, b = 1 / seconds**2, 2 / seconds
-    w = 1 / case.mass + 1 / (3 * (grippers.PAD_MASS + grippers.ARMATURE))
-    friction, normal = case.mass * case.gravity / CONTACTS, 2 * case.force / CONTACTS
-    square = mu**2 / ratio_of(case)
-    edges = 2 * square * (1 + (mu**2 if in_mujoco else square))
-    for _ in range(100):
-        soft = (1 - d) / d * w
-        if case.cone == "elliptic":
-            depth, creep = soft * normal / (k * d), soft / ratio_of(case) * friction / b
-        elif friction <= mu * normal / 2:
-            depth, creep = (
-                edges * soft * normal / 4 / (k * d),
-                edges * soft * friction / 2 / mu**2 / b,
-            )
-        else:  # the edge that points down is free
-            depth = edges * soft * (normal - friction / mu) / 2 / (k * d)
-            creep = edges * soft * (1.5 * friction / mu - normal / 2) / mu / b
-        d = (d + mujoco_contacts.impedance(depth)) / 2
-    return float(depth), float(creep)
 
 
 @dataclass(frozen=True, slots=True)

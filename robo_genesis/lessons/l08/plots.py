@@ -11,6 +11,7 @@ from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import hand_pose
 from robo_genesis.sim.bodies.grippers import HeldCase
+from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 
 MEASURES = False
 
@@ -98,7 +99,7 @@ def creep_scans(run: Experiment) -> Figure:
         cases = [HeldCase(**{setting: value}) for value in fine]
         ax.plot(
             fine,
-            [1000 * creep.formulas(c)[1] for c in cases],
+            [1000 * depth_and_creep(c)[1] for c in cases],
             ":",
             color=look("other")["color"],
         )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE
-from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.scene import SEED, FloatArray, Stepped
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
@@ -17,12 +17,12 @@ from robo_genesis.sim.session import CaseError, require_built
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Controlled:
+class Controlled(Stepped):
     """A robot under position control. A lesson's case adds what it commands.
 
     Arrays have one entry for each joint, in the order of the map, and are by default
     those of the Franka, as is the `model`: `q_start` [rad or m]; `kp` [N·m/rad or N/m];
-    `kv` [N·m·s/rad or N·s/m]; `effort_limit` [N·m or N], symmetric. `dt` [s]; `steps`
+    `kv` [N·m·s/rad or N·s/m]; `effort_limit` [N·m or N], symmetric. `steps`
     counts outer steps.
     """
 
@@ -32,8 +32,6 @@ class Controlled:
     kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
     effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
     steps: int
-    dt: float = DT
-    substeps: int = SUBSTEPS
     seed: int = SEED
 
     def commanding(self, q_target: FloatArray) -> "ControlCase":
@@ -54,15 +52,13 @@ class ControlCase(Controlled):
 
 def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:
     """Name every field, and joint within it, in which two cases differ: `["kp[joint4]"]`."""
-    found = []
-    for one_field in fields(ControlCase):
-        a, b = getattr(one, one_field.name), getattr(other, one_field.name)
+    found: list[str] = []
+    for name in (one.name for one in fields(ControlCase)):
+        a, b = getattr(one, name), getattr(other, name)
         if np.ndim(a) == 0:
-            found += [one_field.name] if a != b else []
+            found += [name] * bool(a != b)
         else:
-            found += [
-                f"{one_field.name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)
-            ]
+            found += [f"{name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)]
     return found
 
 
@@ -74,39 +70,22 @@ def validate(case: ControlCase, joints: JointMap) -> None:
     """
     n = len(joints.names)
     for name in ("q_start", "q_target", "kp", "kv", "effort_limit"):
-        values = getattr(case, name)
-        rows = [(case.steps, n)] if name == "q_target" else []
-        if np.shape(values) not in [(n,), *rows]:
+        values, is_state = np.asarray(getattr(case, name)), name.startswith("q_")
+        if values.shape not in [(n,), *[(case.steps, n)] * (name == "q_target")]:
             raise CaseError(
-                f"{name} has shape {np.shape(values)}, expected ({n},): one value for each of "
+                f"{name} has shape {values.shape}, expected ({n},): one value for each of "
                 f"{', '.join(joints.names)}. Slice values and indices together."
             )
-        for row, k in np.argwhere(~np.isfinite(np.atleast_2d(values))):
-            value = np.atleast_2d(values)[row, k]
+        limits: tuple[FloatArray, FloatArray] = (np.zeros(n), np.full(n, np.inf))
+        lower, upper = (joints.lower, joints.upper) if is_state else limits
+        beyond = np.maximum(lower - values, values - upper)
+        valid = np.isfinite(values) & (beyond <= LIMIT_TOLERANCE * is_state)
+        for *row, k in np.argwhere(~valid).tolist():
+            unit = f" {joints.position_units[k]}" * is_state
             raise CaseError(
-                f"{name}[{joints.names[k]}] is {value}, expected a finite number."
+                f"{name}[{joints.names[k]}] is {values[*row, k]:g}{unit}, outside its range "
+                f"[{lower[k]:g}, {upper[k]:g}]. Choose a value inside; none is clipped."
             )
-    for name in ("q_start", "q_target"):
-        q = np.atleast_2d(getattr(case, name))
-        outside = (q < joints.lower - LIMIT_TOLERANCE) | (
-            q > joints.upper + LIMIT_TOLERANCE
-        )
-        for row, k in np.argwhere(outside):
-            raise CaseError(
-                f"{name}[{joints.names[k]}] is {q[row, k]:g} {joints.position_units[k]}, outside "
-                f"its range [{joints.lower[k]:g}, {joints.upper[k]:g}]. Choose a value inside; "
-                "none is clipped."
-            )
-    for name in ("kp", "kv", "effort_limit"):
-        for k in np.flatnonzero(np.asarray(getattr(case, name)) < 0):
-            value = getattr(case, name)[k]
-            raise CaseError(
-                f"{name}[{joints.names[k]}] is {value}, expected zero or more."
-            )
-    if case.steps < 1 or not case.dt > 0 or case.substeps < 1:
-        raise CaseError(
-            f"steps={case.steps}, dt={case.dt}, substeps={case.substeps}: all must be positive."
-        )
 
 
 def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
@@ -268,14 +247,12 @@ def read(
     Position (d,), link positions (l, 3) [m] and orientations (l, 4), those of `bodies`
     last; velocity, control force and internal force, each (d,).
     """
+    pos = [to_numpy(entity.get_links_pos()) for entity in (robot, *bodies)]
+    quat = [to_numpy(entity.get_links_quat()) for entity in (robot, *bodies)]
     return (
         to_numpy(robot.get_dofs_position(dofs)),
-        np.concatenate(
-            [to_numpy(of.get_links_pos()) for of in (robot, *bodies)], axis=-2
-        ),
-        np.concatenate(
-            [to_numpy(of.get_links_quat()) for of in (robot, *bodies)], axis=-2
-        ),
+        np.concatenate(pos, axis=-2),
+        np.concatenate(quat, axis=-2),
         to_numpy(robot.get_dofs_velocity(dofs)),
         to_numpy(robot.get_dofs_control_force(dofs)),
         to_numpy(robot.get_dofs_force(dofs)),

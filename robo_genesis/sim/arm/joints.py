@@ -91,10 +91,6 @@ def resolve_joints(robot: Any, names: Sequence[str]) -> JointMap:
     joints = [one_dof_joint(robot, name) for name in names]
     dofs_idx_local = np.array([joint.dofs_idx_local[0] for joint in joints])  # (n,)
     qs_idx_local = np.array([joint.qs_idx_local[0] for joint in joints])  # (n,)
-    if len(set(dofs_idx_local.tolist())) != len(names):
-        raise JointError(
-            f"Names {', '.join(names)} share DOFs: {dofs_idx_local.tolist()}."
-        )
     limits = robot.get_dofs_limit(dofs_idx_local.tolist())
     # With `batch_dofs_info` there is one row for each environment, all equal in a new
     # scene. JSON keeps float64.

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.scene import FloatArray, read_only
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.franka import FRANKA, LINK_PARENTS
 
@@ -30,6 +30,9 @@ CHAIN = (
     ("link7", (0.088, 0.0, 0.0), (HALF, HALF, 0.0, 0.0)),
     ("hand", (0.0, 0.0, 0.107), (0.9238795, 0.0, 0.0, -0.3826834)),
 )
+
+# Orientation (w, x, y, z) of the hand with the fingers down: half a turn about x.
+DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 
 ARM = len(CHAIN) - 1  # Number of joints of the arm
 

@@ -5,17 +5,15 @@ base.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import FloatArray, read_only
-from robo_genesis.core.trace import Trace
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
-from robo_genesis.sim.arm.kinematics import ARM
+from robo_genesis.sim.arm.kinematics import ARM, DOWN
 
 # Outer steps of the phases of a lift.
 PHASES = {
@@ -36,9 +34,6 @@ PAD, HAND_TO_PAD = 0.025, 0.1034
 
 # Heights of the pregrasp above the grasp, and of the lift [m].
 ABOVE, RISE = 0.10, 0.05
-
-# Orientation (w, x, y, z) of the hand, as in `reaching`: the fingers point down.
-DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 
 FINGERS = {"left": "left_finger", "right": "right_finger"}
 
@@ -116,19 +111,6 @@ def lift_command(q_start: FloatArray, answers: Sequence[IkAnswer]) -> FloatArray
             np.tile(b, (n, 1)) if phase == "close" else np.linspace(a, b, n + 1)[1:]
             for (a, b), (phase, n) in ways
         ]
-    )
-
-
-def without_bodies(trace: Trace, bodies: int, steps: int | None = None) -> Trace:
-    """Return the first steps of a run, or all, without the links of its last bodies."""
-    lengths = {"state": (trace.steps if steps is None else steps) + 1}
-    lengths["step"] = lengths["state"] - 1
-    cut = {
-        name: getattr(trace, name)[: lengths.get(of.dims[0])]
-        for name, of in trace.arrays().items()
-    }
-    return replace(
-        trace, **cut | {n: cut[n][:, :-bodies] for n in ("link_pos", "link_quat")}
     )
 
 

@@ -25,23 +25,16 @@ joint whose
 
    In a lecture this visible cell also has `import robo_genesis as rg`.
 4. `pages.py` has `joints=spec.ARM.joints`, and the authors of a shape that is not yours
-as
-   `credit`; `structure` has the counts of this robot (links with the base, joints and
+   as `credit`; `structure` has the counts of this robot (links with the base, joints and
    DOFs without fixed ones) and prints what it found. `driven_run` takes the robot from
-   the case; `model_joints`, `solve_ik` and `sim/mujoco/` take it as `of`.
-   `sim/arm/kinematics.py` knows the Franka alone. The laws know gravity, damping,
-   armature and control force, and name springs and joint friction of a file. They know
-   no force of a joint at its limit and no contact, so keep runs inside the range. Tests
-   need a `JointMap` of the robot in the lesson's `conftest.py`.
-5. A free base, as that of a quadruped, is `free_base=True`: `run_case` drives the legs
-and
-   `laws.commanded` is the law. What needs a fixed base says so.
-6. The laws know position control. For feedback, a force F on a joint is the target q +
-F/KP with a
-   small KP (1 N/m) and `kv=0`. Derive the case from `Controlled`; the loop is `reset`,
-   then for each step a target, `control_dofs_position`, `scene.step()` and `read`, at
-   the end `assemble`. The law is `driven_run(trace, case.commanding(trace.target),
-   links)`.
+   the case; `solve_ik` and `sim/mujoco/` take it as `of`. `sim/arm/kinematics.py` knows
+   the Franka alone. Tests need a `JointMap` of the robot in the lesson's `conftest.py`.
+5. A free base, as that of a quadruped, is `free_base=True`: `run_case` drives the legs.
+   What needs a fixed base says so.
+6. For feedback, a force F on a joint is the target q + F/KP with a small KP (1 N/m) and
+   `kv=0`. Derive the case from `Controlled`; the loop is `reset`, then for each step a
+   target, `control_dofs_position`, `scene.step()` and `read`, at the end `assemble`. The
+   law is `driven_run(trace, case.commanding(trace.target), links)`.
 """
 
 from dataclasses import dataclass

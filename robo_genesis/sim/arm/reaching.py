@@ -6,6 +6,7 @@ from dataclasses import replace
 from robo_genesis.core.check_spec import TOLERANCES as TOLERANCES
 from robo_genesis.core.scene import read_only
 from robo_genesis.sim.arm.engine_kinematics import IkSettings
+from robo_genesis.sim.arm.kinematics import DOWN as DOWN
 
 MEASURES = False
 
@@ -14,9 +15,6 @@ IK = IkSettings()  # Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterati
 # The same without starts of the engine's choice, so that an answer depends on its start
 # alone.
 ONE_START = replace(IK, samples=1, iterations=100)
-
-# Target orientation (w, x, y, z): half a turn about x, so the fingers point down.
-DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 
 # A target that no posture of the arm comes near to [m].
 BEYOND_REACH = read_only((2.0, 0.0, 2.0))

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 
-from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
+from robo_genesis.core.scene import FloatArray, Stepped
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
@@ -17,6 +17,7 @@ from robo_genesis.sim.bodies.rigid_bodies import (
     stacked,
     times,
 )
+from robo_genesis.sim.bodies.soft_contact import Load
 from robo_genesis.sim.session import CaseError
 
 # Length, width and thickness of the fixed box under the bodies [m].
@@ -27,20 +28,13 @@ TOP = 0.725  # Height of its upper face [m]
 # Settings that no array of a run shows; they are read back from the scene.
 SETTINGS = ("friction", "surface_friction", "substeps")
 
-# The words that a case takes, by setting.
-CHOICES: dict[str, tuple[str | None, ...]] = {
-    "shape": ("cube", "ball"),
-    "cone": ("pyramidal", "elliptic"),
-    "resolution": (None, "convex", "signorini"),
-}
-
 Case = TypeVar("Case", bound="ContactRun")
 
 State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ContactRun:
+class ContactRun(Stepped):
     """How long a scene runs, with which steps and which model of its contacts.
 
     After `settle` seconds, `duration` seconds are recorded. `cone` is the shape of the
@@ -55,19 +49,12 @@ class ContactRun:
     shared: ClassVar[tuple[str, ...]] = ()
     duration: float
     settle: float = 0.0
-    dt: float = DT
-    substeps: int = SUBSTEPS
     cone: Literal["pyramidal", "elliptic"] = "pyramidal"
     resolution: Literal["convex", "signorini"] | None = None
     impratio: float | None = None
     time_constant: float | None = None
     noslip: int = 0
     gravity: float = GRAVITY
-
-    @property
-    def h(self) -> float:
-        """Length of one solver step [s]."""
-        return self.dt / self.substeps
 
     @property
     def steps(self) -> int:
@@ -100,10 +87,6 @@ class ContactCase(ContactRun):
     yaw: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, choices in CHOICES.items():
-            if (given := getattr(self, name)) not in choices:
-                valid = ", ".join(map(repr, choices))
-                raise CaseError(f"{name}={given!r} is not valid. Choices: {valid}.")
         for name in ("duration", "settle"):
             seconds = getattr(self, name)
             if abs(round(seconds / self.dt) * self.dt - seconds) > 1e-9:
@@ -122,6 +105,13 @@ class ContactCase(ContactRun):
     def inertia(self) -> float:
         """Moment of inertia about any axis through the centre [kg·m²]."""
         return self.mass * self.size**2 * (1 / 6 if self.shape == "cube" else 1 / 10)
+
+    @property
+    def load(self) -> Load:
+        """Load of each of four equal contacts of the body at rest."""
+        weight = self.mass * self.gravity / 4
+        normal, along = weight * np.cos(self.tilt), weight * np.sin(self.tilt)
+        return Load(float(normal), float(along), 1 / self.mass)
 
     @property
     def fall(self) -> FloatArray:

@@ -19,6 +19,7 @@ from robo_genesis.sim.bodies.rigid_bodies import (
     stacked,
     times,
 )
+from robo_genesis.sim.bodies.soft_contact import Load
 
 # The links of a run: the box and both pads.
 LINKS = ("box", "left", "right")
@@ -57,6 +58,13 @@ class HeldCase(contacts.ContactRun):
     force: float = 10.0
     mass: float = 0.1
     iterations: int | None = None
+
+    @property
+    def load(self) -> Load:
+        """Load of each contact of the box."""
+        inverse_mass = 1 / self.mass + 1 / (3 * (PAD_MASS + ARMATURE))
+        weight = self.mass * self.gravity
+        return Load(2 * self.force / CONTACTS, weight / CONTACTS, inverse_mass, True)
 
 
 def pads(case: HeldCase) -> str:

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from robo_genesis.core.check_spec import START_TOLERANCE
-from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.scene import SEED, FloatArray, Stepped
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
@@ -28,27 +28,20 @@ MODEL_COUNTS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Drop:
+class Drop(Stepped):
     """All settings of one drop of a cube from rest.
 
     `size` is the cube's edge [m], `density` [kg/m³], `height` that of its centre at the
-    start [m], `gravity` the magnitude of the acceleration downwards [m/s²], `dt` the
-    outer step [s], `steps` the number of outer steps.
+    start [m], `gravity` the magnitude of the acceleration downwards [m/s²], `steps` the
+    number of outer steps.
     """
 
     size: float
     density: float
     height: float
     steps: int
-    dt: float = DT
-    substeps: int = SUBSTEPS
     gravity: float = GRAVITY
     seed: int = SEED
-
-    @property
-    def h(self) -> float:
-        """Length of one solver step [s]."""
-        return self.dt / self.substeps
 
     @property
     def mass(self) -> float:

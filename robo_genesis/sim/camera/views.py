@@ -12,10 +12,6 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.joints import to_numpy
 
 
-class ViewError(ValueError):
-    """Readings of a camera do not form one view."""
-
-
 @dataclass(frozen=True, slots=True)
 class View:
     """One view of W columns and H rows. Pictures are None if they were not rendered.
@@ -29,9 +25,6 @@ class View:
     | `rgb` | (H, W, 3) | colours, uint8 |
     | `depth` | (H, W) | distance along the optical axis [m], float32 |
     | `segmentation` | (H, W) | number of what each pixel shows, 0 for the background, int32 |
-
-    Raises:
-        ViewError: a shape is wrong.
     """
 
     intrinsics: FloatArray
@@ -41,27 +34,6 @@ class View:
     rgb: np.ndarray | None = None
     depth: FloatArray | None = None
     segmentation: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        width, height = self.size
-        shapes: dict[str, tuple[int, ...]] = {
-            "intrinsics": (3, 3),
-            "transform": (4, 4),
-            "rgb": (height, width, 3),
-            "depth": (height, width),
-            "segmentation": (height, width),
-        }
-        for name, shape in shapes.items():
-            if getattr(self, name) is None:
-                continue
-            array = np.array(getattr(self, name))
-            if array.shape != shape:
-                raise ViewError(
-                    f"{name} has shape {array.shape}, expected {shape}. A camera with "
-                    f"res=({width}, {height}) has {height} rows and {width} columns."
-                )
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
 
 
 def look(camera: Any, render: bool = True) -> View:
@@ -76,9 +48,6 @@ def look(camera: Any, render: bool = True) -> View:
     Args:
         camera: of a built scene.
         render: whether to take pictures.
-
-    Raises:
-        ViewError: the camera returned pictures of another shape than its resolution.
     """
     pictures: dict[str, Any] = {}
     if render:
@@ -114,18 +83,6 @@ def read_transform(camera: Any) -> FloatArray:
 
 
 def segment_number(scene: Any, link: Any) -> int:
-    """Return the number of a link in the segmentations of a scene, whose level is the link.
-
-    Raises:
-        ViewError: no segment is this link's; the message has those that exist.
-    """
-    segments = scene.segmentation_idx_dict
-    found = [
-        number for number, key in segments.items() if key == (link.entity.idx, link.idx)
-    ]
-    if len(found) != 1:
-        raise ViewError(
-            f"No single segment is that of entity {link.entity.idx}, link {link.idx}. The scene "
-            f"has {list(segments.values())}. Leave the scene's segmentation_level at 'link'."
-        )
-    return int(found[0])
+    """Return the number of a link in the segmentations of a scene, whose level is the link."""
+    numbers = {key: number for number, key in scene.segmentation_idx_dict.items()}
+    return int(numbers[link.entity.idx, link.idx])

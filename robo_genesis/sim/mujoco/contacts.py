@@ -1,6 +1,5 @@
 """Contact cases in MuJoCo with the contact parameters of Genesis, for comparison."""
 
-from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -11,40 +10,14 @@ from robo_genesis.core.trace import BodyTrace, ContactTrace
 from robo_genesis.sim.arm.kinematics import rotate
 from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
+from robo_genesis.sim.bodies.soft_contact import IMPEDANCE, time_constant
 
 VERSION = version("mujoco")
-
-# Default of Genesis for contacts, unless two solver steps are longer [s].
-DEFAULT_TIME_CONSTANT = 0.01
 
 OWN_TIME_CONSTANT = 0.02  # MuJoCo's default [s]
 
 # The arrays of a state, in MuJoCo's order.
 MOTION = ("link_pos", "link_quat", "link_vel", "link_ang")
-
-# Impedance of a contact as a function of depth, the default of both engines.
-IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
-
-
-def time_constant(h: float, requested: float | None = None) -> float:
-    """Return the time constant of a contact in Genesis at solver step `h` [s].
-
-    Args:
-        h: the solver step [s].
-        requested: `constraint_timeconst` [s], None for the default.
-    """
-    return max(DEFAULT_TIME_CONSTANT if requested is None else requested, 2 * h)
-
-
-def impedance(depth: float) -> float:
-    """Return the impedance d of a contact at a depth [m]."""
-    least, most, width, middle, power = IMPEDANCE
-    x = min(depth / width, 1.0)
-    low, high = (
-        x**power / middle ** (power - 1),
-        (1 - x) ** power / (1 - middle) ** (power - 1),
-    )
-    return float(least + (most - least) * (low if x < middle else 1 - high))
 
 
 def load(case: ContactCase, own_defaults: bool = False) -> Any:
@@ -113,40 +86,22 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
     return ContactTrace(times(case), *stacked(states))
 
 
-def after_one_step(
-    model: Any, states: Sequence[FloatArray], substeps: int
-) -> FloatArray:
-    """Return time, positions and velocities (n, 1 + nq + nv) one outer step after states.
-
-    Args:
-        model: compiled.
-        states: parts (n, …) of the states in MuJoCo's order, without the time.
-        substeps: solver steps of an outer step.
-    """
+def each_step(trace: BodyTrace, case: ContactCase) -> dict[str, FloatArray]:
+    """Return what follows from each state of a run but the last in one outer step, by array."""
     import mujoco
     from mujoco import rollout
 
-    begin = np.hstack([np.zeros((len(states[0]), 1)), *states])
-    ends, _ = rollout.rollout(model, [mujoco.MjData(model)], begin, nstep=substeps)
-    return np.asarray(ends)[:, -1]
-
-
-def each_step(
-    trace: BodyTrace, case: ContactCase, own_defaults: bool = False
-) -> dict[str, FloatArray]:
-    """Return what follows from each state of a run but the last in one outer step, by array.
-
-    The arguments are as of `run_case`.
-    """
-    states = {name: getattr(trace, name)[:-1, 0].astype(np.float64) for name in MOTION}
-    position, quat, velocity, spin = states.values()
-    spin = rotate(quat * [1, -1, -1, -1], spin)  # MuJoCo has it in the body's axes
-    begin = (position, quat, velocity, spin)
-    ends = after_one_step(load(case, own_defaults), begin, case.substeps)
-    _, position, quat, velocity, spin = np.split(ends, (1, 4, 8, 11), axis=1)
-    return dict(
-        zip(MOTION, (position, quat, velocity, rotate(quat, spin)), strict=True)
+    model = load(case)
+    position, quat, velocity, spin = (
+        getattr(trace, name)[:-1, 0].astype(np.float64) for name in MOTION
     )
+    spin = rotate(quat * [1, -1, -1, -1], spin)  # MuJoCo has it in the body's axes
+    begin = np.hstack([np.zeros((trace.steps, 1)), position, quat, velocity, spin])
+    data = [mujoco.MjData(model)]
+    ends, _ = rollout.rollout(model, data, begin, nstep=case.substeps)
+    _, position, quat, velocity, spin = np.split(ends[:, -1], (1, 4, 8, 11), axis=1)
+    after = (position, quat, velocity, rotate(quat, spin))
+    return dict(zip(MOTION, after, strict=True))
 
 
 def _state(data: Any) -> tuple[np.ndarray, ...]:

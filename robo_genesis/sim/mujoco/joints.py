@@ -11,11 +11,8 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.joint_control import ControlCase, assemble
 from robo_genesis.sim.bodies.rigid_bodies import record_states
 from robo_genesis.sim.mujoco.kinematics import bare_spec, compiled, with_data
-from robo_genesis.sim.session import CaseError
 
 VERSION = version("mujoco")
-
-INTEGRATORS = ("implicitfast", "Euler")
 
 
 def load(case: ControlCase, timestep: float, integrator: str) -> Any:
@@ -28,20 +25,9 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
     course.
 
     Raises:
-        CaseError: the integrator is unknown, or the time step does not divide the dt of
-            the case.
         ModelError: MuJoCo cannot read the model, or its base moves freely.
     """
     import mujoco
-
-    substeps = round(case.dt / timestep)
-    if integrator not in INTEGRATORS or not np.isclose(
-        substeps * timestep, case.dt, rtol=1e-9
-    ):
-        raise CaseError(
-            f"integrator={integrator!r}, timestep={timestep:g} s: expected one of "
-            f"{', '.join(INTEGRATORS)}, and a time step that divides dt={case.dt:g} s."
-        )
 
     def padded(*values: float) -> FloatArray:  # MuJoCo has ten parameters
         return np.pad(
@@ -88,7 +74,7 @@ def run_case(
         case: its `substeps` is not used; `timestep` replaces it.
         links: bodies whose poses the trace holds, in this order.
         timestep: length of one solver step [s].
-        integrator: one of `INTEGRATORS`.
+        integrator: "implicitfast" or "Euler".
     """
     import mujoco
 
@@ -108,32 +94,6 @@ def run_case(
     )
     effort_limit = _kept(model.actuator_forcerange[:, 1])
     return assemble(case, readings, [case.q_target] * case.steps, effort_limit)
-
-
-def each_step(
-    trace: Trace, case: ControlCase, timestep: float, integrator: str
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return what follows from a run's states, the arguments as of `run_case`.
-
-    Returns:
-        Position and velocity after one outer step from each state but the last, and the
-        net force at each state but the first; each (n, d).
-    """
-    import mujoco
-
-    model, data, q_at, dof_at = with_data(load(case, timestep, integrator), case.model)
-    data.ctrl[:] = case.q_target
-    q, qd, force = np.empty((3, *trace.qd.shape))
-    speeds = np.vstack([trace.start_qd, trace.qd])
-    for k, (position, velocity) in enumerate(zip(trace.q, speeds, strict=True)):
-        data.qpos[q_at], data.qvel[dof_at] = position, velocity
-        mujoco.mj_forward(model, data)
-        if k > 0:
-            force[k - 1] = (data.qfrc_smooth + data.qfrc_constraint)[dof_at]
-        if k < trace.steps:
-            mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
-            q[k], qd[k] = data.qpos[q_at], data.qvel[dof_at]
-    return q, qd, force
 
 
 def _kept(values: FloatArray) -> FloatArray:

@@ -15,9 +15,6 @@ from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.kinematics import Pose
 from robo_genesis.sim.arm.model import ModelError, RobotModel, model_file
 
-# Genesis' names of MuJoCo's types of joints, slide and hinge.
-TYPES = {2: "PRISMATIC", 3: "REVOLUTE"}
-
 GRAVITY = (
     0.0,
     0.0,
@@ -54,9 +51,8 @@ def bare_spec(of: RobotModel = FRANKA) -> Any:
 
     if of.free_base:
         raise ModelError(
-            f"{of.file} has a base that moves freely. Poses and masses in MuJoCo, and the laws of "
-            "motion, are those of arms with a fixed base. For other robots `laws.commanded` checks "
-            "times, start, command and control law."
+            f"{of.file} has a base that moves freely. Poses and masses in MuJoCo are those of "
+            "arms with a fixed base."
         )
     try:
         spec = mujoco.MjSpec.from_file(model_file(of.file))
@@ -130,42 +126,18 @@ def with_data(
     return model, mujoco.MjData(model), q_at, dof_at
 
 
-def unknown_forces(of: RobotModel) -> list[str]:
-    """Return which forces a model has beside gravity, damping and those between fingers."""
-    model, *_ = bare_robot(of=of)
-    forces = {
-        "stiffness of joints": model.jnt_stiffness.any(),
-        "frictionloss": model.dof_frictionloss.any(),
-        "gravcomp": model.body_gravcomp.any(),
-        "equality": model.neq and not of.fingers,
-    }
-    return [name for name, present in forces.items() if present]
-
-
-def link_names(of: RobotModel = FRANKA) -> set[str]:
-    """Return the names of the model's links."""
-    model, *_ = bare_robot(of=of)
-    return {model.body(k).name for k in range(model.nbody)}
-
-
 def link_poses(q: FloatArray, links: Sequence[str], of: RobotModel = FRANKA) -> Pose:
     """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
     import mujoco
 
     model, data, q_at, _ = bare_robot(of=of)
     bodies = [model.body(name).id for name in links]
-    position, orientation = (
-        np.empty((len(q), model.nbody, 3)),
-        np.empty((len(q), model.nbody, 4)),
-    )
-    joints = np.empty((len(q), model.nq))
-    joints[:, q_at] = q
-    qpos, xpos, xquat = data.qpos, data.xpos, data.xquat
-    for values, places, turns in zip(joints, position, orientation, strict=True):
-        qpos[:] = values
+    poses = []
+    for positions in q:
+        data.qpos[q_at] = positions
         mujoco.mj_kinematics(model, data)
-        places[:], turns[:] = xpos, xquat
-    return Pose(position[:, bodies], orientation[:, bodies])
+        poses.append((data.xpos[bodies], data.xquat[bodies]))
+    return Pose(*map(np.array, zip(*poses, strict=True)))
 
 
 def jacobian(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:

@@ -120,8 +120,8 @@ def test_a_study_case_with_a_second_factor_fails(experiments, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "spoil"),
     [
-        ("assigned", trace("assigned", qd=put((3, 1), 0.1))),
-        (IMPLICIT_G2, copied(IMPLICIT_G2, "G2")),
+        ("assigned", trace("assigned", q=put((3, 1), 0.1))),
+        (IMPLICIT_G2, copied(IMPLICIT_G2, "G3")),
     ],
 )
 def test_a_run_that_breaks_its_laws_is_named(experiments, name, spoil):

@@ -103,8 +103,8 @@ def test_the_lecture_compares_solver_steps_and_force_limits(reaches):
     ("change", "label"),
     [
         (moved_hand("unreachable", 1e-4), "link_pos"),
-        (trace("many_starts", internal_force=shift(..., 1e-6)), "internal_force"),
-        (copied("vertical", "horizontal"), "distance of the hand"),
+        (trace("many_starts", q=shift(3, 1e-4)), "q [rad"),
+        (trace("baseline", control_force=shift(9, 1.0)), "control_force"),
     ],
 )
 def test_a_run_that_breaks_a_law_is_found(reaches, change, label):

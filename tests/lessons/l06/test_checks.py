@@ -7,7 +7,6 @@ import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l06 import checks, spec
-from robo_genesis.lessons.l06.checks import laws_of_motion
 from robo_genesis.lessons.l06.run import commands
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
 from robo_genesis.sim.arm.kinematics import HAND
@@ -78,14 +77,6 @@ def test_each_check_of_the_page_has_such_a_change(worlds):
     assert failed(worlds) == set()
     names = {check.__name__ for check in worlds.page.checks}
     assert names == {name for name, _ in CHANGES} | {"laws_of_motion"}
-
-
-@pytest.mark.parametrize("by", [0.0, 0.1])
-def test_the_law_of_a_loaded_robot_knows_its_load(worlds, by):
-    page = replace(worlds.page, runs={LOADED: worlds.page.runs[LOADED]})
-    run = trace(LOADED, internal_force=shift((40, 1), by))(replace(worlds, page=page))
-    broken = [found.label for found in laws_of_motion(run) if not found.passed]
-    assert ["internal_force" in label for label in broken] == [True] * (by > 0)
 
 
 def test_the_lab_says_which_checks_fail_if_two_rows_are_swapped(worlds):

@@ -12,6 +12,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l07 import rest
 from robo_genesis.lessons.l07.rest_checks import REST
 from robo_genesis.sim.bodies.contacts import SETTINGS
+from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 
@@ -48,7 +49,7 @@ def run():
     ],
 )
 def test_the_formulas_give_known_values(changes, depth, creep):
-    found = rest.formulas(replace(rest.BOX, **changes))
+    found = depth_and_creep(replace(rest.BOX, **changes))
     assert found == pytest.approx((depth, creep), rel=5e-3)
 
 

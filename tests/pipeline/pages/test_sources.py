@@ -304,7 +304,7 @@ def test_a_module_that_computes_uses_none_that_presents(lesson):
             for each, path in used.items()
             if path.name != "__init__.py" and not tree.measures(each, path)
         }
-        assert shown <= {"spec", "project", "laws", "falling", "text"}, name
+        assert shown <= {"spec", "project", "laws", "text"}, name
 
 
 SAME = [

@@ -11,7 +11,6 @@ from robo_genesis.sim.arm.joint_control import differences, reset, run_case, val
 from robo_genesis.sim.arm.model import RobotModel
 from robo_genesis.sim.session import CaseError
 
-NOT_POSITIVE = ({"steps": 0}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
 ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")
 N = len(JOINT_NAMES)
 
@@ -91,12 +90,9 @@ def test_a_limit_of_float32_and_gains_of_zero_are_valid(joints):
             for name in ARRAYS
         ),
         ({"kp": 1.0}, "kp has shape (), expected (9,)"),
+        *((value(name, 2, np.nan), f"{name}[joint3] is nan") for name in ARRAYS),
         *(
-            (value(name, 2, np.nan), f"{name}[joint3] is nan, expected a fin")
-            for name in ARRAYS
-        ),
-        *(
-            (value(name, 0, -1.0), f"{name}[joint1] is -1.0, expected zero")
+            (value(name, 0, -1.0), f"{name}[joint1] is -1, outside its range [0, inf]")
             for name in ARRAYS[2:]
         ),
         (
@@ -108,7 +104,6 @@ def test_a_limit_of_float32_and_gains_of_zero_are_valid(joints):
             "finger_joint2] is 0.05 m, outside its range [0, 0.04]",
         ),
         (value("q_target", 0, 2.8973 + 5e-6), "none is clipped"),
-        *((change, "must be positive") for change in NOT_POSITIVE),
     ],
 )
 def test_an_invalid_case_is_refused_with_entry_and_range(joints, change, message):

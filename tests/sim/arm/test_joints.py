@@ -76,8 +76,6 @@ def test_the_map_follows_the_names_and_not_the_model():
         (("weld",), "'weld' has 0 DOFs and 0 qpos"),
         (("disc",), "'disc' has 1 DOFs and 2 qpos"),
         (("screw",), "'screw' has 2 DOFs and 1 qpos"),
-        (("shoulder", "shoulder"), r"shoulder, shoulder share DOFs: \[6, 6\]"),
-        (("shoulder", "twin"), r"shoulder, twin share DOFs: \[6, 6\]"),
     ],
 )
 def test_names_that_are_not_one_dof_each_are_refused(names, message):

@@ -1,6 +1,5 @@
 """Robots that are not the Franka: two hand-written arms, and a quadruped of the engine."""
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -124,25 +123,18 @@ def test_a_model_lies_in_a_lesson_or_among_the_assets_of_the_engine(name, owner)
     "case", [SLIDER, CRANE, PASSIVE], ids=["MJCF", "URDF", "passive"]
 )
 def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
-    links = sorted(mujoco_kinematics.link_names(case.model))
-    run, how = driven(case, links), (0.005, "implicitfast")
-    again = mujoco_joints.run_case(case, links, *how)
-    assert [*laws.driven_run(run, case, links)] == []
-    assert [*laws.driven_in_mujoco(again, case, links, *how)] == []
+    robot = mujoco_kinematics.bare_robot(of=case.model)[0]
+    links = [robot.body(k).name for k in range(robot.nbody)]
+    run = driven(case, links)
+    for trace in (run, mujoco_joints.run_case(case, links, 0.005)):
+        assert [*laws.driven_run(trace, case, links)] == []
     stiff = replace(
         case, kp=5e3 * case.kp, kv=5e3 * case.kv, effort_limit=1e5 * case.effort_limit
     )
     assert [*laws.driven_run(driven(stiff, links), stiff, links)] == []
-    text = (
-        FILES[case.model.file]
-        .replace('size="0.04"', 'size="0.05"')
-        .replace('"3"', '"6"')
-    )
-    (folder / f"heavy-{case.model.file}").write_text(text)
-    heavy = replace(case, model=replace(case.model, file=f"heavy-{case.model.file}"))
-    assert {found.code for found in laws.driven_run(run, heavy, links)} == {"motion"}
-    other = next(of for of in (SLIDER, CRANE) if of != case)
-    assert next(laws.driven_run(run, other, links)).label == "number of DOFs"
+    other = next(one for one in (SLIDER, CRANE) if one != case)
+    with pytest.raises((ValueError, KeyError)):
+        [*laws.driven_run(run, other, links)]
 
 
 @pytest.mark.parametrize(
@@ -169,33 +161,17 @@ def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
         ("arm.xml", 'name="fore"', "<", "MuJoCo cannot read .*arm.xml: .*XML"),
         ("arm.xml", "tool.xml", "none.xml", "MuJoCo cannot read .*arm.xml: .*none.xml"),
         ("arm.urdf", '<mass value="1"/>', "", "MuJoCo cannot read .*arm.urdf"),
-        (
-            "arm.xml",
-            'name="lift"',
-            'name="lift" stiffness="3"',
-            "forces .* is stiffness of joints",
-        ),
-        (
-            "arm.xml",
-            'name="lift"',
-            'name="lift" frictionloss="3"',
-            "forces .* is frictionloss",
-        ),
-        ("arm.xml", 'name="fore"', 'name="fore" gravcomp="1"', "forces .* is gravcomp"),
     ],
 )
-def test_a_model_that_no_law_knows_is_refused_by_name(folder, file, old, new, message):
-    case = next(of for of in (SLIDER, CRANE) if of.model.file == file)
-    run = driven(case, ["base"])
+def test_a_model_that_is_not_as_it_is_declared_is_named(
+    folder, file, old, new, message
+):
+    model = next(one.model for one in (SLIDER, CRANE) if one.model.file == file)
     assert old in FILES[file] + TOOL
     name = f"changed-{abs(hash(new))}-{file}"
     (folder / name).write_text(FILES[file].replace(old, new))
-    changed = replace(case, model=replace(case.model, file=name))
-    try:
-        found = next(laws.driven_run(run, changed, ["base"])).problem
-    except ModelError as error:
-        found = str(error)
-    assert re.search(message, found)
+    with pytest.raises(ModelError, match=message):
+        mujoco_kinematics.bare_robot(of=replace(model, file=name))
 
 
 @pytest.fixture(scope="module")
@@ -225,10 +201,7 @@ def test_any_arm_is_the_same_in_both_engines(robots, case):
     page = SimpleNamespace(readings={})
     joints = describe(page, robot, of)
     trace = run_case(robots.scene, robot, joints, case)
-    assert [
-        *laws.driven_run(trace, case, page.links),
-        *laws.model_joints(joints, of),
-    ] == []
+    assert [*laws.driven_run(trace, case, page.links)] == []
     dofs, hand = joints.dofs_idx_local.tolist(), robot.get_link(of.hand)
     robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)
     position, quat = (
@@ -262,13 +235,9 @@ def test_a_quadruped_drives_its_legs_and_what_needs_a_fixed_base_says_so(robots)
     joints = describe(page, robot, of)
     assert page.readings["model"] == {"links": 13, "joints": 13, "dofs": 18, "qpos": 19}
     trace = run_case(robots.scene, robot, joints, DOG)
-    assert [*laws.commanded(trace, DOG, page.links)] == []
+    assert [*laws.driven_run(trace, DOG, page.links)] == []
     hand, at = replace(of, hand="base"), (robots.scene, robot, joints, DOG.q_start)
     for refused, message in (
-        (
-            lambda: [*laws.driven_run(trace, DOG, page.links)],
-            "a base that moves freely",
-        ),
         (
             lambda: mujoco_kinematics.jacobian(DOG.q_start, hand),
             "a base that moves freely",

@@ -43,17 +43,3 @@ def test_a_recorded_view_differs_in_the_rounding_of_its_depth_alone(tmp_path, vi
         assert (getattr(found, name) == getattr(view, name)).all()
     assert (found.size, found.limits) == (view.size, view.limits)
     assert np.abs(found.depth - view.depth).max() <= view_record.DEPTH_UNIT
-
-
-def test_a_depth_that_does_not_fit_is_refused(view):
-    far = View(
-        K,
-        view.transform,
-        CAMERA_RES,
-        (0.1, 500.0),
-        view.rgb,
-        view.depth * 20,
-        view.segmentation,
-    )
-    with pytest.raises(ValueError, match="Choose a nearer far limit"):
-        view_record.frames("world", far)

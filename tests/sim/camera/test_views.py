@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from robo_genesis.sim.camera import views as camera_views
-from robo_genesis.sim.camera.views import ViewError
 
 WIDTH, HEIGHT = 8, 5
 SCENE = SimpleNamespace(segmentation_idx_dict={0: -1, 1: (0, 0), 2: (3, 14)})
@@ -60,21 +59,3 @@ def test_without_rendering_there_are_matrix_and_present_pose_but_no_pictures(cam
 def test_a_link_has_one_number_in_the_segmentation():
     link = SimpleNamespace(entity=SimpleNamespace(idx=3), idx=14)
     assert camera_views.segment_number(SCENE, link) == 2
-    for keys in (
-        {0: -1, 1: 0, 2: 3},
-        {0: -1, 1: (0, 0, 2)},
-    ):  # level entity, level geom
-        with pytest.raises(
-            ViewError, match="Leave the scene's segmentation_level at 'link'"
-        ):
-            camera_views.segment_number(
-                SimpleNamespace(segmentation_idx_dict=keys), link
-            )
-
-
-def test_pictures_with_rows_and_columns_swapped_are_refused(camera):
-    camera.rgb = np.zeros((WIDTH, HEIGHT, 3), np.uint8)
-    with pytest.raises(
-        ViewError, match=r"rgb has shape \(8, 5, 3\), expected \(5, 8, 3\)"
-    ):
-        camera_views.look(camera)

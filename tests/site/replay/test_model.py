@@ -185,8 +185,6 @@ def test_links_of_a_body_can_have_other_names():
     (read,) = visual_shape.read_shape(box)
     assert (read.link, len(read.faces)) == ("box_baselink", 12)
     assert visual_shape.read_shape(box, ["left"])[0].link == "left"
-    with pytest.raises(ValueError, match="2 names given for 1 links: box_baselink"):
-        visual_shape.read_shape(box, ["left", "right"])
 
 
 def test_copies_of_links_stand_translucent_at_their_target(model):
