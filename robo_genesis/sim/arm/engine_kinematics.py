@@ -10,7 +10,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.joints import JointMap, require_whole, to_numpy
 from robo_genesis.sim.arm.kinematics import Pose, accepted, distances, hand_pose, rotate
-from robo_genesis.sim.arm.model import ModelError, RobotModel
+from robo_genesis.sim.arm.model import RobotModel
 
 END_EFFECTOR = FRANKA.hand
 
@@ -90,14 +90,9 @@ def solve_ik(
 
     Raises:
         KinematicsError: an array has the wrong shape, or a value that is not finite.
-        ModelError: the joints are those of another robot, or its base moves freely.
+        ModelError: the robot has further DOFs, such as those of a free base.
     """
     require_whole(robot, joints)
-    if {*joints.names} != {*of.joints} or not of.hand:
-        raise ModelError(
-            f"The map has the joints {', '.join(joints.names)}. {of.file} has hand {of.hand!r} and "
-            f"{', '.join(of.joints)}. Give the RobotModel of this robot, with a hand, as `of`."
-        )
     d, count = len(joints.names), robot.scene.n_envs
     rows = () if count == 0 else (count if envs is None else len(envs),)
     require_finite("position", position, (*rows, 3))

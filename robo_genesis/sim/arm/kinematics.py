@@ -101,16 +101,8 @@ def link_poses(q: FloatArray) -> Pose:
 
     Returns:
         Positions (…, 8, 3) [m] and orientations (…, 8, 4).
-
-    Raises:
-        ValueError: there are fewer than seven, so these are not those of the Franka.
     """
     q = np.asarray(q, dtype=float)
-    if q.shape[-1] < ARM:
-        raise ValueError(
-            f"{q.shape[-1]} joint positions given, expected {ARM} of the Franka or more. For "
-            "another arm call sim.mujoco.kinematics.link_poses with its RobotModel."
-        )
     at, turn = (
         np.zeros(3),
         np.array([1.0, 0.0, 0.0, 0.0]),

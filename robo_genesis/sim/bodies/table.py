@@ -101,14 +101,10 @@ class SceneCase(Controlled):
     def corners(self, centre: FloatArray) -> FloatArray:
         """Return corners (n, 3) of the upright object, 64 for each circle of a cylinder [m]."""
         around = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-        square, circle = (
-            [(-1, -1), (-1, 1), (1, -1), (1, 1)],
-            [np.cos(around), np.sin(around)],
-        )
-        plan = np.array(square) if self.shape == "box" else np.stack(circle, axis=1)
-        levels = [
-            np.column_stack([plan, np.full(len(plan), side)]) for side in (-1.0, 1.0)
-        ]
+        plan = np.column_stack([np.cos(around), np.sin(around)])
+        if self.shape == "box":
+            plan = np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])
+        levels = [np.insert(plan.astype(float), 2, side, axis=1) for side in (-1, 1)]
         return np.asarray(centre) + np.vstack(levels) * np.array(self.size) / 2
 
 

@@ -101,22 +101,11 @@ def with_data(
     import mujoco
 
     names = [model.joint(k).name for k in range(model.njnt)]
-    if (
-        sorted(names) != sorted(of.joints)
-        or model.nq != model.njnt
-        or model.nv != model.njnt
-    ):
-        kinds = [
-            mujoco.mjtJoint(kind).name[len("mjJNT_") :].lower()
-            for kind in model.jnt_type
-        ]
-        named = zip(names, kinds, strict=True)
-        found = ", ".join(
-            f"{name or 'without a name'} ({kind})" for name, kind in named
-        )
+    if sorted(names) != sorted(of.joints) or not model.nq == model.nv == model.njnt:
         raise ModelError(
-            f"{of.file} has the joints {found}; its RobotModel names {', '.join(of.joints)}. "
-            "Name each joint in the file and in `joints`. Valid kinds are hinge and slide."
+            f"{of.file} has the joints {', '.join(names)}; its RobotModel names "
+            f"{', '.join(of.joints)}. Name each joint in the file and in `joints`. Valid kinds "
+            "are hinge and slide."
         )
     joints = [model.joint(name) for name in of.joints]
     q_at, dof_at = (

@@ -101,11 +101,6 @@ def test_rows_belong_to_all_environments_or_to_those_that_are_named(joints, rows
             {"n_dofs": 15},
             "The robot has 15 DOFs, the map 9, .* a fixed base and all of its joints",
         ),
-        ({"of_robot": replace(FRANKA, hand="")}, "has hand '' and joint1"),
-        (
-            {"of_robot": replace(FRANKA, joints=("a",))},
-            "The map has the joints joint1.* and a",
-        ),
     ],
 )
 def test_a_question_of_the_wrong_form_is_refused(joints, given, message):

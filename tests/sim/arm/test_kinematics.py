@@ -32,13 +32,6 @@ def test_poses_and_jacobian_of_many_postures_agree_with_mujoco_and_with_differen
         assert of.pose_error(*ends) / (2 * h) == pytest.approx(rows.T, abs=1e-7)
 
 
-def test_joint_positions_of_another_arm_are_refused():
-    with pytest.raises(
-        ValueError, match="6 joint positions given, expected 7 of the Franka"
-    ):
-        of.hand_pose(np.zeros(6))
-
-
 def test_manipulability_is_the_root_of_the_determinant_and_vanishes_at_a_singularity():
     rows = of.jacobian(Q_START)
     assert of.manipulability(rows) == pytest.approx(
