@@ -117,9 +117,7 @@ def read_build(
         if page.docname in failed:
             continue
         for folder in folders(root / ".cache" / STORE, page):
-            with suppress(
-                PageRefused
-            ):  # of an older form, or damaged: no build of today
+            with suppress(PageRefused):  # it is not of a build of today
                 record = read_record(folder)
                 bundle = find_bundle(folder / OUTPUTS, record.run_id)
                 current = record.engine == version and record.code == code_digest(page)
