@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.text import printable, quoted
 
 AGAIN = "Record the bundle again."
@@ -38,7 +39,9 @@ def expect(
         remedy: what to do.
     """
     if found != expected:
-        raise unexpected(code, file, what, found, expected, remedy)
+        here, there = quoted(found), quoted(expected)
+        message = f"{file}: {what} is {here}, expected {there}. {remedy}"
+        raise BundleRefused(code, message)
 
 
 def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> None:
@@ -54,25 +57,5 @@ def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> 
         found: the value in the bundle.
         expected: the valid value.
     """
-    from robo_genesis.core.comparison import (
-        agree,
-        differences,
-    )  # not in a build without work
-
     for path, here, there in differences(found, expected, agree):
-        raise unexpected(code, file, what.format(path), here, there)
-
-
-def unexpected(
-    code: str,
-    file: str,
-    what: str,
-    found: object,
-    expected: object,
-    remedy: str = AGAIN,
-) -> BundleRefused:
-    """Return the refusal of a value; see `expect`."""
-    here, there = quoted(found), quoted(expected)
-    if here == there:  # they differ in later digits
-        here, there = repr(found), repr(expected)
-    return BundleRefused(code, f"{file}: {what} is {here}, expected {there}. {remedy}")
+        expect(code, file, what.format(path), repr(here), repr(there))

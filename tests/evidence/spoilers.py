@@ -153,24 +153,6 @@ def changed_at(index, value):
     return change
 
 
-def log(old, new):
-    """Replace text in the log."""
-    return lambda folder: write(LOG, (folder / LOG).read_text().replace(old, new))(
-        folder
-    )
-
-
-def last_bit(array):
-    return np.nextafter(array, np.float32(np.inf))
-
-
-def measured_elsewhere(folder):
-    """Make a bundle that of another run, with an array of each case that differs a little."""
-    facts(run_id="d" * 32)(folder)
-    for path in (folder / "arrays").glob("*.npz"):
-        rewrite(path.stem, internal_force=last_bit)(folder)
-
-
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
     run = from_bundle(folder, bundle.read_manifest(folder), bundle.read_metrics(folder))

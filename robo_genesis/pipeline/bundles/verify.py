@@ -15,7 +15,7 @@ from robo_genesis.core.scene import SEED
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import MANIFEST, Manifest
-from robo_genesis.evidence.recompute import as_judged_today, recompute
+from robo_genesis.evidence.recompute import recompute
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages.book import code_digest, find_pages
@@ -174,7 +174,7 @@ def verify_bundle(
             All other rules apply each time, and a refusal is not kept.
 
     Returns:
-        The accepted manifest; its checks have today's verdicts.
+        The accepted manifest.
 
     Raises:
         BundleRefused: with a code, and a message that names the found and the expected
@@ -197,7 +197,7 @@ def verify_bundle(
         derived_value("accepted", inputs, lambda: recompute(folder, manifest))
     else:
         recompute(folder, manifest)
-    return as_judged_today(manifest)
+    return manifest
 
 
 @lru_cache(maxsize=1)

@@ -1,6 +1,5 @@
 """The panel of a reference run shows its bundle, or why it does not."""
 
-import dataclasses
 import shutil
 from collections import defaultdict
 from types import SimpleNamespace
@@ -9,7 +8,7 @@ import pytest
 from bundles import engine_on, written
 from docutils import nodes
 from docutils.utils import new_document
-from spoilers import edit, facts, on, part
+from spoilers import on
 from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core import project
@@ -17,83 +16,20 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.files import put
 from robo_genesis.evidence import bundle, recorder, report
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import ledger as sphinx_ledger
 from robo_genesis.site.evidence import ledger_data, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.runs import PageRun
-from robo_genesis.site.replay import recorded_runs
 
 FILMED = Replay(("G1",), "box", "box")
-SCRIPT = "<script>alert(1)</script>"
-ATTACKS = (
-    SCRIPT,
-    "![a](//a.org/x)",
-    ":::{raw} html",
-    "| a | **b** |",
-    "&lt;b&gt; $x$ \\(x\\) `y`",
-)
-PLAIN = {
-    "container",
-    "paragraph",
-    "strong",
-    "literal",
-    "literal_block",
-    "table",
-    "tgroup",
-    "colspec",
-    "thead",
-    "tbody",
-    "row",
-    "entry",
-}
-"""The nodes of text that no parser read."""
-
-
-@pytest.mark.parametrize("attack", ATTACKS)
-def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
-    folder, tmp_path, attack
-):
-    fields = ("device_name", "torch_version", "hip_version", "cuda_version", "driver")
-    part("backend", **dict.fromkeys(fields, attack))(folder)
-    part("render", renderer=attack)(folder)
-    facts(environment={"GS_LOG": attack})(folder)
-    status = Status("stale", attack, "", None, "stale", attack)
-    run = PageRun("l04/lab", tmp_path / attack[:3], status, recorded=True)
-    table = sphinx_panel.backend_facts(bundle.read_manifest(folder))
-    withheld = nodes.container("", *sphinx_panel.withheld(run))
-    assert [block.astext().count(attack) for block in (table, withheld)] == [7, 4]
-    made = {n.tagname for of in (table, withheld) for n in of.findall(nodes.Element)}
-    assert made == PLAIN
 
 
 def write_shape(folder, tmp_path):
     """Let this build's lecture have the shape of a bundle's links."""
     parts = [box(link) for link in bundle.read_arrays(folder).coords["link"]]
     visual_shape.write_shape(tmp_path / "l04" / "lecture" / "cpu", parts)
-
-
-def test_what_a_run_says_reaches_no_parser(tmp_path, record, monkeypatch):
-    said, parse = [], Panel.parse_text_to_nodes
-    monkeypatch.setattr(
-        Panel,
-        "parse_text_to_nodes",
-        lambda self, text: said.append(text) or parse(self, text),
-    )
-    folder = record().folder
-    edit(folder, "arrays.json", lambda a: a["coords"].update(link=[SCRIPT, "b", "c"]))
-    part("render", mode="camera", renderer=SCRIPT)(folder)
-    write_shape(folder, tmp_path)
-    trace = read_any_trace(folder, bundle.read_arrays(folder), "G1")
-    turned = dataclasses.replace(trace, link_pos=trace.link_pos[:, [2, 1, 0]])
-    monkeypatch.setattr(recorded_runs, "read_any_trace", lambda *asked: turned)
-    monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: [])
-    panel = Panel(tmp_path / "book").panel(accepted("l04/lab", folder, recorded=True))
-    raw = [node.astext() for node in panel.findall(nodes.raw)]
-    assert f"camera frames by {SCRIPT}" in panel.astext()
-    assert not [text for text in (*said, *raw) if SCRIPT in text]
 
 
 def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, tmp_path):
