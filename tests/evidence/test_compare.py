@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from bundles import QUADRANTS
 from spoilers import (
+    CHECKS,
     METRICS,
     both,
     changed_at,
@@ -174,7 +175,7 @@ failed = check(3, passed=False)
             "metric.G1.overshoot",
         ),
         (same, joint(3, lower=None), "Coverage", "joint.joint4.lower"),
-        (failed, failed, "Invariants", "baseline_approaches"),
+        (failed, failed, "Invariants", CHECKS[3]),
         (
             same,
             part("engine", files_match_wheel=False),
