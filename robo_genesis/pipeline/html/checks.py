@@ -12,6 +12,7 @@ from robo_genesis.core.project import ROOT
 
 # Each page has this policy: the browser itself then loads nothing from another host.
 # `file:` is for a site that is read from disk.
+POLICY_NAME = "Content-Security-Policy"
 POLICY = "default-src 'self' file: data: blob: 'unsafe-inline'"
 
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
@@ -72,7 +73,7 @@ class PageReader(HTMLParser):
         if tag == "svg" and "drawing" in given.get("class", "").split():
             source = given.get("data-file", "")
             self.alt_texts.append((given.get("aria-label", ""), source))
-        if given.get("http-equiv") == "Content-Security-Policy":
+        if given.get("http-equiv") == POLICY_NAME:
             self.policies.append(given.get("content"))
 
     def handle_endtag(self, tag: str) -> None:
@@ -110,41 +111,6 @@ class Site:
     def name(self, path: Path) -> str:
         """Return a file's name for messages."""
         return path.relative_to(self.root).as_posix()
-
-
-Finder = Callable[[Site, Path, PageReader], Iterator[str]]
-
-
-def run_checks(site: Site) -> list[SiteCheck]:
-    """Run all checks on a site.
-
-    | check | requirement |
-    |---|---|
-    | links | each address inside the site leads to a file, each fragment to an element |
-    | anchors | no two elements of a page have one id |
-    | alt texts | each image has a text that is neither empty nor a file name nor a hash |
-    | third parties | nothing is loaded from another host; readers may follow links |
-    | leftovers | no page shows unprocessed markup |
-    | private paths | no published file names the builder's home or checkout |
-    """
-    pages = site.pages.values()
-    return [
-        _check(site, "links", _broken_links, sum(len(p.addresses) for p in pages)),
-        _check(site, "anchors", _repeated_anchors, sum(len(p.anchors) for p in pages)),
-        _check(site, "alt texts", _bad_alt_texts, sum(len(p.alt_texts) for p in pages)),
-        _check(site, "third parties", _foreign, sum(len(p.loaded) for p in pages)),
-        _check(site, "leftovers", _leftovers, len(pages)),
-        private_paths(site.root.parent),
-    ]
-
-
-def _check(site: Site, name: str, find: Finder, count: int) -> SiteCheck:
-    problems = [
-        f"{site.name(path)}: {problem}"
-        for path, page in site.pages.items()
-        for problem in dict.fromkeys(find(site, path, page))
-    ]
-    return SiteCheck(name, count, tuple(problems))
 
 
 def _broken_links(site: Site, path: Path, page: PageReader) -> Iterator[str]:
@@ -189,7 +155,7 @@ def _bad_alt_texts(site: Site, path: Path, page: PageReader) -> Iterator[str]:
 
 def _foreign(site: Site, path: Path, page: PageReader) -> Iterator[str]:
     if POLICY not in page.policies:
-        yield f"has no Content-Security-Policy {POLICY!r}."
+        yield f"has no {POLICY_NAME} {POLICY!r}."
     yield from filter(ELSEWHERE.match, page.loaded)
 
 
@@ -197,6 +163,40 @@ def _leftovers(site: Site, path: Path, page: PageReader) -> Iterator[str]:
     for text in page.texts:
         if LEFTOVERS.search(text):
             yield repr(text.strip()[:80])
+
+
+# By its name, what a check examines on a page, and what finds the problems.
+CHECKS: dict[str, tuple[str, Callable[[Site, Path, PageReader], Iterator[str]]]] = {
+    "links": ("addresses", _broken_links),
+    "anchors": ("anchors", _repeated_anchors),
+    "alt texts": ("alt_texts", _bad_alt_texts),
+    "third parties": ("loaded", _foreign),
+    "leftovers": ("texts", _leftovers),
+}
+
+
+def run_checks(site: Site) -> list[SiteCheck]:
+    """Run all checks on a site.
+
+    | check | requirement |
+    |---|---|
+    | links | each address inside the site leads to a file, each fragment to an element |
+    | anchors | no two elements of a page have one id |
+    | alt texts | each image has a text that is neither empty nor a file name nor a hash |
+    | third parties | nothing is loaded from another host; readers may follow links |
+    | leftovers | no page shows unprocessed markup |
+    | private paths | no published file names the builder's home or checkout |
+    """
+    checks = [private_paths(site.root.parent)]
+    for name, (examined, find) in CHECKS.items():
+        problems = [
+            f"{site.name(path)}: {problem}"
+            for path, page in site.pages.items()
+            for problem in dict.fromkeys(find(site, path, page))
+        ]
+        count = sum(len(getattr(page, examined)) for page in site.pages.values())
+        checks.append(SiteCheck(name, count, tuple(problems)))
+    return checks
 
 
 def private_paths(published: Path) -> SiteCheck:

@@ -6,13 +6,12 @@ flashes.
 
 import shutil
 from pathlib import Path
-from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
-from robo_genesis.pipeline.html.checks import POLICY
+from robo_genesis.pipeline.html.checks import POLICY, POLICY_NAME
 from robo_genesis.site.figures import drawings
 from robo_genesis.site.frame import accessibility
 
@@ -52,26 +51,15 @@ CHOOSE_THEME = """
 TITLE = "page-title"  # The anchor of a title that has no other
 
 
-def note_page(
-    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Note that a page is written in this build; the pages of earlier builds are finished."""
-    written(app).add(page)
-
-
-def written(app: Sphinx) -> set[str]:
-    """Return the names of the pages that this build has written so far."""
-    return vars(app.builder).setdefault("robo_genesis_written", set())
-
-
 def finish_site(app: Sphinx, error: Exception | None) -> None:
-    """Finish the pages that Sphinx has written."""
+    """Finish the pages that Sphinx has written; earlier ones have the policy already."""
     if error is None:
-        drop_unused_files(Path(app.outdir))
-        for page in sorted(written(app)):
-            path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
-            path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
-    written(app).clear()
+        site = Path(app.outdir)
+        drop_unused_files(site)
+        for path in site.rglob("*.html"):
+            html = path.read_text("utf8")
+            if f'http-equiv="{POLICY_NAME}"' not in html:
+                path.write_text(finish_page(html, path.parent), "utf8")
 
 
 def finish_page(html: str, folder: Path) -> str:
@@ -96,7 +84,7 @@ def finish_page(html: str, folder: Path) -> str:
 
 def forbid_other_hosts(page: BeautifulSoup) -> None:
     """Let the browser itself refuse whatever would be loaded from another host."""
-    policy = {"http-equiv": "Content-Security-Policy", "content": POLICY}
+    policy = {"http-equiv": POLICY_NAME, "content": POLICY}
     if page.head:
         page.head.insert(0, page.new_tag("meta", attrs=policy))
 
@@ -180,6 +168,5 @@ def drop_unused_files(html: Path) -> None:
 
 def setup(app: Sphinx) -> None:
     """Register the extension; see the module's summary."""
-    app.connect("html-page-context", note_page)
     # After the theme, which writes the colours of code then.
     app.connect("build-finished", finish_site, priority=900)

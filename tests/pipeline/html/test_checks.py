@@ -41,12 +41,12 @@ def test_a_good_site_passes_and_everything_was_looked_at(tmp_path):
     checks = {check.name: check for check in run_checks(Site(make_site(tmp_path)))}
     assert not any(check.problems for check in checks.values())
     counts = {name: check.count for name, check in checks.items()}
+    assert counts.pop("leftovers") > 3
     assert counts == {
         "links": 8,
         "anchors": 5,
         "alt texts": 1,
         "third parties": 1,
-        "leftovers": 3,
         "private paths": 4,
     }
 
