@@ -11,9 +11,10 @@ from urllib.parse import unquote, urldefrag, urlsplit
 from robo_genesis.core.project import ROOT
 
 # Each page has this policy: the browser itself then loads nothing from another host.
-# `file:` is for a site that is read from disk.
+# `file:` is for a site that is read from disk; the viewer of the replays compiles
+# WebAssembly.
 POLICY_NAME = "Content-Security-Policy"
-POLICY = "default-src 'self' file: data: blob: 'unsafe-inline'"
+POLICY = "default-src 'self' file: data: blob: 'unsafe-inline' 'unsafe-eval'"
 
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # Links of these kinds name a page for readers or crawlers; no browser loads it.
