@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.text import printable, quoted
 
 AGAIN = "Record the bundle again."
@@ -57,5 +56,8 @@ def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> 
         found: the value in the bundle.
         expected: the valid value.
     """
+    # A host that only starts a container has no NumPy.
+    from robo_genesis.core.comparison import agree, differences
+
     for path, here, there in differences(found, expected, agree):
         expect(code, file, what.format(path), repr(here), repr(there))
