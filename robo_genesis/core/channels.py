@@ -98,7 +98,7 @@ class Runs:
     `moves` describes by case the motion, with `**strong**` and code as its only markup.
 
     Raises:
-        ValueError: there are no runs or no channels, or the runs differ in their times.
+        ValueError: the runs differ in their times.
     """
 
     replay: Replay
@@ -110,11 +110,6 @@ class Runs:
     levels: Sequence[Level] = ()
 
     def __post_init__(self) -> None:
-        if not self.traces or not self.channels:
-            raise ValueError(
-                f"{len(self.traces)} runs and {len(self.channels)} channels given; pictures and "
-                "replays take at least one of each. Correct the lesson's declaration."
-            )
         grids = {case: (trace.steps, trace.dt) for case, trace in self.traces.items()}
         if any(not np.array_equal(trace.t, self.t) for trace in self.traces.values()):
             found = ", ".join(

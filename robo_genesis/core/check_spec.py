@@ -35,3 +35,13 @@ TOLERANCES = {
     "s": (0.0, 0.0),
     "link_quat_wxyz": (1e-4, 0.0),
 }
+
+# The same of a body that falls freely, and touches nothing.
+FALL_TOLERANCES = {
+    "m": (2e-6, 0.0),
+    "m/s": (2e-5, 0.0),
+    "rad/s": (1e-6, 0.0),
+    "s": (0.0, 0.0),
+    "kg": (1e-6, 0.0),
+    "link_quat_wxyz": (1e-6, 0.0),
+}

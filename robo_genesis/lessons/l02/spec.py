@@ -8,6 +8,7 @@ judge.
 from dataclasses import replace
 from typing import Any
 
+from robo_genesis.core.check_spec import FALL_TOLERANCES
 from robo_genesis.core.experiment import case_inputs, inputs
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
 from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS, Drop
@@ -113,15 +114,7 @@ COUNTS = {
 # By unit, the difference below which two values count as equal.
 RESOLUTION = {"m": 1e-6, "m/s": 1e-5, "rad/s": 1e-6, "s": DT / 2, "kg": 1e-6, "1": 0.5}
 
-# By unit or array, (atol, rtol) of one value between engine versions or backends.
-TOLERANCES = {
-    "m": (2e-6, 0.0),
-    "m/s": (2e-5, 0.0),
-    "rad/s": (1e-6, 0.0),
-    "s": (0.0, 0.0),
-    "kg": (1e-6, 0.0),
-    "link_quat_wxyz": (1e-6, 0.0),
-}
+TOLERANCES = FALL_TOLERANCES
 
 # A single run claims no ordering.
 RELATIONS = ()

@@ -121,39 +121,24 @@ def defined(run: Experiment) -> Figure:
     q = trace.q[:, ENTRY]
     _target(ax, trace)
     ax.plot(trace.t, q, marker=".", markersize=6, **look("further"))
+    settling = "settling time, in the band\nfrom here on:"
+    arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9}
     for value, unit, time, name, height, start in (
         (m.rise_time, "s", m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
-        (
-            m.settling_time,
-            "s",
-            m.settling_time,
-            "settling time, in the band\nfrom here on:",
-            0.42,
-            (0.35, 1),
-        ),
+        (m.settling_time, "s", m.settling_time, settling, 0.42, (0.35, 1)),
         (m.overshoot, "rad", trace.t[q.argmax()], "overshoot:", 0.94, (0, 0.5)),
         (m.final_error, "rad", START, "final error:", 0.62, (0.8, 1)),
     ):
         if time is not None:
             at = int(np.abs(trace.t - time).argmin())
-            arrow = {
-                "arrowstyle": "->",
-                "color": LINE["color"],
-                "linewidth": 0.9,
-                "relpos": start,
-            }
-            text, place = (
+            ax.annotate(
                 f"{name} {format_value(value, unit)}",
                 (float(trace.t[at]), float(q[at])),
-            )
-            ax.annotate(
-                text,
-                place,
                 (0.98, height),
                 textcoords="axes fraction",
                 ha="right",
                 va="center",
-                arrowprops=arrow,
+                arrowprops=arrow | {"relpos": start},
             )
     ax.set_xlim(-0.005, START)
     plotting.finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]")
@@ -172,27 +157,16 @@ def _target(ax: Axes, trace: Trace) -> None:
 
 def theory(run: Experiment) -> Figure:
     """Draw the compared cases over the ideal joint's response, one case on each axes."""
-    start, t, figure = (
-        spec.BASELINE.q_start[ENTRY],
-        run.traces["G1"].t,
-        plotting.figure(7),
-    )
-    axes = figure.subplots(len(study_spec.COMPARED), 1, sharex=True)
-    for ax, name in zip(axes, study_spec.COMPARED, strict=True):
+    start, t = spec.BASELINE.q_start[ENTRY], run.traces["G1"].t
+    figure = plotting.figure(7)
+    axes = figure.subplots(len(COMPARED), 1, sharex=True)
+    for ax, name in zip(axes, COMPARED, strict=True):
         ideal = start + spec.STEP * study.ideal(run, name).response(t)
+        curve = run.traces[name].q[:, ENTRY]
         ax.axhline(start + spec.STEP, **LINE)
         ax.plot(t, ideal, label="ideal joint", **IDEAL)
-        ax.plot(
-            t, run.traces[name].q[:, ENTRY], label="measured", **look(CASE_MARKS[name])
-        )
-        ax.set(
-            title=name,
-            xlim=(0, 0.4),
-            xlabel="time [s]",
-            ylabel=f"q of {STEPPED_JOINT} [rad]",
-        )
-        ax.legend(loc="lower right")
-        ax.label_outer()
+        ax.plot(t, curve, label="measured", **look(CASE_MARKS[name]))
+        _beginning(ax, name, f"q of {STEPPED_JOINT} [rad]")
     return figure
 
 
@@ -209,10 +183,15 @@ def step_size(run: Experiment) -> Figure:
         small, large = study.share(run, name, "small"), study.share(run, name)
         ax.plot(t, small, label=f"+{study_spec.SMALL_STEP:g} rad", **look("other"))
         ax.plot(t, large, label=f"+{spec.STEP:g} rad", **look(CASE_MARKS[name]))
-        ax.set(title=name, xlim=(0, 0.4), xlabel="time [s]", ylabel="share of the step")
-        ax.legend(loc="lower right")
-        ax.label_outer()
+        _beginning(ax, name, "share of the step")
     return figure
+
+
+def _beginning(ax: Axes, title: str, ylabel: str) -> None:
+    """Show the beginning of a response."""
+    ax.set(title=title, xlim=(0, START), xlabel="time [s]", ylabel=ylabel)
+    ax.legend(loc="lower right")
+    ax.label_outer()
 
 
 def overshoot_by_step(run: Experiment) -> Figure:

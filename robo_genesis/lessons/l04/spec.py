@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l04.metrics import (
@@ -93,18 +94,13 @@ RELATIONS = tuple(
 
 # By unit, or by metric or array: (atol, rtol) of a value between engine versions or
 # backends. A time on the grid of samples must not move at all; counts are exact.
-TOLERANCES = {
+TOLERANCES = check_spec.TOLERANCES | {
     "rad": (1e-4, 1e-3),
-    "rad/s": (1e-3, 1e-3),
     "s": (DT / 2, 0.0),
-    "N·m": (1e-2, 1e-3),
     "kg·m²": (1e-4, 1e-3),
     "N·m·s/rad": (1e-6, 0.0),
     "initial_error": (1e-6, 0.0),
     "m": (1e-4, 1e-3),
-    "m/s": (1e-3, 1e-3),
-    "N": (1e-2, 1e-3),
-    "link_quat_wxyz": (1e-4, 0.0),
 }
 
 LIMIT_EXCESS = 1e-3  # Tolerance of a control force above its limit [N·m or N]

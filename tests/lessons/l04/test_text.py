@@ -1,11 +1,8 @@
 """The generated interpretation is right for every outcome, and its sentences are whole."""
 
-import re
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from robo_genesis.lessons.l04 import tables, text
 from robo_genesis.lessons.l04.metrics import StepMetrics
@@ -38,28 +35,6 @@ def test_the_lab_says_what_the_runs_show(experiment, says):
 def test_no_difference_is_attributed_to_several_factors():
     sentence = text.factor_sentence(("G1", "G2"), ["a", "b"])
     assert "differ in `a`, `b`, so no difference" in sentence
-
-
-TIMES = st.none() | st.floats(0, 1.2)
-METRICS = st.builds(
-    replace,
-    st.just(MEASURED),
-    rise_time=TIMES,
-    settling_time=TIMES,
-    overshoot=st.floats(0, 0.2),
-    final_velocity=st.floats(-5, 5),
-    saturation_samples=st.integers(0, 120),
-)
-
-
-@given(found=st.tuples(METRICS, METRICS, METRICS))
-def test_every_outcome_gives_four_blocks_without_an_absolute_claim(experiment, found):
-    by_case = dict(zip(("G1", "G2", "G3"), found, strict=True))
-    told = text.conclusions(with_metrics(experiment, **by_case))
-    assert re.findall(r"\*\*(\d)\.", told) == ["1", "2", "3", "4"]
-    assert not re.search(
-        r"\b(always|universally|never|nan|none|inf)\b", told, re.IGNORECASE
-    )
 
 
 @pytest.mark.parametrize(
