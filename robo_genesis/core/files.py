@@ -19,7 +19,6 @@ from typing import Any
 from robo_genesis.core.project import CACHE, ProjectError, installed, lock_digest
 
 NEXT, OLD = ".next", ".old"
-DIGEST = hashlib.sha256().digest_size
 KEPT = 30 * 24 * 3600  # Seconds until an unused file is removed
 
 # Names of what Python and Jupyter make; the same with hidden files and back-ups of
@@ -151,24 +150,15 @@ def put(source: Path, folder: Path) -> None:
 def files_below(
     folder: Path, skip: tuple[str, ...] = (), left_out: Sequence[str] = MADE_BY_TOOLS
 ) -> Iterator[Path]:
-    """Yield all files below a folder and its links.
+    """Yield all files below a folder.
 
     Args:
         folder: it need not exist.
         skip: how the names begin that are left out at the top.
         left_out: patterns of names of files and folders that are left out anywhere.
-
-    Raises:
-        ProjectError: a link leads to a folder that contains it, so there would be no
-            end.
     """
     ignored = shutil.ignore_patterns(*left_out)
-    for here, folders, files in os.walk(folder, followlinks=True):
-        for link in filter(Path.is_symlink, (Path(here, name) for name in folders)):
-            if link.parent.resolve().is_relative_to(link.resolve()):
-                raise ProjectError(
-                    f"{link} links to a folder that contains it. Remove the link."
-                )
+    for here, folders, files in os.walk(folder):
         top = skip if Path(here) == folder else ()
         gone = ignored(here, [*folders, *files])
         folders[:] = [
@@ -233,48 +223,24 @@ def derived(
         lock = lock_digest()
     except ProjectError:  # an installed package has no checkout, and so no cache
         return make()
-    key = hashlib.sha256(json.dumps([lock, sys.version, _installed()]).encode())
+    key = hashlib.sha256(json.dumps([sys.version, lock, _installed()]).encode())
     for part in inputs:
         key.update(hashlib.sha256(part).digest())
     file = cache / "derived" / kind / key.hexdigest()
-    content = _get(file)
-    if content is None:
+    try:
+        os.utime(file)
+        return file.read_bytes()
+    except OSError:
         content = make()
-        with suppress(
-            OSError
-        ):  # without a writable cache the result is made again each time
-            write_whole(file, _seal(file, content) + content)
-            _forget(file.parent)
+    with suppress(OSError):  # without a writable cache it is made again each time
+        write_whole(file, content)
+        _forget(file.parent)
     return content
 
 
 @lru_cache(maxsize=1)
 def _installed() -> str:
     return hashlib.sha256(json.dumps(installed(sys.path)).encode()).hexdigest()
-
-
-def _get(file: Path) -> bytes | None:
-    """Return the content of a file, None if it is missing or is not what was stored under its name.
-
-    The digest covers the name, so that one stored file in the place of another is
-    noticed.
-    """
-    try:
-        os.utime(file)
-        stored = file.read_bytes()
-    except OSError:
-        return None
-    digest, content = stored[:DIGEST], stored[DIGEST:]
-    if digest == _seal(file, content):
-        return content
-    print(f"{file} is not what was stored there: it is made again", file=sys.stderr)
-    return None
-
-
-def _seal(file: Path, content: bytes) -> bytes:
-    return hashlib.sha256(
-        f"{file.parent.name}/{file.name}\0".encode() + content
-    ).digest()
 
 
 def _forget(folder: Path) -> None:

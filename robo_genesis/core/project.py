@@ -25,10 +25,9 @@ PUBLISHED = "_build"  # The folder of a book that holds its published site
 CACHE = ROOT / ".cache"
 STORE, COMPILED, RECORDING, LOGS = "pages", "engine", "recording", "logs"
 # Below the cache folder: executed pages, what the engine compiles, the lab that is
-# being recorded, what each page wrote when it was last executed; what Sphinx keeps for
-# the next build, and how the names of the folders begin in which builds make their
-# sites.
-KEPT, STAGING = "render", "staging"
+# being recorded, what each page wrote when it was last executed, and what Sphinx keeps
+# for the next build.
+KEPT = "render"
 
 ENGINE = "genesis-world"
 COURSE = "robo-genesis"
@@ -68,7 +67,6 @@ ENGINE_PREFIXES = (
     "CUDA_",
     "NVIDIA_TF32_",
 )
-HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
 KERNELS, GEOMETRY, NUMBA = (
     "QD_OFFLINE_CACHE_FILE_PATH",
     "GS_CACHE_FILE_PATH",
@@ -109,38 +107,27 @@ def engine_pin(root: Path = ROOT) -> str:
         The version X of the dependency `genesis-world==X`.
 
     Raises:
-        ProjectError: the dependencies cannot be read, the engine is missing, or its
-            version is not exact.
+        ProjectError: the dependencies cannot be read, or do not have this form.
     """
-    from packaging.requirements import (
-        Requirement,
-    )  # the doctor starts where it is missing
-
-    file, fix = str(root / "pyproject.toml"), "Fix the line in project.dependencies"
-    if from_metadata := root == ROOT and not in_checkout():
-        file = f"The metadata of the installed package {COURSE}"
-        fix = f"Run {install_command()}, or use a checkout"
+    file = root / "pyproject.toml"
     try:
-        text = "" if from_metadata else Path(file).read_text("utf8")
-        declared = (
-            requires(COURSE)
-            if from_metadata
-            else tomllib.loads(text)["project"]["dependencies"]
-        )
-        engines = [
-            line for line in map(Requirement, declared or []) if line.name == ENGINE
-        ]
-    except (KeyError, ValueError, PackageNotFoundError) as error:
+        if root == ROOT and not in_checkout():
+            declared = requires(COURSE) or []
+        else:
+            project = tomllib.loads(file.read_text("utf8"))["project"]
+            declared = project["dependencies"]
+    except (OSError, KeyError, ValueError, PackageNotFoundError) as error:
         raise ProjectError(
-            f'{file} cannot be read: {error}\nValid dependencies are like "numpy>=2.0". {fix}.'
+            f"The dependencies in {file} cannot be read: {error}"
         ) from error
-    pins = [spec for line in engines for spec in line.specifier]
-    if len(pins) != 1 or pins[0].operator != "==" or pins[0].version.endswith("*"):
+    pins = [line for line in declared if re.match(rf"{ENGINE}\b", line)]
+    match = re.fullmatch(rf"{ENGINE} *== *([\w.+!-]+)", pins[0]) if pins else None
+    if not match or len(pins) > 1:
         raise ProjectError(
-            f"{file} declares {', '.join(map(str, engines)) or 'no engine'}. Valid is exactly one "
-            f'dependency "{ENGINE}==X". {fix}.'
+            f"{file} declares {', '.join(pins) or 'no engine'}. Valid is exactly one "
+            f'dependency "{ENGINE}==X".'
         )
-    return pins[0].version
+    return match[1]
 
 
 def installed_version(package: str) -> str | None:
@@ -279,19 +266,14 @@ def nothing_compiled(environment: Mapping[str, str]) -> bool:
     return KERNELS in environment and not any(Path(environment[KERNELS]).rglob("*.qdc"))
 
 
-def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
+def remove_stale_kernel_lock(cache: Path = CACHE) -> None:
     """Remove lock files of killed engine processes from the kernel caches.
 
     A lock file does not name its process, so a stale one looks like a live one. Call
     this only at the start of a build, while the build lock excludes other builds.
-
-    Returns:
-        The removed files.
     """
-    stale = sorted((cache / COMPILED).glob("*/kernels/**/*.lock"))
-    for path in stale:
+    for path in (cache / COMPILED).glob("*/kernels/**/*.lock"):
         path.unlink(missing_ok=True)
-    return stale
 
 
 def environment_contract(
@@ -328,13 +310,7 @@ def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def without_folders(text: str) -> str:
-    """Return a text without the folders of packages, checkout and homes, which are private."""
-    text = text.replace(PACKAGES, "site-packages")
-    return without_home(text.replace(f"{ROOT}/", ""))
-
-
-def without_home(text: str) -> str:
-    """Return a text with `~` for each home folder, whose name is private."""
-    own = re.escape(os.path.expanduser("~"))
-    text = re.sub(rf"{own}(?![\w.-])", "~", text) if own != "/" else text
-    return HOME_FOLDER.sub("~", text)
+    """Return a text without the folders of packages, checkout and home, which are private."""
+    home = str(Path.home())
+    text = text.replace(PACKAGES, "site-packages").replace(f"{ROOT}/", "")
+    return text if home == "/" else re.sub(rf"{re.escape(home)}(?![\w.-])", "~", text)

@@ -168,7 +168,7 @@ class Recorder:
                 backend.device_name if backend.actual == "cpu" else None
             ),
             "environment": {
-                name: project.without_home(value)
+                name: project.without_folders(value)
                 for name, value in engine.switches.items()
             },
             "parameters": run.page.parameters(),

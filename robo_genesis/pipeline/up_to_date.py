@@ -8,7 +8,7 @@ import json
 import os
 import platform
 import sys
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from robo_genesis.core import project
@@ -57,44 +57,22 @@ def inputs_digest(
         book: the folder of the pages.
         environment: variables, by default those of this process.
     """
-    parts = other_inputs(root, book, (), environment)
-    commit = git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository")
-    return json_digest(
-        parts | {"commit": commit}
-    )  # a recorded run names one in the history
-
-
-def other_inputs(
-    root: Path,
-    book: Path,
-    pages: Collection[Path],
-    environment: Mapping[str, str] | None = None,
-) -> dict[str, object]:
-    """Return the inputs of a build, without some pages and the commit.
-
-    Args:
-        root: the checkout.
-        book: the folder of the pages.
-        pages: files of the book that are left out.
-        environment: variables, by default those of this process.
-    """
     given = os.environ if environment is None else environment
-    kept = (
-        path
-        for path in files_below(book, (PUBLISHED, f".{PUBLISHED}"))
-        if path not in pages
+    code = (path for name in FOLDERS for path in files_below(root / name))
+    pages = files_below(book, (PUBLISHED, f".{PUBLISHED}"))
+    return json_digest(
+        {
+            "book": [str(book), files_digest(book, pages)],
+            "code": files_digest(root, code),
+            "files": files_digest(root, (root / name for name in FILES)),
+            "contract": project.environment_contract(given),
+            "variables": {name: given.get(name) or "" for name in VARIABLES},
+            "python": [platform.python_version(), sys.executable],
+            "installed": project.installed(sys.path),
+            # a recorded run names a commit in the history
+            "commit": git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository"),
+        }
     )
-    return {
-        "book": [str(book), files_digest(book, kept)],
-        "code": files_digest(
-            root, (p for name in FOLDERS for p in files_below(root / name))
-        ),
-        "files": files_digest(root, (root / name for name in FILES)),
-        "contract": project.environment_contract(given),
-        "variables": {name: given.get(name) or "" for name in VARIABLES},
-        "python": [platform.python_version(), sys.executable],
-        "installed": project.installed(sys.path),
-    }
 
 
 def site_digest(published: Path) -> str:

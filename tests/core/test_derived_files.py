@@ -73,36 +73,3 @@ def test_what_nobody_asked_for_in_a_month_goes_and_the_rest_stays(tmp_path, made
     made.calls.clear()
     made(b"0")
     assert made.calls == []
-
-
-@pytest.fixture
-def stored(tmp_path, made):
-    """Return the stored file of a result."""
-
-    def find(*inputs, **kind):
-        before = set(tmp_path.rglob("derived/*/*"))
-        made(*inputs, **kind)
-        (file,) = set(tmp_path.rglob("derived/*/*")) - before
-        return file
-
-    return find
-
-
-def test_a_file_that_is_not_whole_or_is_that_of_another_is_made_anew(
-    made, stored, capsys
-):
-    one, other, kind = stored(b"one"), stored(b"other"), stored(b"one", kind="b")
-    whole = one.read_bytes()
-    made.calls.clear()
-    for file, content in (
-        (one, b""),
-        (one, whole[:-1] + b"?"),
-        (other, whole),
-        (kind, whole),
-    ):
-        file.write_bytes(content)
-        assert made(b"one") == made(b"one", kind="b") == b"one"
-        assert made(b"other") == b"other"
-        said = capsys.readouterr().err
-        assert said == f"{file} is not what was stored there: it is made again\n"
-    assert made.calls == [(b"one",), (b"one",), (b"other",), (b"one",)]

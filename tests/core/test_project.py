@@ -1,4 +1,3 @@
-import pwd
 from pathlib import Path
 
 import pytest
@@ -25,7 +24,7 @@ NO_PIN = 'Valid is exactly one dependency "genesis-world==X"'
         (DECLARED('"numpy"'), NO_PIN),
         (DECLARED('"genesis-world>=1.3"'), NO_PIN),
         (DECLARED('"genesis-world==1.*"'), NO_PIN),
-        (DECLARED('"genesis-world=1.3"'), "cannot be read: "),
+        (DECLARED('"genesis-world=1.3"'), NO_PIN),
         ("[project", "cannot be read: "),
         ("[project]\n", "cannot be read: "),
     ],
@@ -34,7 +33,7 @@ def test_the_pin_is_one_exact_version(tmp_path, text, reason):
     root = checkout(tmp_path, "numpy>=2", "genesis-world==9.8.7")
     assert project.engine_pin(root) == "9.8.7"
     (root / "pyproject.toml").write_text(text)
-    with pytest.raises(project.ProjectError, match=rf"(?s)pyproject\.toml .*{reason}"):
+    with pytest.raises(project.ProjectError, match=rf"(?s)pyproject\.toml.*{reason}"):
         project.engine_pin(root)
 
 
@@ -51,8 +50,7 @@ def test_without_a_checkout_the_pin_is_that_of_the_installed_package(monkeypatch
     monkeypatch.setattr(project, "requires", lambda package: ["genesis-world==9.8.7"])
     assert project.engine_pin() == "9.8.7"
     monkeypatch.setattr(project, "requires", lambda package: None)
-    said = rf"^The metadata of the installed package .* {NO_PIN}.* -c constraints.txt ./robo_gen"
-    with pytest.raises(project.ProjectError, match=said):
+    with pytest.raises(project.ProjectError, match=NO_PIN):
         project.engine_pin()
 
 
@@ -92,31 +90,22 @@ def test_stale_kernel_locks_go_and_kernels_stay(tmp_path):
     kernels.mkdir(parents=True)
     (kernels / "qdcache.lock").touch()
     (kernels / "kernel.ll").touch()
-    assert project.remove_stale_kernel_lock(tmp_path) == [kernels / "qdcache.lock"]
+    project.remove_stale_kernel_lock(tmp_path)
     assert [path.name for path in kernels.iterdir()] == ["kernel.ll"]
 
 
-ADMINISTRATOR = pwd.getpwuid(0).pw_dir
-
-
 @pytest.mark.parametrize(
-    ("text", "kept"),
+    ("text", "public"),
     [
         ("/usr/lib:/srv/me/mesa", "/usr/lib:~/mesa"),
         ("/srv/me", "~"),
         ("/srv/men/x", "/srv/men/x"),
-        ("/home/other/x:/Users/other", "~/x:~"),
-        (
-            f"{ADMINISTRATOR}/.cache,/srv{ADMINISTRATOR}/x",
-            f"~/.cache,/srv{ADMINISTRATOR}/x",
-        ),
-        ("0,1", "0,1"),
+        (f"{project.ROOT}/book and {project.PACKAGES}/x", "book and site-packages/x"),
     ],
 )
-def test_a_home_folder_is_not_named(text, kept, monkeypatch):
+def test_private_folders_are_not_named(text, public, monkeypatch):
     monkeypatch.setenv("HOME", "/srv/me")
-    assert project.without_home(text) == kept
-    assert not project.HOME_FOLDER.search(project.without_home(text))
+    assert project.without_folders(text) == public
 
 
 def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(

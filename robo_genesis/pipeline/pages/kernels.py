@@ -1,11 +1,10 @@
 """Kernels that no configuration of the user reaches, and that never outlive the build."""
 
 import os
-import signal
 import subprocess
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]
@@ -107,38 +106,6 @@ def clean_environment(home: Path, extra: Mapping[str, str]) -> dict[str, str]:
         "TZ": "UTC",
         **extra,
     }
-
-
-@contextmanager
-def interrupts_blocked() -> Iterator[None]:
-    """Start processes that a Ctrl-C of the terminal does not reach.
-
-    The mask is inherited: the parent alone answers the interrupt, and kills them.
-    """
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def wait_or_kill(
-    process: subprocess.Popen[bytes], meanwhile: Callable[[], object] = lambda: None
-) -> int:
-    """Wait for a process and return its exit status; an exception kills it and all below it.
-
-    Args:
-        process: see above.
-        meanwhile: called each second.
-    """
-    try:
-        while True:
-            with suppress(subprocess.TimeoutExpired):
-                return process.wait(timeout=1)
-            meanwhile()
-    finally:
-        if process.poll() is None:
-            kill_with_descendants([process.pid])
 
 
 def kill_with_descendants(pids: Iterable[int]) -> None:
