@@ -34,7 +34,7 @@ class TitleTerms(SphinxPostTransform):
         links = [
             link
             for link in self.document.findall(nodes.reference)
-            if "std-term" in link.next_node().get("classes", ())
+            if any("std-term" in part["classes"] for part in link.findall(nodes.inline))
         ]
         sentences = glossary_terms(self.env) if links else {}
         for link in links:

@@ -25,7 +25,7 @@ def table(name):
 """
 INPUTS = ":tags: [inputs]\n"
 FIGURE = ":tags: [figure]\n:mystnb: {image: {alt: A drawing}}\n"
-OF_RUN = "No accepted evidence: cpu-refused. ledger"
+OF_RUN = "No accepted evidence: cpu-stale. ledger"
 CHOSEN = "Chosen, not measured. ledger"
 
 
