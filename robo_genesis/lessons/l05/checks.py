@@ -51,12 +51,12 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
     """
     found, limits = run.readings[study.GROUP], spec.IK.tolerances
     m = run.metrics["baseline"]
-    by_fk = {"residual_m": m.command_distance, "residual_rad": m.command_angle}
-    for (name, expected), most in zip(by_fk.items(), limits, strict=True):
-        yield at_most(name, found[name], most)
-        yield within(
-            f"{name}_by_forward_kinematics", found[name], expected, spec.SAME_RESIDUAL
-        )
+    by_fk = (m.command_distance, m.command_angle)
+    for unit, expected, most in zip(("m", "rad"), by_fk, limits, strict=True):
+        name, left = f"residual_{unit}", found[f"residual_{unit}"]
+        yield at_most(name, left, most)
+        label = f"{name}_by_forward_kinematics"
+        yield within(label, left, expected, spec.SAME_RESIDUAL)
     for name in ("baseline", "kp_doubled", "kp_doubled_ramp"):
         trace, m = run.traces[name], run.metrics[name]
         tip = kinematics.fingertip(kinematics.hand_pose(trace.target[-1]))
@@ -112,12 +112,10 @@ def same_links(
     """
     for name in (case for case in spec.CASES if case in run.traces):
         trace = run.traces[name]
-        measured = (
-            of[:, OF_CHAIN].astype(float) for of in (trace.link_pos, trace.link_quat)
-        )
-        apart, angle = kinematics.distances(
-            kinematics.pose_error(Pose(*measured), poses(trace.q))
-        )
+        position, quat = trace.link_pos[:, OF_CHAIN], trace.link_quat[:, OF_CHAIN]
+        measured = Pose(position.astype(float), quat.astype(float))
+        error = kinematics.pose_error(measured, poses(trace.q))
+        apart, angle = kinematics.distances(error)
         yield at_most(f"{name}.links_apart_m", float(apart.max()), spec.SAME_POSE[0])
         yield at_most(f"{name}.links_apart_rad", float(angle.max()), spec.SAME_POSE[1])
 

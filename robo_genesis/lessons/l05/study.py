@@ -47,14 +47,13 @@ def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
     )
     tip = spec.IN_THE_FLOOR.position[2] - low.error[2] - kinematics.TIP
     values = (*kinematics.distances(first.error), *kinematics.distances(low.error), tip)
-    page.readings[GROUP] = dict(
-        zip(READINGS[GROUP].units, map(float, values), strict=True)
-    )
-    needed = {
-        name: iterations(robot, joints, case) for name, case in spec.PRECISE.items()
-    }
-    page.readings[PRECISE] = {name: left for name, (_, left) in needed.items()}
-    page.readings[ITERATIONS] = {name: n for name, (n, _) in needed.items()}
+    units = READINGS[GROUP].units
+    page.readings[GROUP] = dict(zip(units, map(float, values), strict=True))
+    page.readings |= {ITERATIONS: {}, PRECISE: {}}
+    for name, case in spec.PRECISE.items():
+        needed, left = iterations(robot, joints, case)
+        page.readings[ITERATIONS][name] = needed
+        page.readings[PRECISE][name] = left
 
 
 def iterations(robot: Any, joints: JointMap, case: ReachCase) -> tuple[int, float]:

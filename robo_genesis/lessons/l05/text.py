@@ -75,15 +75,13 @@ def sag_table(run: Experiment) -> str:
         "computed [mm]": 2,
         "rotation [mrad]": 2,
         "computed [mrad]": 2,
+        "not explained [%]": 1,
     }
-    heads["not explained [%]"] = 1
     rows = {}
     for name, case in spec.CASES.items():
         found, expected, rest, turned = study.sag_lengths(run.traces[name], case.kp)
-        values = 1000 * np.array(
-            [found, expected, run.metrics[name].tracking_angle, turned]
-        )
-        rows[spec.LABELS[name]] = *values, 100 * rest
+        lengths = found, expected, run.metrics[name].tracking_angle, turned
+        rows[spec.LABELS[name]] = *(1000 * np.array(lengths)), 100 * rest
     return tables.number_table("run", heads, rows)
 
 
@@ -102,28 +100,21 @@ def price_table(run: Experiment) -> str:
 def tolerance_table(run: Experiment) -> str:
     """Return the iterations and the residual of the solver for each tolerance."""
     needed, left = run.readings[study.ITERATIONS], run.readings[study.PRECISE]
-    rows = {
-        f"{1e6 * case.settings.position_tolerance:g} µm": (
-            needed[name],
-            1e6 * left[name],
-        )
-        for name, case in spec.PRECISE.items()
-    }
+    rows = {}
+    for name, case in spec.PRECISE.items():
+        words = f"{1e6 * case.settings.position_tolerance:g} µm"
+        rows[words] = needed[name], 1e6 * left[name]
     return tables.number_table("tolerance", {"iterations": 0, "residual [µm]": 2}, rows)
 
 
 def jacobian_table(run: Experiment) -> str:
     """Return the largest difference of other Jacobians from ours in each posture, in millionths."""
-    postures = study.jacobian_postures(run.traces["baseline"]).items()
-    rows = {
-        name.replace("_", " "): 1e6
-        * np.array([run.readings[study.JACOBIANS][name], *study.other_jacobians(q)])
-        for name, q in postures
-    }
-    heads = dict.fromkeys(
-        ("engine [10⁻⁶]", "MuJoCo [10⁻⁶]", "difference quotients [10⁻⁶]"), 3
-    )
-    return tables.number_table("posture", heads, rows)
+    rows = {}
+    for name, q in study.jacobian_postures(run.traces["baseline"]).items():
+        apart = run.readings[study.JACOBIANS][name], *study.other_jacobians(q)
+        rows[name.replace("_", " ")] = 1e6 * np.array(apart)
+    others = ("engine [10⁻⁶]", "MuJoCo [10⁻⁶]", "difference quotients [10⁻⁶]")
+    return tables.number_table("posture", dict.fromkeys(others, 3), rows)
 
 
 def singular_table(run: Experiment) -> str:
@@ -144,19 +135,14 @@ def joint_table(run: Experiment) -> str:
         "position − command, computed [mrad]": 2,
         "moves the hand along z by [mm]": 2,
     }
-    q, kp = (
-        run.traces["baseline"].target[-1].astype(float),
-        spec.BASELINE.kp[: kinematics.ARM],
-    )
-    effort = mujoco_kinematics.gravity_effort(q)[: kinematics.ARM]
+    q, arm = run.traces["baseline"].target[-1].astype(float), slice(kinematics.ARM)
+    effort, kp = mujoco_kinematics.gravity_effort(q)[arm], spec.BASELINE.kp[arm]
     angles = -1000 * effort / kp
     ways = kinematics.jacobian(q)[2] * angles
     most = sorted(np.abs(ways).argsort()[-SHOWN:])
     rows = {f"`{JOINT_NAMES[k]}`": (effort[k], kp[k], angles[k], ways[k]) for k in most}
-    others = ways.sum() - ways[most].sum()
-    return tables.number_table(
-        "joint", heads, {**rows, "all others": ("", "", "", others)}
-    )
+    rows["all others"] = "", "", "", ways.sum() - ways[most].sum()
+    return tables.number_table("joint", heads, rows)
 
 
 def marker_table(run: Experiment) -> str:
@@ -177,7 +163,7 @@ def surfaces(run: Experiment) -> dict[str, cameras.Residuals]:
         "marker": from_sphere(view, marker(run)),
         f"ground nearer than {PLANE_FAR:g} m": from_plane(view, plane),
     }
-    return {name: of for name, of in found.items() if of is not None}
+    return {name: left for name, left in found.items() if left is not None}
 
 
 def depth_table(run: Experiment) -> str:
@@ -192,35 +178,27 @@ def depth_table(run: Experiment) -> str:
 
 def metric_table(run: Experiment) -> str:
     """Return the metrics of all runs in millimetres and milliradians."""
-    labels, units = (ReachMetrics.about(what) for what in ("label", "unit"))
-    rows = {
-        f"{label} [m{units[name]}]": [
-            1000 * getattr(run.metrics[c], name) for c in spec.CASES
-        ]
-        for name, label in labels.items()
-    }
-    return tables.number_table(
-        "metric", {spec.LABELS[case]: 3 for case in spec.CASES}, rows
-    )
+    metrics = [run.metrics[case] for case in spec.CASES]
+    units, rows = ReachMetrics.about("unit"), {}
+    for name, label in ReachMetrics.about("label").items():
+        values = [1000 * getattr(m, name) for m in metrics]
+        rows[f"{label} [m{units[name]}]"] = values
+    heads = {spec.LABELS[case]: 3 for case in spec.CASES}
+    return tables.number_table("metric", heads, rows)
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs and its picture."""
-    (base, *others), ik = run.metrics.items(), run.readings[study.GROUP]
+    ((_, base), *others), ik = run.metrics.items(), run.readings[study.GROUP]
     residuals = np.array([ik["residual_m"], ik["residual_rad"]])
     answer = "accepted" if (residuals <= spec.IK.tolerances).all() else "refused"
-    start, end, behind = (
-        1000 * getattr(base[1], f"{name}_distance")
-        for name in ("start", "final", "tracking")
-    )
     return bullets(
         [
             f"The answer of the solver is {answer}: its residual is "
-            f"{1000 * residuals[0]:.3f} mm and "
-            f"{1000 * residuals[1]:.4f} mrad.",
-            f"The hand's distance from its target went from {start:.1f} "
-            f"mm to {end:.2f} mm. The arm "
-            f"stopped {behind:.2f} mm from the pose of its command.",
+            f"{1000 * residuals[0]:.3f} mm and {1000 * residuals[1]:.4f} mrad.",
+            "The hand's distance from its target went from "
+            f"{1000 * base.start_distance:.1f} mm to {1000 * base.final_distance:.2f} mm. "
+            f"The arm stopped {1000 * base.tracking_distance:.2f} mm from the pose of its command.",
             *(
                 f"With {spec.LABELS[name]}, {1000 * m.final_distance:.2f} mm are left."
                 for name, m in others
@@ -239,27 +217,20 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
     case, q = spec.QUESTIONS[name], run.traces[name].q[1:, : kinematics.ARM]
     found, (lower, upper) = study.answers(run.traces[name], case), spec.ARM_LIMITS
     nearest = np.minimum(q - lower, upper - q).argmin(axis=1)
-    rows = []
-    for k in range(case.steps):
-        row = {
+    return [
+        {
             "answer": str(k + 1),
-            "target x, y, z [m]": ", ".join(
-                f"{value:g}" for value in case.positions[k]
-            ),
+            "target x, y, z [m]": "{:g}, {:g}, {:g}".format(*case.positions[k]),
             "accepted": "yes" if found["accepted"][k] else "no",
             "joint1 [rad]": decimal(q[k, 0], 3),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
-        shown = {
-            label: (by * found[key][k], n) for label, (key, by, n) in QUANTITIES.items()
+        | {
+            label: f"{round(by * found[key][k], 6) + 0.0:.{n}g}".replace("-", "−")
+            for label, (key, by, n) in QUANTITIES.items()
         }
-        written = {
-            label: f"{round(x, 6) + 0.0:.{n}g}" for label, (x, n) in shown.items()
-        }
-        rows.append(
-            row | {label: text.replace("-", "−") for label, text in written.items()}
-        )
-    return rows
+        for k in range(case.steps)
+    ]
 
 
 def chosen(run: Experiment) -> dict[str, int]:
@@ -288,13 +259,13 @@ def span(values: FloatArray, digits: int) -> str:
 
 def choice_table(run: Experiment) -> str:
     """Return the answers that the criteria choose."""
-    rows, shown = (
-        records(run, "many_starts"),
-        ("answer", "joint1 [rad]", *[*QUANTITIES][:3]),
-    )
-    found = chosen(run).items()
+    rows = records(run, "many_starts")
+    columns = ("answer", "joint1 [rad]", *[*QUANTITIES][:3])
     return tables.markdown(
-        [{"criterion": n} | {s: rows[k][s] for s in shown} for n, k in found]
+        [
+            {"criterion": name} | {column: rows[k][column] for column in columns}
+            for name, k in chosen(run).items()
+        ]
     )
 
 
@@ -302,15 +273,14 @@ def unreachable_table(run: Experiment) -> str:
     """Compare the engine's answers for the target beyond reach with the nearest posture found."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
     order = study.weighted(found["position"], found["rotation"]).argsort()
-    words = {
-        "from the lesson's start": 0,
-        f"nearest of {spec.DRAWS}": order[0],
-        f"median of {spec.DRAWS}": order[spec.DRAWS // 2],
-        f"farthest of {spec.DRAWS}": order[-1],
-    }
     pairs = {
-        f"engine, {n}": (found["position"][k], found["rotation"][k])
-        for n, k in words.items()
+        f"engine, {words}": (found["position"][k], found["rotation"][k])
+        for words, k in {
+            "from the lesson's start": 0,
+            f"nearest of {spec.DRAWS}": order[0],
+            f"median of {spec.DRAWS}": order[spec.DRAWS // 2],
+            f"farthest of {spec.DRAWS}": order[-1],
+        }.items()
     }
     pairs["nearest that we found"] = kinematics.distances(study.nearest()[1])
     heads = dict.fromkeys(("distance [m]", "angle [rad]", "weighted distance [m]"), 3)
@@ -324,14 +294,12 @@ def reach_table(run: Experiment) -> Iterator[dict[str, Any]]:
     for name in (*spec.PLANES, "vertical_restarted"):
         found = study.answers(run.traces[name], spec.QUESTIONS[name])
         yes = found["accepted"].astype(bool)
-        row = {
+        yield {
             "plane": name.replace("_", ", "),
             "targets": len(yes),
             "accepted": int(yes.sum()),
+            "of them in the floor": int((yes & (found["tip"] < 0)).sum()),
+            "manipulability": span(found["manipulability"][yes], 3),
+            "distance from limits [rad]": span(found["margin"][yes], 3),
+            "distance left where refused [mm]": span(1000 * found["position"][~yes], 1),
         }
-        row |= {"of them in the floor": int((yes & (found["tip"] < 0)).sum())}
-        row |= {
-            head: span(found[QUANTITIES[head][0]][yes], 3) for head in [*QUANTITIES][:2]
-        }
-        left = span(1000 * found["position"][~yes], 1)
-        yield row | {"distance left where refused [mm]": left}

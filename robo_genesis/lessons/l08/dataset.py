@@ -65,17 +65,10 @@ def finger_motion(run: Experiment) -> tuple[FloatArray, FloatArray]:
     """Return by episode (e,) the largest distance of a finger from its start until the
     row whose action closes the fingers, and the least motion of a finger from there to
     the next row [m].
-
-    Raises:
-        ValueError: an episode has no such row, or it is the first.
     """
     found, used = columns(run), ("observation.state", "action")
     q, action = (found[name][0][..., ARM:].astype(np.float64) for name in used)
     closing = (action == 0).all(axis=2).argmax(axis=1)
-    if not closing.all():
-        raise ValueError(
-            "The fingers of an episode are never closed, or from its first row on."
-        )
     until = np.arange(q.shape[1]) <= closing[:, None]
     before = np.where(until[..., None], np.abs(q - q[:, :1]), 0).max(axis=(1, 2))
     rows = np.arange(len(q))

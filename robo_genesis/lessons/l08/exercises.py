@@ -41,15 +41,12 @@ STATES: dict[str, tuple[bool, bool, dict[tuple[str, int], float]]] = {
     "near": (True, True, {("q", k): 0.9 * AT * (-1) ** k for k in range(ARM)}),
     "slow": (True, True, {("qd", k): 0.9 * SLOW * (-1) ** k for k in range(ARM)}),
     "first_joint_above": (False, True, {("q", 0): 1.1 * AT}),
-    "v": (False, True, {("qd", 2): SLOW}),
     "last_joint_below": (False, True, {("q", 6): -1.1 * AT}),
     "at": (False, True, {("q", 3): AT}),
     "moves_back": (False, True, {("qd", 0): -1.1 * SLOW}),
-    "v_nan": (False, True, {("qd", 4): nan}),
     "fingers_opposed": (True, False, {("qd", 7): -0.1, ("qd", 8): 0.1}),
     "almost_still": (True, True, {("qd", 7): 0.9 * STILL, ("qd", 8): -0.9 * STILL}),
     "left": (True, False, {("qd", 7): -1.1 * STILL}),
-    "right": (True, False, {("qd", 8): -STILL}),
 }
 
 
@@ -64,9 +61,8 @@ def ends(ended: Callable[..., Any]) -> Iterator[Finding]:
             state[array][joint] += value
         for since in (1, 4, 5, 90):
             for of_fingers in (False, True):
-                right = expected[of_fingers] and (
-                    since >= picking.CLOSING or not of_fingers
-                )
+                early = of_fingers and since < picking.CLOSING
+                right = expected[of_fingers] and not early
                 rows.append((*state.values(), goal[:ARM], of_fingers, since, right))
                 label = f"{name}.of_fingers_{of_fingers}_since_{since}"
                 yield equal(label, bool(ended(*rows[-1][:-1])), right)
@@ -86,14 +82,10 @@ EPISODES: dict[str, tuple[Any, ...]] = {
     "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
     "done_at_first": ("phase", 0, 8, 0),
     "no_lift": ("phase", [3, 4], 2, 1),
-    "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1),
-    "held_once": ("force", 3, 0.0, 7),
     "held_at_the_limit": ("force", [3, 4], 0.1, 1),
-    "lightly": ("force", slice(3, 8), 0.11, 7),
     "stays_in_the_lift": ("phase", LATE, 3, 2),
     "rises_late": ("pos", (5, 2), 0.08, 2),
     "lifted_to_the_limit": ("pos", (0, 2), 0.0, "pos", (5, 2), metrics.RAISED, 7),
-    "move_is_short": ("phase", [5, 6], 5, 7),
     "no_move_no_lower": ("phase", [5, 6, 7], 6, 3),
     "lost_then": ("force", (7, 1), 0.0, 3),
     "lost_at_the_limit": ("force", (5, 1), 0.1, 3),
@@ -107,7 +99,6 @@ EPISODES: dict[str, tuple[Any, ...]] = {
     "moved_before": ("pos", 10, 0.55, 7),
     "moves_at_first": ("pos", (11, 0), 0.5503, 6),
     "moves_at_last": ("pos", (15, 2), 0.0403, 6),
-    "in_all_directions": ("pos", 12, [0.55015, 0.22015, 0.04015], 6),
     "both_ways": ("pos", ([11, 12], 0), [0.55015, 0.54985], 7),
 }
 
@@ -137,17 +128,7 @@ def ladders(rungs: Callable[..., Any]) -> Iterator[Finding]:
         yield equal(name, int(rungs(*episode(*faults))), expected)
 
 
-RATES = (
-    (0, 1),
-    (1, 1),
-    (0, 64),
-    (64, 64),
-    (20, 20),
-    (1, 3),
-    (45, 64),
-    (179, 256),
-    (7, 1000),
-)
+RATES = ((0, 1), (1, 1), (0, 64), (64, 64), (1, 3), (45, 64), (7, 1000))
 
 
 @as_test

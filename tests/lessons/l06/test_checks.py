@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
-from robo_genesis.lessons.l06 import checks, spec
+from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import commands
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
 from robo_genesis.sim.arm.kinematics import HAND
@@ -77,12 +77,6 @@ def test_each_check_of_the_page_has_such_a_change(worlds):
     assert failed(worlds) == set()
     names = {check.__name__ for check in worlds.page.checks}
     assert names == {name for name, _ in CHANGES} | {"laws_of_motion"}
-
-
-def test_the_lab_says_which_checks_fail_if_two_rows_are_swapped(worlds):
-    passed = {"stamps", "mapping"} | {check.__name__ for check in checks.LECTURE}
-    expected = {name for name, _ in CHANGES} - passed
-    assert failed(swapped(worlds, "env_0", "env_1")) == expected
 
 
 def test_a_row_that_is_not_accepted_is_not_commanded():

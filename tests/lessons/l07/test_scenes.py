@@ -2,7 +2,6 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from lessons.changed_runs import failed, put, reading, shift, trace
 
@@ -14,19 +13,6 @@ def test_an_object_that_both_cameras_lose_is_not_seen(scenes):
     for camera in rungs.CAMERAS:
         scenes = reading("pixels", f"baseline_{camera}", 150.0)(scenes)
     assert rungs.failed(scenes, "baseline") == ["seen"]
-
-
-def test_margins_of_the_scenes():
-    assert spec.SCENES["baseline"].margin == pytest.approx(0.17)
-    assert spec.SCENES["outside"].margin == pytest.approx(0.045)  # to the table's edge
-
-
-def test_the_corners_of_both_shapes():
-    box, cylinder = (spec.SCENES[name] for name in ("wide", "baseline"))
-    at = np.array([0.1, 0.2, 0.3])
-    assert np.ptp(box.corners(at), axis=0) == pytest.approx(box.size)
-    assert np.ptp(cylinder.corners(at), axis=0) == pytest.approx(cylinder.size)
-    assert box.corners(at).mean(axis=0) == pytest.approx(at)
 
 
 def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
