@@ -7,8 +7,8 @@ import pytest
 from lessons.changed_runs import shift, trace
 
 from robo_genesis.core.palette import MARKS
-from robo_genesis.lessons.l06 import explorer, plots, spec, study, target_parts, text
-from robo_genesis.lessons.l06.pages import LECTURE
+from robo_genesis.lessons.l06 import explorer, plots, spec, study, text
+from robo_genesis.lessons.l06.pages import LECTURE, target_parts
 from robo_genesis.sim.arm.kinematics import HAND
 
 
