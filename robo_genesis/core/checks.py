@@ -33,8 +33,7 @@ class Finding:
 
     `expected` describes the allowed values in a message. A finding that is not
     `recorded` is about the configuration, repeats metrics, or judges arrays by a law: a
-    bundle has these elsewhere. `code` is that of the refusal of a bundle for which the
-    finding does not pass.
+    bundle has these elsewhere.
     """
 
     label: str
@@ -42,7 +41,6 @@ class Finding:
     passed: bool
     expected: str
     recorded: bool = True
-    code: str = FAILED
 
     @property
     def problem(self) -> str:
@@ -56,14 +54,13 @@ class Check:
 
     `detail` names the problems if it failed, else what the check requires. `found` has
     the recorded values by label; neither `detail` nor the allowed values are in a
-    bundle. `code` is that of the refusal if it failed.
+    bundle.
     """
 
     name: str
     passed: bool
     detail: str
     found: Mapping[str, Value] = field(default_factory=dict)
-    code: str = FAILED
 
     def record(self) -> dict[str, Any]:
         """Return the outcome as JSON values for a bundle."""
@@ -204,8 +201,7 @@ def conclude(
     found = {
         finding.label: plain(finding.found) for finding in findings if finding.recorded
     }
-    code = next((finding.code for finding in broken if finding.code != FAILED), FAILED)
-    return Check(name, not problems, "; ".join(problems) or claim, found, code)
+    return Check(name, not problems, "; ".join(problems) or claim, found)
 
 
 def evaluate(

@@ -218,7 +218,7 @@ CARELESS = {
     "arrays of another type": ("bad-array", rewrite(q=np.float64)),
     "arrays that are not finite": ("bad-trace", rewrite(q=changed_at((-1, 0), np.nan))),
     "a shifted time axis": ("bad-trace", rewrite(t=lambda t: t + 0.01)),
-    "a start elsewhere": ("start", rewrite(q=changed_at((0, 3), -1.9))),
+    "a link elsewhere": ("failed", rewrite(link_pos=changed_at((5, 1, 2), 0.1))),
     "a frame that is no picture": ("frames", write("frames/final.png", "x")),
     "a frame too few": ("frames", remove("frames/final.png")),
     "frames without a camera": ("frames", part("render", mode="skip")),
