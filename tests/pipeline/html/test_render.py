@@ -136,7 +136,7 @@ def test_each_edit_gives_the_pages_of_a_render_from_nothing(tmp_path):
         cold = contents(rendered(tmp_path, results, "cold"))
         pages = [name for name in cold if name.endswith(".html")]
         assert [name for name in pages if found.get(name) != cold[name]] == []
-    assert read == [("0", "4"), ("1", "9"), ("10", "0")]
+    assert read == [("0", "4"), ("1", "10"), ("10", "0")]
 
 
 def test_the_figures_of_each_page_are_numbered_from_one(tmp_path):
