@@ -25,7 +25,7 @@ CONFIGURED = {
     "depth of a contact by it, by hand [mm]": 11.5,
     "mass of a cylinder of steel [kg]": 1.08,
     "its weight, by hand [N]": 10.6,
-    "weight that two pads carry with little friction, by hand [N]": 7.2,
+    "weight that two pads carry with little friction, by hand [N]": 2.4,
     "largest y of the map [m]": round(float(table_map.Y[-1]), 2),
     "farthest corner of the map, by hand [m]": round(
         float(np.hypot(table_map.X[-1], table_map.Y[-1])), 2
