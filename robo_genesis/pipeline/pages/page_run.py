@@ -126,7 +126,7 @@ class PageRun:
             project.PAGE_SHA256: code_digest(self.page),
             project.PAGE_IMPORTS: " ".join(self.page.code.imports),
         }
-        begin, error = time.monotonic(), None
+        self.begin, error = time.monotonic(), None
         client = LoggingClient(
             notebook,
             km=kernel,
@@ -149,7 +149,7 @@ class PageRun:
             asyncio.run(kernel_run)
         except Exception as caught:  # also a dead kernel, or one that does not start
             error = caught
-        elapsed = time.monotonic() - begin - waited
+        elapsed = time.monotonic() - self.begin - waited
         left = outputs / str(self.page.lesson) / str(self.page.page)
         if failure := self._failure(notebook, error, list(begins), left):
             return elapsed, failure
