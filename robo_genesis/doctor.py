@@ -174,6 +174,7 @@ def machine(engine: Any) -> dict[str, str]:
 def shareable(text: str) -> str:
     """Return a text without folders, which can name users; paths in the course stay relative."""
     text = project.without_folders(text.replace(sys.prefix, "…"))
+    text = re.sub(r"/(?:home|Users)/[^/:;,\s'\"]+", "~", text)
     return re.sub(r"(?<![\w.~…/-])/(?!usr/(?:share|lib)/)(?:[^/\s'\"]+/)+", "…/", text)
 
 

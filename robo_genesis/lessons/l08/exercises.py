@@ -82,6 +82,7 @@ EPISODES: dict[str, tuple[Any, ...]] = {
     "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
     "done_at_first": ("phase", 0, 8, 0),
     "no_lift": ("phase", [3, 4], 2, 1),
+    "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1),
     "held_at_the_limit": ("force", [3, 4], 0.1, 1),
     "stays_in_the_lift": ("phase", LATE, 3, 2),
     "rises_late": ("pos", (5, 2), 0.08, 2),
@@ -99,6 +100,7 @@ EPISODES: dict[str, tuple[Any, ...]] = {
     "moved_before": ("pos", 10, 0.55, 7),
     "moves_at_first": ("pos", (11, 0), 0.5503, 6),
     "moves_at_last": ("pos", (15, 2), 0.0403, 6),
+    "in_all_directions": ("pos", 12, [0.55015, 0.22015, 0.04015], 6),
     "both_ways": ("pos", ([11, 12], 0), [0.55015, 0.54985], 7),
 }
 
