@@ -27,7 +27,7 @@ class LeaveOutSolutions(SphinxTransform):
             classes = [*node["classes"], *node.get("container_classes", ())]
             if MARKS.intersection(classes):
                 note = nodes.paragraph("", "", nodes.emphasis("", NO_SOLUTION))
-                node.replace_self([note] if "cell" in classes else [])
+                node.parent.replace(node, [note] if "cell" in classes else [])
 
 
 def hide_sources(app: Sphinx, config: Config) -> None:

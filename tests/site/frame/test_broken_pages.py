@@ -5,7 +5,7 @@ import re
 import pytest
 import yaml
 from small_book import executed, rendered
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, paragraphs
+from tiny_book import cell, make_book, notebook, paragraphs
 
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.pages.book import find_pages
@@ -27,25 +27,7 @@ IMPORTS = """\
 from IPython.display import Markdown
 table = Markdown("| read |\\n| --- |\\n| 7 |")"""
 INPUTS = ":tags: [inputs]\n"
-LAB = paragraphs(
-    "\n[amdgpu-verified]{.evidence-badge .state-verified}",
-    "```{figure} ../book/evidence/l04/amdgpu/frames/final.svg\n:alt: x\n\nFree words.\n```",
-    "```{figure} innocent.svg\n:alt: x\n\nFree words.\n```",
-)
-CELLS = (
-    cell("Markdown('<table><tr><td>7</td></tr></table>')"),
-    cell("Markdown('a <b style=\"position: fixed\">7</b>')"),
-)
-OTHERS = {
-    "lab": [
-        "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
-        "a cell outputs <b> as raw HTML",
-        "a page may not set the class evidence-badge",
-        "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
-        "the picture innocent.svg lies below evidence/",
-    ],
-    "free": ["a cell shows a table, but the page declares no bundle"],
-}
+OTHERS = {"free": ["a cell shows a table, but the page declares no bundle"]}
 """What is said of the other pages."""
 
 
@@ -53,22 +35,17 @@ OTHERS = {
 def report(tmp_path_factory):
     """What the build says of the book."""
     folder = tmp_path_factory.mktemp("broken")
-    for place in ("lessons/l02-two", "evidence/l04/amdgpu/frames"):
-        (folder / "book" / place).mkdir(parents=True)
+    (folder / "book/lessons/l02-two").mkdir(parents=True)
     imports = cell(IMPORTS)
     pages = {
         "text": "# Text\n\n" + paragraphs(*TEXT),
         "lessons/l02-two/lecture": "# Two\n\nText.\n",
-        "lab": notebook(cell(WRITE_BUNDLE), imports, *CELLS, front=LAB_FRONT) + LAB,
         "free": notebook(imports, cell("table", INPUTS), cell("table")),
         "timed": notebook(cell("")),
     }
     book = make_book(folder, **pages)
     published = {"id": "L01", "title": "One", "page": "gone", "outcomes": ["go"]}
     (book / course_map.FILE).write_text(yaml.safe_dump([published]))
-    frame = book / "evidence/l04/amdgpu/frames/final.svg"
-    frame.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
-    (book / "innocent.svg").symlink_to(frame)
     results = executed(find_pages(book), folder)
     with pytest.raises(ProjectError) as caught:
         rendered(folder, results)
