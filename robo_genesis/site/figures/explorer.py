@@ -47,7 +47,7 @@ from robo_genesis.core.files import derived
 from robo_genesis.core.markup import filled
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
-from robo_genesis.core.trace import Trace
+from robo_genesis.core.trace import BodyTrace, Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
@@ -256,7 +256,7 @@ def postures(
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 
 
-def with_target(trace: Trace, targets: FloatArray) -> Trace:
+def with_target(trace: Trace | BodyTrace, targets: FloatArray) -> Trace | BodyTrace:
     """Return answers with one more link, the target of each; before the first, that of the first.
 
     Args:
@@ -265,11 +265,14 @@ def with_target(trace: Trace, targets: FloatArray) -> Trace:
     """
     places = np.vstack([targets[:1], targets])[:, None]
     turns = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (len(places), 1, 4))
-    return replace(
-        trace,
-        link_pos=np.concatenate([trace.link_pos, places], axis=1),
-        link_quat=np.concatenate([trace.link_quat, turns], axis=1),
-    )
+    added = {"link_pos": places, "link_quat": turns}
+    if isinstance(trace, BodyTrace):
+        added |= dict.fromkeys(("link_vel", "link_ang"), np.zeros_like(places))
+    arrays = {
+        name: np.concatenate([getattr(trace, name), array], axis=1)
+        for name, array in added.items()
+    }
+    return replace(trace, **arrays)
 
 
 def with_cross(parts: Sequence[Part], camera: "Camera") -> "Scenery":
