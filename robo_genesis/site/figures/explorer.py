@@ -268,7 +268,7 @@ def with_target(trace: Trace | BodyTrace, targets: FloatArray) -> Trace | BodyTr
     added = {"link_pos": places, "link_quat": turns}
     if isinstance(trace, BodyTrace):
         added |= dict.fromkeys(("link_vel", "link_ang"), np.zeros_like(places))
-    arrays = {
+    arrays: dict[str, Any] = {
         name: np.concatenate([getattr(trace, name), array], axis=1)
         for name, array in added.items()
     }
