@@ -95,7 +95,7 @@ SPOILERS = [
 
 
 def test_each_check_fails_for_its_spoiled_runs_alone(run):
-    # MuJoCo repeats fewer steps of the run with impratio 100 that stands for Genesis here.
+    # MuJoCo repeats fewer steps of the run with impratio 100 that takes the place of Genesis here.
     assert {one.name for one in run.outcomes() if not one.passed} <= {"laws_of_motion"}
     spoiled = {name for name, _ in SPOILERS} | {"laws_of_motion"}
     assert spoiled == {one.__name__ for one in REST.checks}
