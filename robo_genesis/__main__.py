@@ -19,13 +19,15 @@ from robo_genesis.pipeline.command import TIMEOUT, run
 
 def book(options: Namespace) -> Sequence[str] | int:
     """Measure every lesson on CPU, verify, render and check the site."""
-    from robo_genesis.pipeline import release, up_to_date
+    from robo_genesis.pipeline import up_to_date
 
     set_environment(options)
     is_release = options.release == "1"
     if is_release and options.render == "0":
         raise ProjectError("A release needs camera frames: leave RENDER=0 out.")
     if is_release and options.to is None:
+        from robo_genesis.pipeline import release
+
         return release.build(options)
     published = options.book / PUBLISHED
     if not is_release and (
