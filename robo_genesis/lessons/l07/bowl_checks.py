@@ -91,11 +91,8 @@ def fast_small_balls_sink(run: Experiment) -> Iterator[Finding]:
     """
     for name, case in bowls.SMALL.items():
         label, found = f"{name}.sunk", run.metrics[name].in_foot
-        yield (
-            above(label, found, 0)
-            if case.depth > case.radius
-            else equal(label, found, 0)
-        )
+        judge = above if case.depth > case.radius else at_most
+        yield judge(label, found, 0)
         yield noted(f"{name}.depth_m", case.depth)
 
 

@@ -92,16 +92,18 @@ READINGS = {
     "bowl_volume": Readings(dict.fromkeys([*CHOICES, "visual"], "cm³")),
     "bowl_mass": Readings(dict.fromkeys(CHOICES, "kg")),
     "uncovered": Readings({"default": "m"}),
-    **{
-        f"top_{of}": Readings({f"x_{1e3 * x:+.0f}mm": "m" for x in ACROSS})
-        for of in CUT
-    },
-    **{
-        what: Readings(
-            dict.fromkeys(CHOICES, "s"), "performance", dict.fromkeys(CHOICES, limits)
-        )
-        for what, limits in {"run": (0.0, 3600.0), "step": (1e-5, 10.0)}.items()
-    },
+    **dict.fromkeys(
+        [f"top_{choice}" for choice in CUT],
+        Readings({f"x_{1e3 * x:+.0f}mm": "m" for x in ACROSS}),
+    ),
+    **dict.fromkeys(
+        ("run", "step"),
+        Readings(
+            dict.fromkeys(CHOICES, "s"),
+            "performance",
+            dict.fromkeys(CHOICES, (1e-5, 3600.0)),
+        ),
+    ),
 }
 
 # Another processor may get other hulls from CoACD, and each contact makes rounding
@@ -212,11 +214,9 @@ def volume(meshes: list[Any]) -> float:
 
 def outside(hulls: list[Any], points: FloatArray) -> FloatArray:
     """Return how far points (…, 3) are outside the nearest convex mesh, negative inside (…) [m]."""
-
-    def beyond(hull: Any) -> FloatArray:
+    beyond = []
+    for hull in hulls:
         normals = hull.face_normals
-        return np.asarray(
-            (points @ normals.T - (normals * hull.triangles[:, 0]).sum(1)).max(-1)
-        )
-
-    return np.asarray(np.min([beyond(hull) for hull in hulls], axis=0))
+        offsets = (normals * hull.triangles[:, 0]).sum(axis=1)
+        beyond.append((points @ normals.T - offsets).max(axis=-1))
+    return np.asarray(np.min(beyond, axis=0))

@@ -36,12 +36,9 @@ def one_rung(run: Experiment) -> Iterator[Finding]:
     that it was made for, and no other. A run without a camera cannot fail "seen".
     """
     for name in rungs.scenes(run):
-        made_for = (
-            None
-            if spec.FAILS[name] == "seen" and not run.rendered
-            else spec.FAILS[name]
-        )
-        expected = [made_for] if made_for else []
+        made_for = spec.FAILS[name]
+        unseen = made_for == "seen" and not run.rendered
+        expected = [made_for] if made_for and not unseen else []
         yield equal(f"{name}.fails", rungs.failed(run, name), expected)
         if expected:
             number = run.readings["fails"][name]

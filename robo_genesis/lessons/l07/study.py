@@ -11,7 +11,6 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.lessons.l07.metrics import BALL, OBJECT, scene_metrics
 from robo_genesis.sim.arm import kinematics, lifting
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import MODEL_COUNTS
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.arm.joints import JointMap, describe, to_numpy
@@ -69,15 +68,12 @@ def let_rest(
     depths: list[float] = []
 
     def after(step: int) -> None:
-        if step == 0:
-            depths.append(
-                float(to_numpy(world.body.get_contacts()["penetration"]).max(initial=0))
-            )
+        contacts = world.body.get_contacts()
+        depths.append(float(to_numpy(contacts["penetration"]).max(initial=0)))
 
     held = case.commanding(case.q_start)
-    trace = run_case(
-        world.scene, world.robot, joints, held, (world.body, world.ball), after=after
-    )
+    bodies = (world.body, world.ball)
+    trace = run_case(world.scene, world.robot, joints, held, bodies, after=after)
     return trace, depths[0]
 
 
@@ -89,14 +85,16 @@ def lift(
     answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
     command = case.commanding(lifting.lift_command(case.q_start, answers))
     counts, after = lifting.contact_counter(world.robot, world.body)
-    bodies = (world.body, world.ball)
-
-    def begin() -> None:
-        world.body.set_pos(case.centre)
-
-    return run_case(
-        world.scene, world.robot, joints, command, bodies, begin, after
-    ), counts
+    trace = run_case(
+        world.scene,
+        world.robot,
+        joints,
+        command,
+        (world.body, world.ball),
+        lambda: world.body.set_pos(case.centre),
+        after,
+    )
+    return trace, counts
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,26 +105,24 @@ class Facts:
     |---|---|
     | `case`, `world` | its settings, and the built scene |
     | `rest`, `lift` | both runs |
-    | `depth`, `mass` | of the deepest contact after the first step [m], of the object [kg] |
-    | `views`, `outlines` | by camera, and the area of the object's outline in them [pixel] |
+    | `views` | by camera |
     | `number` | of the object in the segmentations |
-    | `answers` | of the solver: pregrasp and grasp |
+    | `residuals` | (2, 6) of the solver's answers: translation [m] and rotation vector [rad] |
+    | `tips` | heights (2,) of the fingertips at the answers, above the table [m] |
     | `touches` | contacts of the robot at each posture on its way to the answers |
-    | `contacts` | counts of the lift |
+    | `readings` | by group |
     """
 
     case: table.SceneCase
     world: table.World
     rest: Trace
     lift: Trace
-    depth: float
-    mass: float
     views: dict[str, View]
-    outlines: dict[str, float]
     number: int
-    answers: list[IkAnswer]
+    residuals: FloatArray
+    tips: FloatArray
     touches: np.ndarray
-    contacts: dict[str, int]
+    readings: dict[str, dict[str, float]]
 
     @property
     def positions(self) -> FloatArray:
@@ -134,43 +130,15 @@ class Facts:
         return self.rest.link_pos[:, OBJECT].astype(np.float64)
 
     @property
+    def outlines(self) -> dict[str, float]:
+        """Area of the object's outline in each view [pixel]."""
+        return self.readings["outline"]
+
+    @property
     def segmentations(self) -> dict[str, np.ndarray]:
         """Segmentation (H, W) of each camera, none without pictures."""
         found = {name: view.segmentation for name, view in self.views.items()}
         return {name: picture for name, picture in found.items() if picture is not None}
-
-    @property
-    def residuals(self) -> FloatArray:
-        """Residuals (2, 6) of the answers: translation [m] and rotation vector [rad]."""
-        return np.array([answer.error for answer in self.answers], dtype=float)
-
-    @property
-    def tips(self) -> FloatArray:
-        """Heights (2,) of the fingertips at the answers, above the table [m]."""
-        poses = (kinematics.hand_pose(answer.q) for answer in self.answers)
-        return np.array([kinematics.fingertip(pose)[2] for pose in poses])
-
-    @property
-    def readings(self) -> dict[str, dict[str, float]]:
-        """The readings by group."""
-        limits = spec.ONE_START.tolerances
-        good = (kinematics.accepted(a.q, a.error, *limits) for a in self.answers)
-        tips = dict(zip(("pregrasp", "grasp"), self.tips.tolist(), strict=True))
-        seen = {
-            name: float((s == self.number).sum())
-            for name, s in self.segmentations.items()
-        }
-        reach = {
-            "accepted": sum(map(int, good)),
-            **tips,
-            "touches": int((self.touches > 0).sum()),
-        }
-        return {
-            "object": {"mass": self.mass, "depth": self.depth},
-            "outline": self.outlines,
-            "reach": reach,
-            "contacts": dict(self.contacts),
-        } | ({"pixels": seen} if seen else {})
 
     @property
     def values(self) -> dict[str, dict[str, float]]:
@@ -188,32 +156,43 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     joints = describe(page, world.robot)
     page.links = [*page.links, "object", "ball"]
     rest, depth = let_rest(world, joints, case)
-    mass = float(world.body.get_mass())
     world.cameras["wrist"].move_to_attach()
     views = {name: look(camera, page.render) for name, camera in world.cameras.items()}
     corners = case.corners(rest.link_pos[-1, OBJECT])
-    outlines = {name: rungs.outline(corners, view) for name, view in views.items()}
-    points = lifting.waypoints(case.place, case.size[2])[:2]
-    answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
+    pregrasp, grasp, _ = lifting.waypoints(case.place, case.size[2])
+    asked = case.q_start, spec.ONE_START, (pregrasp, grasp)
+    answers = lifting.ask(world.robot, joints, *asked)
+    poses = [kinematics.hand_pose(answer.q) for answer in answers]
+    tips = np.array([kinematics.fingertip(pose)[2] for pose in poses])
+    good = [
+        kinematics.accepted(a.q, a.error, *spec.ONE_START.tolerances) for a in answers
+    ]
     way = lifting.line([case.q_start, *(a.q for a in answers)])
     touches = np.array(
         [lifting.touches(world.robot, joints, world.fixed, q) for q in way]
     )
     lifted, contacts = lift(world, joints, spec.lift_of(case))
-    number = segment_number(world.scene, world.body.links[0]) if page.render else 0
+    readings: dict[str, dict[str, float]] = {
+        "object": {"mass": float(world.body.get_mass()), "depth": depth},
+        "outline": {name: rungs.outline(corners, of) for name, of in views.items()},
+        "reach": {
+            "accepted": sum(map(int, good)),
+            "pregrasp": float(tips[0]),
+            "grasp": float(tips[1]),
+            "touches": int((touches > 0).sum()),
+        },
+        "contacts": {**contacts},
+    }
+    number = 0
+    if page.render:
+        number = segment_number(world.scene, world.body.links[0])
+        readings["pixels"] = {
+            name: float(np.sum(view.segmentation == number))
+            for name, view in views.items()
+        }
+    residuals = np.array([answer.error for answer in answers], dtype=float)
     return Facts(
-        case=case,
-        world=world,
-        rest=rest,
-        lift=lifted,
-        depth=depth,
-        mass=mass,
-        views=views,
-        outlines=outlines,
-        number=number,
-        answers=answers,
-        touches=touches,
-        contacts=contacts,
+        case, world, rest, lifted, views, number, residuals, tips, touches, readings
     )
 
 

@@ -23,38 +23,19 @@ def test_each_cell_shows_its_own_answer(scenes):
     assert cells[-1]["state"] == "refused"
 
 
+# A change, and the verdict on the cell in the middle that it breaks
 SPOILED = {
-    "another count": (
-        reading("table_reached", str(MIDDLE), 1),
-        "reachable",
-        {"map_follows"},
-    ),
-    "low fingertips": (
-        trace("table", link_pos=shift(GRASP, -0.05)),
-        "reachable",
-        {"map_follows"},
-    ),
-    "the bowl in the way": (
-        reading("table_free", str(MIDDLE), 1),
-        "graspable",
-        {"map_follows"},
-    ),
-    "no picture": (
-        reading("view_wrist", "intrinsics_02", -9e3),
-        "wrist",
-        {"map_follows"},
-    ),
-    "a hand elsewhere": (
-        trace("table", link_pos=shift(GRASP, 1e-3)),
-        "",
-        {"map_follows"},
-    ),
+    "another count": (reading("table_reached", str(MIDDLE), 1), "reachable"),
+    "low fingertips": (trace("table", link_pos=shift(GRASP, -0.05)), "reachable"),
+    "the bowl in the way": (reading("table_free", str(MIDDLE), 1), "graspable"),
+    "no picture": (reading("view_wrist", "intrinsics_02", -9e3), "wrist"),
+    "a hand elsewhere": (trace("table", link_pos=shift(GRASP, 1e-3)), ""),
 }
 
 
 @pytest.mark.parametrize("name", SPOILED)
 def test_a_verdict_and_the_check_of_the_map(scenes, name):
-    spoil, verdict, expected = SPOILED[name]
+    spoil, verdict = SPOILED[name]
     run = spoil(scenes)
-    assert failed(run) == expected
+    assert failed(run) == {"map_follows"}
     assert not verdict or not table_map.verdicts(run)[verdict][MIDDLE]
