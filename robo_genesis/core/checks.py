@@ -79,6 +79,9 @@ def plain(value: Any) -> Value:
     return value
 
 
+Findings = Iterator[Finding]  # What a check yields
+
+
 def noted(label: str, found: Any) -> Finding:
     """Record a value without a judgement of its own."""
     return Finding(label, found, True, "any value")
@@ -98,9 +101,11 @@ def within(
     return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
 
 
-def nearly(label: str, found: float | None, expected: float, share: float) -> Finding:
-    """Require a value that differs from the expected one by no more than a share of it."""
-    return within(label, found, expected, share * abs(expected))
+def nearly(
+    label: str, found: float | None, expected: float, share: float, room: float = 0.0
+) -> Finding:
+    """Require a value that differs from the expected one by a share of it and some room at most."""
+    return within(label, found, expected, share * abs(expected) + room)
 
 
 def at_most(label: str, found: float | None, limit: float) -> Finding:
@@ -129,17 +134,13 @@ def _limited(
     return Finding(label, found, bool(passed), f"{words} {limit:g}")
 
 
-def model_counts(
-    found: Mapping[str, float], expected: Mapping[str, float]
-) -> Iterator[Finding]:
+def model_counts(found: Mapping[str, float], expected: Mapping[str, float]) -> Findings:
     """Require the engine's counts of a model."""
     for name in dict.fromkeys([*found, *expected]):
         yield equal(name, found.get(name), expected.get(name))
 
 
-def masses(
-    found: Mapping[str, float], expected: Mapping[str, float]
-) -> Iterator[Finding]:
+def masses(found: Mapping[str, float], expected: Mapping[str, float]) -> Findings:
     """Require of each body the engine's mass to be density times volume.
 
     Args:
@@ -152,7 +153,7 @@ def masses(
 
 def factors(
     cases: Mapping[str, Any], allowed: Mapping[tuple[str, str], Collection[str]]
-) -> Iterator[Finding]:
+) -> Findings:
     """Require of each pair of cases, which are dataclasses, to differ in the given fields alone."""
     for (first, second), fields in allowed.items():
         a, b = (asdict(cases[name]) for name in (first, second))

@@ -13,6 +13,8 @@ from robo_genesis.core.text import decimal, format_value
 
 MEASURES = False
 
+Rows = Iterable[Mapping[str, Any]]  # What a table is made of
+
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return rows of equal keys as a Markdown table: numbers right-aligned, floats shortened.
@@ -38,7 +40,7 @@ def _cell(value: Any) -> str:
 
 
 def as_table(
-    rows: Callable[[Experiment], Iterable[Mapping[str, Any]]],
+    rows: Callable[[Experiment], Rows],
 ) -> Callable[[Experiment], str]:
     """Make a function that returns a Markdown table of one that yields its rows."""
 
@@ -112,7 +114,7 @@ def metric_table(
 
 
 @as_table
-def checks_of_run(run: Experiment) -> Iterable[Mapping[str, Any]]:
+def checks_of_run(run: Experiment) -> Rows:
     """Return the table of the named checks: name, outcome and detail."""
     for check in run.outcomes():
         outcome = "passed" if check.passed else "**FAILED**"

@@ -1,12 +1,12 @@
 """Named checks of the kinematics of L05."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 
 from robo_genesis.core import checks
 from robo_genesis.core.checks import (
-    Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -33,7 +33,7 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 OF_CHAIN = slice(HAND - ARM, HAND + 1)
 
 
-def mapping(run: Experiment) -> Iterator[Finding]:
+def mapping(run: Experiment) -> Findings:
     """The engine has the joints, limits and links that our forward kinematics uses."""
     yield from checks.model_counts(run.readings["model"], spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
@@ -44,7 +44,7 @@ def mapping(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}_limits_against_the_model_file", apart, spec.SAME_POSE[1])
 
 
-def acceptance(run: Experiment) -> Iterator[Finding]:
+def acceptance(run: Experiment) -> Findings:
     """The residual of the commanded answer is within both tolerances, as the engine
     reports it and by forward kinematics of the command, and the fingertips are higher
     than the least clearance.
@@ -66,20 +66,20 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.command_angle_rad", m.command_angle, widest)
 
 
-def forward_kinematics(run: Experiment) -> Iterator[Finding]:
+def forward_kinematics(run: Experiment) -> Findings:
     """In every state of the reaches, our forward kinematics gives the engine's link
     poses within 5 µm and 5 µrad.
     """
     return same_links(run, kinematics.link_poses)
 
 
-def second_engine(run: Experiment) -> Iterator[Finding]:
+def second_engine(run: Experiment) -> Findings:
     """MuJoCo gives the same link poses in every state of the reaches, within 5 µm and 5 µrad."""
     links = run.links[OF_CHAIN]
     return same_links(run, lambda q: mujoco_kinematics.link_poses(q, links))
 
 
-def jacobians_agree(run: Experiment) -> Iterator[Finding]:
+def jacobians_agree(run: Experiment) -> Findings:
     """The Jacobians of the engine, of MuJoCo and of central differences are ours within
     5 · 10⁻⁶, in three postures.
     """
@@ -91,7 +91,7 @@ def jacobians_agree(run: Experiment) -> Iterator[Finding]:
             yield at_most(f"{name}.{other}", apart, spec.SAME_POSE[0])
 
 
-def stretched_is_singular(run: Experiment) -> Iterator[Finding]:
+def stretched_is_singular(run: Experiment) -> Findings:
     """Two singular values of the nearly stretched arm are below a third of all others."""
     values = [
         np.linalg.svd(kinematics.jacobian(q), compute_uv=False)
@@ -101,9 +101,7 @@ def stretched_is_singular(run: Experiment) -> Iterator[Finding]:
     yield below("nearly_stretched", float(values[2][4]), float(others) / 3)
 
 
-def same_links(
-    run: Experiment, poses: Callable[[FloatArray], Pose]
-) -> Iterator[Finding]:
+def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Findings:
     """Compare the links of the chain in every state of the runs with another computation.
 
     Args:
@@ -120,7 +118,7 @@ def same_links(
         yield at_most(f"{name}.links_apart_rad", float(angle.max()), spec.SAME_POSE[1])
 
 
-def arrived(run: Experiment) -> Iterator[Finding]:
+def arrived(run: Experiment) -> Findings:
     """Each run ends within 2 cm and 0.05 rad of its target."""
     for name in spec.CASES:
         m = run.metrics[name]
@@ -128,7 +126,7 @@ def arrived(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.final_angle_rad", m.final_angle, spec.REACHED[1])
 
 
-def sag_explains(run: Experiment) -> Iterator[Finding]:
+def sag_explains(run: Experiment) -> Findings:
     """Gravity, KP and the Jacobian explain the displacement from the command's pose to
     the last pose, except for at most 2 % of it, and the angle between them within 2 %.
     """
@@ -139,7 +137,7 @@ def sag_explains(run: Experiment) -> Iterator[Finding]:
         yield nearly(f"{name}.angle_rad", found, turn, spec.SAG_SHARE)
 
 
-def smaller_angles_explain_more(run: Experiment) -> Iterator[Finding]:
+def smaller_angles_explain_more(run: Experiment) -> Findings:
     """With KP doubled, gravity, KP and the Jacobian explain a larger share of the sag."""
     one, half = (
         study.sag_lengths(run.traces[n], spec.CASES[n].kp)[2]
@@ -148,7 +146,7 @@ def smaller_angles_explain_more(run: Experiment) -> Iterator[Finding]:
     yield below("unexplained_share_with_kp_doubled", half, one)
 
 
-def kp_has_a_price(run: Experiment) -> Iterator[Finding]:
+def kp_has_a_price(run: Experiment) -> Findings:
     """With KP doubled the hand swings past its target at least three times as far as
     before. With a ramp it is never farther past it than at the end, and ends within 1
     mm of where it ends without; no joint of the arm reaches its force limit.
@@ -165,7 +163,7 @@ def kp_has_a_price(run: Experiment) -> Iterator[Finding]:
     yield below("largest_share_of_a_force_limit_with_a_ramp", float(share), 1.0)
 
 
-def price_at_finer_step(run: Experiment) -> Iterator[Finding]:
+def price_at_finer_step(run: Experiment) -> Findings:
     """With 20 substeps KP doubled swings at least twice as far as the baseline and less
     than half as far as with 2; with a ramp the hand is never farther past its target
     than at the end.
@@ -177,7 +175,7 @@ def price_at_finer_step(run: Experiment) -> Iterator[Finding]:
     yield at_most("overshoot_with_a_ramp_m", ramp.overshoot, ramp.final_distance)
 
 
-def limits_cause_the_swing(run: Experiment) -> Iterator[Finding]:
+def limits_cause_the_swing(run: Experiment) -> Findings:
     """With ten times the force limits, the hand swings at most a tenth as far past its target."""
     free, limited = (
         run.metrics[name].overshoot for name in ("unlimited", "kp_doubled")
@@ -185,7 +183,7 @@ def limits_cause_the_swing(run: Experiment) -> Iterator[Finding]:
     yield at_most("overshoot_m", free, limited / 10)
 
 
-def solver_ignores_the_floor(run: Experiment) -> Iterator[Finding]:
+def solver_ignores_the_floor(run: Experiment) -> Findings:
     """The solver's answer for the low target is within both tolerances, and has the
     fingertips more than 5 cm below the ground.
     """
@@ -197,14 +195,14 @@ def solver_ignores_the_floor(run: Experiment) -> Iterator[Finding]:
     yield below("low_tip_m", found["low_tip_m"], -0.05)
 
 
-def tolerance_costs_little(run: Experiment) -> Iterator[Finding]:
+def tolerance_costs_little(run: Experiment) -> Findings:
     """For a tolerance of 5 µm the solver needs at most two iterations more than for 0.5 mm."""
     needed = run.readings[study.ITERATIONS]
     yield at_most("iterations_more", needed["at_5_um"] - needed["at_500_um"], 2)
     yield at_most("residual_m", run.readings[study.PRECISE]["at_5_um"], 5e-6)
 
 
-def repeatable(run: Experiment) -> Iterator[Finding]:
+def repeatable(run: Experiment) -> Findings:
     """From the common start, without restarts, equal questions get equal answers: the
     runs with KP unchanged and doubled have equal commands.
     """
@@ -212,12 +210,12 @@ def repeatable(run: Experiment) -> Iterator[Finding]:
     yield equal("entries_that_differ", int((first != second).sum()), 0)
 
 
-def first_start_fails(run: Experiment) -> Iterator[Finding]:
+def first_start_fails(run: Experiment) -> Findings:
     """From the first of the random starts, the solver without restarts finds no answer."""
     yield equal("accepted", bool(study.many_answers(run)["accepted"][0]), False)
 
 
-def restarts_rescue_few(run: Experiment) -> Iterator[Finding]:
+def restarts_rescue_few(run: Experiment) -> Findings:
     """With up to 50 starts, more targets of the vertical plane are accepted, and fewer
     than half of the refused ones.
     """
@@ -230,13 +228,13 @@ def restarts_rescue_few(run: Experiment) -> Iterator[Finding]:
     yield below("rescued_of_the_refused", rescued, (~one).sum() / 2)
 
 
-def map_has_targets_in_the_floor(run: Experiment) -> Iterator[Finding]:
+def map_has_targets_in_the_floor(run: Experiment) -> Findings:
     """The residual accepts targets of the vertical plane with the fingertips below the ground."""
     found = study.answers(run.traces["vertical"], spec.QUESTIONS["vertical"])
     yield above("in_the_floor", int(found["accepted"] @ (found["tip"] < 0)), 0)
 
 
-def unreachable_refused(run: Experiment) -> Iterator[Finding]:
+def unreachable_refused(run: Experiment) -> Findings:
     """Beyond reach, all answers are refused for their residuals."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
     yield above(
@@ -245,7 +243,7 @@ def unreachable_refused(run: Experiment) -> Iterator[Finding]:
     yield equal("accepted", int(found["accepted"].sum()), 0)
 
 
-def nearest_is_nearer(run: Experiment) -> Iterator[Finding]:
+def nearest_is_nearer(run: Experiment) -> Findings:
     """Another posture is nearer than each of the 20 answers, where 0.5 m counts as 1 rad."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
     of_engine = study.weighted(found["position"], found["rotation"])
@@ -261,7 +259,7 @@ def marker(run: Experiment) -> Marker:
     )
 
 
-def camera_matrix(run: Experiment) -> Iterator[Finding]:
+def camera_matrix(run: Experiment) -> Findings:
     """Matrix, pose and limits of each camera are those that it was given."""
     for name in (view for view in spec.VIEWS if f"view_{view}" in run.readings):
         yield from camera_checks.camera_matrix(
@@ -269,7 +267,7 @@ def camera_matrix(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def projection(run: Experiment) -> Iterator[Finding]:
+def projection(run: Experiment) -> Findings:
     """The centroid of the marker is within 0.15 pixels of the silhouette's centre."""
     numbers = [*run.readings[SEGMENTS].values()]
     yield equal("numbers_rise", numbers, sorted({*numbers}), recorded=False)
@@ -283,14 +281,14 @@ def projection(run: Experiment) -> Iterator[Finding]:
     yield noted(f"{spec.VIEWED}.sag_px", float(np.linalg.norm(pixels[1] - pixels[0])))
 
 
-def sphere_surface(run: Experiment) -> Iterator[Finding]:
+def sphere_surface(run: Experiment) -> Findings:
     """Each pixel of the marker, back-projected, is within 0.6 % of the radius of its surface."""
     return camera_checks.sphere_surface(
         spec.VIEWED, view_of(run, spec.VIEWED), marker(run)
     )
 
 
-def plane_surface(run: Experiment) -> Iterator[Finding]:
+def plane_surface(run: Experiment) -> Findings:
     """Each ground pixel within 3 m, back-projected, is within 0.1 mm of height 0."""
     number = int(run.readings[SEGMENTS]["plane"])
     yield from camera_checks.plane_surface(
@@ -300,7 +298,7 @@ def plane_surface(run: Experiment) -> Iterator[Finding]:
         yield from camera_checks.plane_surface("hand", view_of(run, "hand"), number)
 
 
-def mounted_camera(run: Experiment) -> Iterator[Finding]:
+def mounted_camera(run: Experiment) -> Findings:
     """The camera on the hand is at the pose of the hand times the offset."""
     hand, offset = measured_hand(run.traces["baseline"], -1), np.array(spec.ON_HAND)
     return camera_checks.mounted_camera("hand", view_of(run, "hand"), *hand, offset)

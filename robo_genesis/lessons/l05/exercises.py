@@ -1,12 +1,11 @@
 """Checks of the five functions that a student writes in L05's lab; see `core/exercises.py`."""
 
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, at_most, below, equal
-from robo_genesis.core.exercises import as_test, same_array
+from robo_genesis.core.checks import Findings, at_most, below, equal
+from robo_genesis.core.exercises import Written, as_test, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.sim.arm import kinematics
@@ -37,7 +36,7 @@ CAMERAS = {
 
 
 @as_test
-def forward(chain: Callable[..., Any], trace: Trace) -> Iterator[Finding]:
+def forward(chain: Written, trace: Trace) -> Findings:
     """Check `chain(q, links)`: the pose of the last link, by the links of a chain.
 
     `q` (7,) are the joint positions; `links` are names, positions and orientations as
@@ -55,7 +54,7 @@ def forward(chain: Callable[..., Any], trace: Trace) -> Iterator[Finding]:
         yield from near(f"first_{count}_links", chain(q, CHAIN[:count]), expected, TINY)
 
 
-def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Finding]:
+def near(label: str, found: Any, expected: Pose, tiny: float) -> Findings:
     """Require a pose of the right shapes that differs from the expected one by rounding."""
     position, quat = (np.asarray(part, dtype=float) for part in found)
     yield equal(f"{label}.shapes", [list(position.shape), list(quat.shape)], [[3], [4]])
@@ -69,7 +68,7 @@ def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Findin
 
 
 @as_test
-def step(damped: Callable[..., Any]) -> Iterator[Finding]:
+def step(damped: Written) -> Findings:
     """Check `damped(J, error, damping)`: one step (n,) of damped least squares.
 
     `J` is (m, n), `error` (m,). The postures are the start and a nearly singular one; a
@@ -97,7 +96,7 @@ def step(damped: Callable[..., Any]) -> Iterator[Finding]:
 
 
 @as_test
-def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
+def acceptance(accept: Written) -> Findings:
     """Check `accept(q, error, clearance, position_tolerance, rotation_tolerance, least)`.
 
     The answers are invented.
@@ -115,7 +114,7 @@ def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
 
 
 @as_test
-def project(function: Callable[..., Any]) -> Iterator[Finding]:
+def project(function: Written) -> Findings:
     """Check `project(points, K, transform)`: pixel coordinates (n, 2) of points (n, 3).
 
     The corner of the picture is (0, 0). `transform` is the engine's: x right, y up, z
@@ -148,7 +147,7 @@ def project(function: Callable[..., Any]) -> Iterator[Finding]:
 
 
 @as_test
-def back_project(function: Callable[..., Any]) -> Iterator[Finding]:
+def back_project(function: Written) -> Findings:
     """Check `back_project(depth, K, transform)`: the point (H, W, 3) of each pixel's centre.
 
     `depth` (H, W) is measured along the optical axis. The pictures are of a plane in

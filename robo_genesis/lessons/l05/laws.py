@@ -1,8 +1,6 @@
 """What reaches have in common by the mechanics of the robot."""
 
-from collections.abc import Iterator
-
-from robo_genesis.core.checks import Finding
+from robo_genesis.core.checks import Findings
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05.run import SolveCase, command_path
 from robo_genesis.sim.arm.laws import assigned_run, driven_run
@@ -11,7 +9,7 @@ from robo_genesis.sim.laws import kept
 MEASURES = False
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """At each sample links and control forces are those of the driven or assigned robot."""
     for name, case in run.cases.items():
         trace = run.traces[name]

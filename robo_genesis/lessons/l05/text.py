@@ -1,6 +1,5 @@
 """Tables of L05, and the sentences that the lab generates, each a function of the experiment."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -244,7 +243,7 @@ def chosen(run: Experiment) -> dict[str, int]:
 
 
 @tables.as_table
-def family_table(run: Experiment) -> Iterator[dict[str, Any]]:
+def family_table(run: Experiment) -> tables.Rows:
     """Return the curves on which the accepted answers are."""
     for number, (curve, inside) in enumerate(study.solution_families(run), start=1):
         length = np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()
@@ -289,7 +288,7 @@ def unreachable_table(run: Experiment) -> str:
 
 
 @tables.as_table
-def reach_table(run: Experiment) -> Iterator[dict[str, Any]]:
+def reach_table(run: Experiment) -> tables.Rows:
     """Return how many targets of each plane are accepted, and what their answers span."""
     for name in (*spec.PLANES, "vertical_restarted"):
         found = study.answers(run.traces[name], spec.QUESTIONS[name])

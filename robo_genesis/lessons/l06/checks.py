@@ -1,12 +1,12 @@
 """Named checks of L06."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE
 from robo_genesis.core.checks import (
-    Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -24,13 +24,13 @@ from robo_genesis.sim.laws import kept
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 
-def mapping(run: Experiment) -> Iterator[Finding]:
+def mapping(run: Experiment) -> Findings:
     """The engine has the expected links, joints and DOFs."""
     yield from model_counts(run.readings["model"], spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
 
 
-def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
+def acceptance_per_row(run: Experiment) -> Findings:
     """By forward kinematics, each command of the runs with metrics is within both
     tolerances and 5 µm and 5 µrad of rounding. The rule refuses the target beyond
     reach, and no other.
@@ -57,7 +57,7 @@ def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
             yield above(f"mixed.start_nearer_than_row_{k}_m", nearer, 0.0)
 
 
-def arrived(run: Experiment) -> Iterator[Finding]:
+def arrived(run: Experiment) -> Findings:
     """Each hand is within 2 cm of its first and last target, and ends within 0.05 rad."""
     for name in spec.CASES:
         m = run.metrics[name]
@@ -66,7 +66,7 @@ def arrived(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.final_angle_rad", m.final_angle, spec.REACHED[1])
 
 
-def row_equals_alone(run: Experiment) -> Iterator[Finding]:
+def row_equals_alone(run: Experiment) -> Findings:
     """Each row of the batch and the same run alone have commands, positions, velocities
     and control forces within the declared bounds of each other.
     """
@@ -78,19 +78,19 @@ def row_equals_alone(run: Experiment) -> Iterator[Finding]:
             yield at_most(f"env_{k}.{name}", found, spec.SAME_RUN[name])
 
 
-def same_to_the_last_bit(run: Experiment, claim: str) -> Iterator[Finding]:
+def same_to_the_last_bit(run: Experiment, claim: str) -> Findings:
     """Require equal entries in the samples that two runs share."""
     for one, other in study.pairs()[claim]:
         differ, _ = study.entries_that_differ(run.traces[one], run.traces[other])
         yield equal(f"{one}.entries_that_differ_from_{other}", differ, 0)
 
 
-def permuted_rows(run: Experiment) -> Iterator[Finding]:
+def permuted_rows(run: Experiment) -> Findings:
     """With the worlds in another order, each gives the same arrays to the last bit."""
     yield from same_to_the_last_bit(run, "permuted")
 
 
-def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
+def untouched_keep_their_state(run: Experiment) -> Findings:
     """Environments that are not named keep their hand in place while others get a
     second command. While others are reset and commanded in mid-motion, they give the
     same arrays to the last bit.
@@ -104,7 +104,7 @@ def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
             yield at_most(f"{name}.moved_later_m", moved, spec.RESOLUTION["m"])
 
 
-def pressed_on_the_floor(run: Experiment) -> Iterator[Finding]:
+def pressed_on_the_floor(run: Experiment) -> Findings:
     """With the hands kept above their targets by the floor, rows in another order and
     rows after a partial reset are equal to the last bit.
     """
@@ -114,7 +114,7 @@ def pressed_on_the_floor(run: Experiment) -> Iterator[Finding]:
     yield above("lowest_hand_m", found["pressed_height"], 0.07)
 
 
-def old_forces_after_a_reset(run: Experiment) -> Iterator[Finding]:
+def old_forces_after_a_reset(run: Experiment) -> Findings:
     """After a partial reset of hands that press on the floor with more than 50 N, the
     engine returns their old contact forces, or zero as newer versions do. One step
     later they are zero. Forces of the joints are the old ones until that step.
@@ -130,7 +130,7 @@ def old_forces_after_a_reset(run: Experiment) -> Iterator[Finding]:
         yield equal(f"row_{k}.joint_forces_that_changed", changed, 0)
 
 
-def answers_depend_on_the_row(run: Experiment) -> Iterator[Finding]:
+def answers_depend_on_the_row(run: Experiment) -> Findings:
     """In one call with one start, equal questions have answers that are equal to the
     last bit. With random starts, two of their answers differ by more than 10 mrad.
     """
@@ -139,7 +139,7 @@ def answers_depend_on_the_row(run: Experiment) -> Iterator[Finding]:
     yield above("largest_difference_with_restarts_rad", found["restarts_apart"], 0.01)
 
 
-def sweep_repeats_the_runs(run: Experiment) -> Iterator[Finding]:
+def sweep_repeats_the_runs(run: Experiment) -> Findings:
     """The robots of the sweep that are also recorded end there and pass the target as
     recorded, to 0.01 mm.
     """
@@ -155,7 +155,7 @@ def swept(run: Experiment) -> tuple[Mapping[str, float], Mapping[str, float]]:
     return run.readings["sweep_end"], run.readings["sweep_overshoot"]
 
 
-def price_of_stiffness(run: Experiment) -> Iterator[Finding]:
+def price_of_stiffness(run: Experiment) -> Findings:
     """With KV unchanged and any load, KP doubled lowers the distance at the end to a
     share between 0.45 and 0.55, and raises the overshoot by more than 20 mm. With 20
     times the limits of the torques, the stiff robot passes its target by less than a
@@ -172,7 +172,7 @@ def price_of_stiffness(run: Experiment) -> Iterator[Finding]:
         yield above(f"load_{load:g}.added_overshoot_m", added, 0.02)
 
 
-def stiffest_fail(run: Experiment) -> Iterator[Finding]:
+def stiffest_fail(run: Experiment) -> Findings:
     """Without a load, no robot with KP × 8 or × 16 ends within 5 mm of the target and
     passes it by less than 5 mm.
     """
@@ -182,12 +182,12 @@ def stiffest_fail(run: Experiment) -> Iterator[Finding]:
             yield above(f"kp_{kp:g}_kv_{kv:g}.worse_of_both_m", worst, 5e-3)
 
 
-def partial_reset(run: Experiment) -> Iterator[Finding]:
+def partial_reset(run: Experiment) -> Findings:
     """After a reset in mid-motion, an environment repeats its first run to the last bit."""
     yield from same_to_the_last_bit(run, "again")
 
 
-def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
+def own_gains_and_mass(run: Experiment) -> Findings:
     """The row without changes equals its run beside equal neighbours to the last bit.
     Each hand has its own mass. At rest each torque equals the gravity torque of the arm
     with its load, and KP times the position error, within 0.05 N·m.
@@ -205,7 +205,7 @@ def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
             yield at_most(f"{name}.torque_not_explained_by_{law}_N_m", apart, spec.HELD)
 
 
-def equal_work(run: Experiment) -> Iterator[Finding]:
+def equal_work(run: Experiment) -> Findings:
     """In each batch of the table, all arms end near the commanded angles, with joint
     positions that are equal to the last bit in all environments.
     """
@@ -213,7 +213,7 @@ def equal_work(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{size}_environments.that_missed_the_motion_or_differ", differ, 0)
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """At each sample links and control forces are those of its own robot."""
     for name, world in run.cases.items():
         trace = run.traces[name]

@@ -1,14 +1,14 @@
 """Checks of the functions that a student writes in L06's lab; see `core/exercises.py`."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, equal, within
-from robo_genesis.core.exercises import as_test, refused
+from robo_genesis.core.checks import Findings, equal, within
+from robo_genesis.core.exercises import Written, as_test, refused
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.sim.arm.reaching import ANSWERS
 
@@ -16,7 +16,7 @@ MEASURES = False
 
 
 @as_test
-def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
+def acceptance(accept: Written) -> Findings:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` on rows (k, d) and (k, 6).
 
     It returns one truth value for each row, (k,).
@@ -73,7 +73,7 @@ NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK)
 
 
 @as_test
-def subset(command: Callable[..., Any]) -> Iterator[Finding]:
+def subset(command: Written) -> Findings:
     """Check `command(robot, dofs, q, envs)`: one call, row k for environment `envs[k]`."""
     for name, (count, dofs, envs) in VALID.items():
         robot = Robot(count)
@@ -136,7 +136,7 @@ TRIALS: dict[str, tuple[Sequence[float], int, Sequence[float]]] = {
 
 
 @as_test
-def throughput(measure: Callable[..., Any]) -> Iterator[Finding]:
+def throughput(measure: Written) -> Findings:
     """Check `measure(step, finish, clock, warm_up, steps, repeats)`: the median of a step [s].
 
     It runs on simulated machines, so the time of the real machine decides nothing.

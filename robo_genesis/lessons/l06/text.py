@@ -4,7 +4,7 @@ Those about throughput are correct for every outcome, because elapsed times diff
 each run.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -31,7 +31,7 @@ def mm(value: float, digits: int = 2) -> str:
 
 
 @tables.as_table
-def mixed_table(run: Experiment) -> Iterator[dict[str, str]]:
+def mixed_table(run: Experiment) -> tables.Rows:
     """Return residual and verdict of each row of the question with a target beyond reach."""
     found = run.readings["mixed"].values(), run.readings["mixed_accepted"].values()
     for k, (residual, accepted) in enumerate(zip(*found, strict=True)):
@@ -60,7 +60,7 @@ def row_table(run: Experiment) -> str:
 
 
 @tables.as_table
-def sweep_table(run: Experiment) -> Iterator[dict[str, str]]:
+def sweep_table(run: Experiment) -> tables.Rows:
     """Return overshoot and distance at the end of the robots of the sweep without a load."""
     for kp in reversed(spec.FACTORS):
         row = {"KP ×": f"{kp:g}"}

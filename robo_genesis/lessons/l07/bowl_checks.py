@@ -1,11 +1,9 @@
 """Named checks of balls that fall into a bowl, and the measuring page of these runs."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from robo_genesis.core.checks import (
-    Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -35,14 +33,14 @@ FLAT, GAP, SHARE = (
 )  # Of a flat face [m], of points outside hulls [m], of masses
 
 
-def one_hull_holds_none(run: Experiment) -> Iterator[Finding]:
+def one_hull_holds_none(run: Experiment) -> Findings:
     """A bowl of one hull holds none of the balls: at y = 0 its top is level with the rim."""
     yield equal("in_one_hull.inside_percent", run.metrics["in_one_hull"].inside, 0.0)
     heights = run.readings["top_one_hull"].values()
     yield within("one_hull.lowest_top_m", min(heights), HEIGHT, FLAT)
 
 
-def others_hold_all(run: Experiment) -> Iterator[Finding]:
+def others_hold_all(run: Experiment) -> Findings:
     """All other bowls hold all twelve balls of 16 mm, also with other steps, starts and
     hulls; the lowest ball ends near the bowl's floor, and none has sunk in.
     """
@@ -53,12 +51,12 @@ def others_hold_all(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{name}.sunk", found.in_foot, 0)
 
 
-def hulls_cover(run: Experiment) -> Iterator[Finding]:
+def hulls_cover(run: Experiment) -> Findings:
     """The hulls of the default decomposition leave no gap: they cover the bowl within 0.02 mm."""
     yield at_most("default.uncovered_m", run.readings["uncovered"]["default"], GAP)
 
 
-def default_is_closer(run: Experiment) -> Iterator[Finding]:
+def default_is_closer(run: Experiment) -> Findings:
     """One hull has more than four times the volume of the mesh; the default
     decomposition has less than one hull and more than the mesh, and the pieces fill the
     mesh exactly.
@@ -71,20 +69,20 @@ def default_is_closer(run: Experiment) -> Iterator[Finding]:
     yield nearly("pieces.volume_ratio", ratio["pieces"], 1.0, SHARE)
 
 
-def mass_is_of_collision(run: Experiment) -> Iterator[Finding]:
+def mass_is_of_collision(run: Experiment) -> Findings:
     """A free bowl weighs density times the volume of its collision geometry."""
     for name, mass in run.readings["bowl_mass"].items():
         volume = 1e-6 * run.readings["bowl_volume"][name]
         yield nearly(f"{name}.mass_kg", mass, DENSITY * volume, SHARE)
 
 
-def small_balls_count_as_inside(run: Experiment) -> Iterator[Finding]:
+def small_balls_count_as_inside(run: Experiment) -> Findings:
     """All balls of 4 mm count as inside in each run, whether they sank in or not."""
     for name in bowls.SMALL:
         yield equal(f"{name}.inside_percent", run.metrics[name].inside, 100.0)
 
 
-def fast_small_balls_sink(run: Experiment) -> Iterator[Finding]:
+def fast_small_balls_sink(run: Experiment) -> Findings:
     """With steps of 1 ms, balls of 4 mm sink into the foot if v T / e exceeds their
     radius: from above the rim some do, in hulls and in pieces, and from a start inside
     the bowl none.
@@ -96,13 +94,13 @@ def fast_small_balls_sink(run: Experiment) -> Iterator[Finding]:
         yield noted(f"{name}.depth_m", case.depth)
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """The balls fall freely until one can touch a bowl, and all together never gain energy."""
     for name, case in run.cases.items():
         yield from kept(name, falling_balls(run.traces[name], case))
 
 
-def falling_balls(trace: BodyTrace, case: BowlCase) -> Iterator[Finding]:
+def falling_balls(trace: BodyTrace, case: BowlCase) -> Findings:
     """Yield what no run of `bowls.run_case` has."""
     fallen = summed_drop(case.h, case.substeps * np.arange(case.steps + 1))
     free = slice(int((case.drop > fallen).sum()) or 1)  # states without any contact

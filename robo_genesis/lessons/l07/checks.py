@@ -1,12 +1,11 @@
 """Named checks of L07; the docstring of each is its claim."""
 
-from collections.abc import Iterator
 from itertools import chain
 
 import numpy as np
 
 from robo_genesis.core.checks import (
-    Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -26,12 +25,12 @@ from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept
 
 
-def structure(run: Experiment) -> Iterator[Finding]:
+def structure(run: Experiment) -> Findings:
     """The robot has the links, joints and DOFs of its model file."""
     return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
-def one_rung(run: Experiment) -> Iterator[Finding]:
+def one_rung(run: Experiment) -> Findings:
     """Scene A passes all five rungs, and each other scene of the page fails the one
     that it was made for, and no other. A run without a camera cannot fail "seen".
     """
@@ -45,7 +44,7 @@ def one_rung(run: Experiment) -> Iterator[Finding]:
             yield equal(f"{name}.number", number, spec.RUNGS.index(expected[0]) + 1)
 
 
-def reached(run: Experiment) -> Iterator[Finding]:
+def reached(run: Experiment) -> Findings:
     """Before closing and at the end the hand is within 8 mm of its waypoint, if nothing
     is in its way.
     """
@@ -59,7 +58,7 @@ def reached(run: Experiment) -> Iterator[Finding]:
                 )
 
 
-def hovering_is_at_rest(run: Experiment) -> Iterator[Finding]:
+def hovering_is_at_rest(run: Experiment) -> Findings:
     """The hovering object is 5 mm above the table, keeps its place to 1 µm, and is
     lifted with the hand.
     """
@@ -69,7 +68,7 @@ def hovering_is_at_rest(run: Experiment) -> Iterator[Finding]:
     yield above("hovering.share_of_the_rise", lift.rise / lift.hand_rise, 0.99)
 
 
-def symptoms(found: Experiment) -> Iterator[Finding]:
+def symptoms(found: Experiment) -> Findings:
     """No camera has a pixel of scene D's object. The solver accepts both postures of
     scene E, and the way to them touches something. In scene F the open hand touches the
     box.
@@ -82,7 +81,7 @@ def symptoms(found: Experiment) -> Iterator[Finding]:
     yield above("wide.descending", found.readings["contacts"]["wide_descending"], 0)
 
 
-def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
+def lift_depends_on_the_step(run: Experiment) -> Findings:
     """With friction 0.3, a box that is 82 mm wide is lifted by more than 40 mm with two
     solver steps in an outer step, and by less than 5 mm with four. Both times the open
     hand touches it on its way down.
@@ -96,7 +95,7 @@ def lift_depends_on_the_step(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """At each sample links and control forces are those of the driven robot, and bodies
     begin where their case puts them. Answers of a map are assigned.
     """
@@ -110,7 +109,7 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
             yield from kept(name, assigned_run(trace, links, case.start.model))
 
 
-def bodies(trace: Trace, case: table.SceneCase) -> Iterator[Finding]:
+def bodies(trace: Trace, case: table.SceneCase) -> Findings:
     """Yield a body that does not begin at its place."""
     expected = np.array([case.centre, (*case.bowl_at, table.BALL_HEIGHT)])
     start = trace.link_pos[0, OBJECT:]

@@ -1,13 +1,12 @@
 """Checks of the functions that a student writes in L07's lab; see `core/exercises.py`."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from math import inf, nan
-from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, equal, within
-from robo_genesis.core.exercises import as_test, compared
+from robo_genesis.core.checks import Findings, equal, within
+from robo_genesis.core.exercises import Written, as_test, compared
 from robo_genesis.sim.arm.reaching import ANSWERS, ONE_START
 from robo_genesis.sim.bodies.table import Footprint, gap
 
@@ -22,7 +21,7 @@ PAIRS: dict[str, tuple[Footprint, Footprint]] = {
 
 
 @as_test
-def footprints(margin: Callable[..., Any]) -> Iterator[Finding]:
+def footprints(margin: Written) -> Findings:
     """Check `margin(one, other)`: the distance of two upright rectangles [m]."""
     for name, pair in PAIRS.items():
         for label, given in (("margin_m", pair), ("swapped_m", pair[::-1])):
@@ -46,7 +45,7 @@ MOTIONS: dict[str, tuple[Sequence[float], int, float, bool]] = {
 
 
 @as_test
-def rest(at_rest: Callable[..., Any]) -> Iterator[Finding]:
+def rest(at_rest: Written) -> Findings:
     """Check `at_rest(positions, window, bound)` on positions (n, 3), each along each axis."""
     for name, (moves, window, bound, expected) in MOTIONS.items():
         for axis in range(3):
@@ -72,7 +71,7 @@ PICTURES: dict[str, tuple[list[list[int]], int, float]] = {
 
 
 @as_test
-def pixels(visible: Callable[..., Any]) -> Iterator[Finding]:
+def pixels(visible: Written) -> Findings:
     """Check `visible(segmentation, number, outline)`: pixels and share of the outline."""
     for name, (rows, number, outline) in PICTURES.items():
         count = sum(row.count(number) for row in rows)
@@ -95,7 +94,7 @@ TIPS: dict[str, tuple[tuple[float, float], tuple[int, ...], bool]] = {
 
 
 @as_test
-def reach(reachable: Callable[..., Any]) -> Iterator[Finding]:
+def reach(reachable: Written) -> Findings:
     """Check `reachable(residuals, tips, touches, tolerances, clearances)` on two answers."""
     limits, least = ONE_START.tolerances, np.array([0.03, 0.02])
     zero, still = np.zeros((2, 6)), np.zeros(4, dtype=int)
@@ -141,7 +140,7 @@ RESULTS: dict[
 
 
 @as_test
-def first_failure(ladder: Callable[..., Any]) -> Iterator[Finding]:
+def first_failure(ladder: Written) -> Findings:
     """Check `ladder(results)`: the first rung that fails, or None."""
     for name, (results, expected) in RESULTS.items():
         yield equal(name, ladder(results), expected)

@@ -1,10 +1,9 @@
 """Named checks of boxes at rest; the docstring of each is its claim."""
 
-from collections.abc import Iterator
 from itertools import chain
 
 from robo_genesis.core.check_spec import READ_BACK
-from robo_genesis.core.checks import Finding, above, at_most, below, nearly, within
+from robo_genesis.core.checks import Findings, above, at_most, below, nearly, within
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, runs_of
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l07 import rest
@@ -33,7 +32,7 @@ HELD, DEEPER = (
 SLIDES = 5e-3  # Speed from which a box slides [m/s]
 
 
-def settings(run: Experiment) -> Iterator[Finding]:
+def settings(run: Experiment) -> Findings:
     """Frictions and substeps read back from the scenes are those of the cases."""
     for name in SETTINGS:
         for case, value in run.readings[name].items():
@@ -42,7 +41,7 @@ def settings(run: Experiment) -> Iterator[Finding]:
             )
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """Each reported depth is that of the body's shape, and MuJoCo repeats most steps of Genesis."""
     for name, case in run.cases.items():
         trace = run.traces[name]
@@ -50,7 +49,7 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
         yield from kept(name, chain(reported_depth(trace, case), steps))
 
 
-def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
+def creeps_as_computed(run: Experiment) -> Findings:
     """On a tilted table each box with the pyramid creeps as the formula says, within 2
     %, while all its edges press; on a level one none creeps. Where the formula assumes
     forces that pull, the box creeps faster than it says.
@@ -63,7 +62,7 @@ def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
             yield above(f"{name}.share_of_the_formula", found / expected, 1 + BEYOND)
 
 
-def sinks_as_computed(run: Experiment) -> Iterator[Finding]:
+def sinks_as_computed(run: Experiment) -> Findings:
     """On a level table each box sinks in as the formula says, within 2 %, with either cone."""
     for name in (*rest.SCENES["tilt_0"], *rest.SCENES["elliptic_0"]):
         depth, _ = depth_and_creep(run.cases[name])
@@ -72,7 +71,7 @@ def sinks_as_computed(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def friction_lets_creep(run: Experiment) -> Iterator[Finding]:
+def friction_lets_creep(run: Experiment) -> Findings:
     """At 10° a box with more friction creeps faster from 0.5 to 1 and to 2; one with
     0.3 does so as well, because an edge of it has lost its load.
     """
@@ -86,7 +85,7 @@ def share_of(run: Experiment, name: str, other: str = "tilt_10_box") -> float:
     return float(run.metrics[name].creep / run.metrics[other].creep)
 
 
-def what_counts(run: Experiment) -> Iterator[Finding]:
+def what_counts(run: Experiment) -> Findings:
     """Density, edge and solver step change the creep by less than 3 %; the time
     constant changes it in proportion, within 3 %.
     """
@@ -97,7 +96,7 @@ def what_counts(run: Experiment) -> Iterator[Finding]:
         yield nearly(f"{name}.share", share_of(run, name), factor, SAME)
 
 
-def round_cone_holds(run: Experiment) -> Iterator[Finding]:
+def round_cone_holds(run: Experiment) -> Findings:
     """With the elliptic cone each box creeps by at most a twentieth, as the formula
     says up to what float32 leaves, and the box with 0.5 sinks in at least five times
     deeper. With the cone alone it creeps at 0.8 of its speed, within 3 %; with impratio
@@ -114,7 +113,7 @@ def round_cone_holds(run: Experiment) -> Iterator[Finding]:
     yield at_most("impratio_100.share", share_of(run, "impratio_100_box"), HELD)
 
 
-def noslip_is_no_cure(run: Experiment) -> Iterator[Finding]:
+def noslip_is_no_cure(run: Experiment) -> Findings:
     """In both engines noslip stops the box with 0.5 at 5°. In MuJoCo it creeps faster
     with noslip at 15°, and equally fast at 20°.
     """
@@ -129,7 +128,7 @@ def noslip_is_no_cure(run: Experiment) -> Iterator[Finding]:
     yield nearly("mujoco_noslip_20.share", equal, 1.0, SAME)
 
 
-def engines_agree(run: Experiment) -> Iterator[Finding]:
+def engines_agree(run: Experiment) -> Findings:
     """In MuJoCo a box sinks in and creeps as in Genesis, within 2 % and what float32 leaves."""
     for twin in (
         name for name in rest.TWINS if name not in rest.SLIDING and "noslip" not in name
@@ -141,7 +140,7 @@ def engines_agree(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def diagonal_slides_first(run: Experiment) -> Iterator[Finding]:
+def diagonal_slides_first(run: Experiment) -> Findings:
     """In MuJoCo a box with 0.5 slides at 20° towards the diagonal of its pyramid; along
     an axis it creeps at 24°, and along the diagonal at 18°.
     """
@@ -152,7 +151,7 @@ def diagonal_slides_first(run: Experiment) -> Iterator[Finding]:
         yield below(f"{name}.speed_m_s", run.metrics[f"mujoco_{name}"].creep, SLIDES)
 
 
-def speed_misleads(run: Experiment) -> Iterator[Finding]:
+def speed_misleads(run: Experiment) -> Findings:
     """The box that falls by 5 mm is slow, and fast later. In MuJoCo the box with noslip
     at 15° is slow in 20 to 80 % of the last samples, and moves by less than a tenth of
     what its highest speed would give.
@@ -165,7 +164,7 @@ def speed_misleads(run: Experiment) -> Iterator[Finding]:
     yield below(f"{name}.moved_m", of.moved, of.fastest * rest.WINDOW / 10)
 
 
-def window_has_an_edge(run: Experiment) -> Iterator[Finding]:
+def window_has_an_edge(run: Experiment) -> Findings:
     """At 10° the window accepts the box that creeps, and refuses the rough one."""
     yield below("box.moved_m", run.metrics["tilt_10_box"].moved, rest.BOUND)
     yield above("rough.moved_m", run.metrics["tilt_10_rough"].moved, rest.BOUND)

@@ -4,13 +4,12 @@ The solver's answers for pregrasp and grasp are assigned, not commanded. What th
 cameras see is computed from the recorded views, without a picture for each cell.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, at_most, equal
+from robo_genesis.core.checks import Findings, at_most, equal
 from robo_genesis.core.experiment import Experiment, Run, case_inputs, counts
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
@@ -169,7 +168,7 @@ def totals(found: Experiment) -> dict[str, int]:
     return {name: int((of & good["reachable"]).sum()) for name, of in good.items()}
 
 
-def map_follows(found: Experiment) -> Iterator[Finding]:
+def map_follows(found: Experiment) -> Findings:
     """Where the map says that the hand reaches a place, both recorded poses of the hand
     are within the solver's tolerances, up to 2 µm and 2 µrad. All cells of the
     workspace are such places. The camera beside the table shows the object in each cell

@@ -1,7 +1,5 @@
 """Tables of L07, each a function of the experiment."""
 
-from collections.abc import Iterator
-
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal, scaled_value
@@ -23,7 +21,7 @@ DECIDES = {
 
 
 @tables.as_table
-def ladder_table(run: Experiment) -> Iterator[dict[str, str]]:
+def ladder_table(run: Experiment) -> tables.Rows:
     """Return which rungs each scene fails, and of each rung the value that decides."""
     for name in rungs.scenes(run):
         row = {"scene": spec.LETTERS[name]}
@@ -35,7 +33,7 @@ def ladder_table(run: Experiment) -> Iterator[dict[str, str]]:
 
 
 @tables.as_table
-def grip_table(run: Experiment) -> Iterator[dict[str, str]]:
+def grip_table(run: Experiment) -> tables.Rows:
     """Return what the lifts of the page's objects measured."""
     for name in (*rungs.scenes(run), *spec.FURTHER):
         if name in spec.SHOWN_LIFTS:
@@ -57,7 +55,7 @@ def ends(found: bowls.BowlMetrics) -> tuple[str, str]:
 
 
 @tables.as_table
-def bowl_table(run: Experiment) -> Iterator[dict[str, str]]:
+def bowl_table(run: Experiment) -> tables.Rows:
     """Return geoms, volume, balls and mass by choice."""
     volume = run.readings["bowl_volume"]
     for choice, words in CHOICES.items():

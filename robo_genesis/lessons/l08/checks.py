@@ -1,12 +1,11 @@
 """Named checks of L08; the docstring of each is its claim."""
 
-from collections.abc import Iterator
 from dataclasses import fields
 
 import numpy as np
 
 from robo_genesis.core.checks import (
-    Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -27,23 +26,23 @@ from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import apart, kept
 
 
-def structure(run: Experiment) -> Iterator[Finding]:
+def structure(run: Experiment) -> Findings:
     """The robot has the links, joints and DOFs of its model file."""
     return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
-def place_is_enough(run: Experiment) -> Iterator[Finding]:
+def place_is_enough(run: Experiment) -> Findings:
     """Where the expert knows the place, all 64 episodes reach the last rung."""
     yield equal("exact.success", run.metrics["exact"].resting, len(spec.FEW))
 
 
-def turned_camera(run: Experiment) -> Iterator[Finding]:
+def turned_camera(run: Experiment) -> Findings:
     """With the camera turned by 4°, between 60 and 80 % of the 256 episodes succeed."""
     share = run.metrics["askew"].resting / len(spec.STARTS)
     yield within("askew.share", share, 0.7, 0.1)
 
 
-def words_differ(run: Experiment) -> Iterator[Finding]:
+def words_differ(run: Experiment) -> Findings:
     """On the same episodes, at least 95 % finish all phases, at least 30 more than
     succeed lift the object at some time, and more than succeed have it in the bowl at
     the end.
@@ -54,7 +53,7 @@ def words_differ(run: Experiment) -> Iterator[Finding]:
     yield above("askew.in_bowl", m.in_bowl, m.resting + 0.5)
 
 
-def along_the_pads(run: Experiment) -> Iterator[Finding]:
+def along_the_pads(run: Experiment) -> Findings:
     """Each episode whose error along the pads is above −3 mm succeeds, up to 11 mm;
     none succeeds below −6 mm. The errors across the pads are at most 7 mm.
     """
@@ -66,7 +65,7 @@ def along_the_pads(run: Experiment) -> Iterator[Finding]:
     yield at_most("across_m", float(np.abs(error[:, 1]).max()), 7.1e-3)
 
 
-def pads_are_short(run: Experiment) -> Iterator[Finding]:
+def pads_are_short(run: Experiment) -> Findings:
     """When the fingers begin to close, the middle of the pads is in the median 4 to 5.5
     mm nearer to the base than the expert believes the object.
     """
@@ -74,7 +73,7 @@ def pads_are_short(run: Experiment) -> Iterator[Finding]:
         yield within(f"{name}.short_m", run.metrics[name].short, 4.75e-3, 7.5e-4)
 
 
-def edge_of_the_pads(run: Experiment) -> Iterator[Finding]:
+def edge_of_the_pads(run: Experiment) -> Findings:
     """Each episode succeeds in which the object is at most 8 mm from the middle of the
     pads towards their far end when the fingers begin to close, and none from 9 mm on.
     """
@@ -87,7 +86,7 @@ def edge_of_the_pads(run: Experiment) -> Iterator[Finding]:
     yield equal("outside.succeeded", int(good[along > 9e-3].sum()), 0)
 
 
-def held_but_sliding(run: Experiment) -> Iterator[Finding]:
+def held_but_sliding(run: Experiment) -> Findings:
     """In the move the median force of a finger is 11 to 12.5 N, 40 to 46 times what the
     object needs at rest. The median speed at which the object slides down in the
     fingers is 0.5 to 2.5 mm/s.
@@ -102,7 +101,7 @@ def held_but_sliding(run: Experiment) -> Iterator[Finding]:
         yield within(f"{name}.creep_m_s", run.metrics[name].creep, 1.5e-3, 1e-3)
 
 
-def shown_episodes(run: Experiment) -> Iterator[Finding]:
+def shown_episodes(run: Experiment) -> Findings:
     """Each episode of the replay reaches the rung of its name, and finishes all phases."""
     level = metrics.reached(run.traces["askew"], spec.ASKEW)
     for name, row in spec.SHOWN.items():
@@ -112,7 +111,7 @@ def shown_episodes(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
+def order_does_not_matter(run: Experiment) -> Findings:
     """A batch with the episodes of another one, in their order or permuted, is equal to
     it to the last bit.
     """
@@ -126,7 +125,7 @@ def order_does_not_matter(run: Experiment) -> Iterator[Finding]:
             yield equal(f"{name}.{array}", differ, 0)
 
 
-def commands_come_first(run: Experiment) -> Iterator[Finding]:
+def commands_come_first(run: Experiment) -> Findings:
     """In the dataset a command belongs to the sample before it: up to the row whose
     action closes the fingers, no finger has moved by 1 mm, and one row later each
     finger has.
@@ -136,7 +135,7 @@ def commands_come_first(run: Experiment) -> Iterator[Finding]:
     yield above("after_m", float(after.min()), 1e-3)
 
 
-def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
+def pictures_show_the_states(run: Experiment) -> Findings:
     """In a run with a camera, the last picture of the first film is the frame at the
     end of the run, within one of 255 levels in the mean. The picture at the beginning
     of the move is not.
@@ -151,7 +150,7 @@ def pictures_show_the_states(run: Experiment) -> Iterator[Finding]:
         yield above("move.levels", float(apart[move]), 1.0)
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """Each batch begins where its case puts robot and object. In an episode that is
     recorded at all steps, links and control forces are those of the driven robot.
     """
@@ -165,7 +164,7 @@ def laws_of_motion(run: Experiment) -> Iterator[Finding]:
         yield from kept(name, laws)
 
 
-def begins(trace: Episodes, case: picking.PickCase) -> Iterator[Finding]:
+def begins(trace: Episodes, case: picking.PickCase) -> Findings:
     """Yield a start that is not that of the case."""
     place = np.column_stack([case.starts, np.full(len(case.starts), case.size[2] / 2)])
     start = {"q": case.q_start, "object_pos": place, "object_quat": case.turns}
@@ -179,7 +178,7 @@ RESTS, GRIPPED = 1e-4, 3e-2
 CATCHES_UP = 3  # The largest share of a page's batches is 2.02, after a hard contact
 
 
-def nothing_jumps(run: Experiment) -> Iterator[Finding]:
+def nothing_jumps(run: Experiment) -> Findings:
     """Between two samples a joint of the arm moves by less than three times what its
     commands do, because it also catches up. Before the descent an object moves by less
     than 0.1 mm. In the move, the distance of a held object from the hand changes by less

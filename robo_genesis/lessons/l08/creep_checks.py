@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.check_spec import READ_BACK
 from robo_genesis.core.checks import (
-    Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -38,7 +38,7 @@ TURN = 1e-4  # Rotation of a held box; noslip turns it by up to 2e-5 rad
 SPEED, SPIN = 6e-6, 2.5e-4  # Of a steady motion [m/s] and [rad/s]
 
 
-def settings(run: Experiment) -> Iterator[Finding]:
+def settings(run: Experiment) -> Findings:
     """Friction and time constant read back are those of the cases; each box has 8 contacts."""
     for name in ("friction", "time_constant"):
         for case, value in run.readings[name].items():
@@ -49,13 +49,13 @@ def settings(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{case}.contacts", value, CONTACTS)
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """No box turns, and each slides at a constant speed."""
     for name, case in run.cases.items():
         yield from kept(name, steady(run.traces[name], case))
 
 
-def steady(trace: BodyTrace, case: HeldCase) -> Iterator[Finding]:
+def steady(trace: BodyTrace, case: HeldCase) -> Findings:
     """Yield what no run of a held box has."""
     yield from apart("link_quat", trace.link_quat, UNTURNED, TURN)
     yield from apart("link_ang [rad/s]", trace.link_ang, np.zeros(3), SPIN)
@@ -64,7 +64,7 @@ def steady(trace: BodyTrace, case: HeldCase) -> Iterator[Finding]:
     yield from apart("link_vel [m/s]", trace.link_vel, speed, SPEED)
 
 
-def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
+def creeps_as_computed(run: Experiment) -> Findings:
     """Without noslip each box creeps as its formula says, within 0.5 %, in both
     engines: with both cones and all values of impratio, on both sides of the weight µN.
     """
@@ -73,7 +73,7 @@ def creeps_as_computed(run: Experiment) -> Iterator[Finding]:
         yield within(f"{name}.creep_m_s", found, expected, SHARE * expected + STILL)
 
 
-def sinks_as_computed(run: Experiment) -> Iterator[Finding]:
+def sinks_as_computed(run: Experiment) -> Findings:
     """Without noslip the contacts of each box are as deep as its formula says, within
     0.5 % and 0.1 µm, in both engines.
     """
@@ -105,7 +105,7 @@ def shares(
         yield f"{engine}{name}.share_of_{other}", share
 
 
-def friction_lets_creep(run: Experiment) -> Iterator[Finding]:
+def friction_lets_creep(run: Experiment) -> Findings:
     """In both engines the creep grows with each step of friction from 0.3 to 2, at 10 N
     and 0.1 kg; it is more than doubled in all.
     """
@@ -117,7 +117,7 @@ def friction_lets_creep(run: Experiment) -> Iterator[Finding]:
         yield above(label, share, 2)
 
 
-def what_counts(run: Experiment) -> Iterator[Finding]:
+def what_counts(run: Experiment) -> Findings:
     """In both engines a step of 1 ms and 500 iterations change the creep by less than
     0.5 %. Half of the time constant halves it for µ = 0.3, within 1 %. Four times the
     force leaves at least half of it, and five times the mass makes it larger.
@@ -132,7 +132,7 @@ def what_counts(run: Experiment) -> Iterator[Finding]:
             yield above(label, share, least)
 
 
-def noslip_ends_at_half(run: Experiment) -> Iterator[Finding]:
+def noslip_ends_at_half(run: Experiment) -> Findings:
     """In both engines noslip leaves at most 1 % of the creep of boxes lighter than µN,
     and changes that of the box which is heavier by less than 0.5 %.
     """
@@ -142,7 +142,7 @@ def noslip_ends_at_half(run: Experiment) -> Iterator[Finding]:
             yield within(label, share, expected, room)
 
 
-def round_cone_holds(run: Experiment) -> Iterator[Finding]:
+def round_cone_holds(run: Experiment) -> Findings:
     """In both engines the elliptic cone with impratio 100 leaves at most 1 % of the
     creep of each box, also of the one that is heavier than µN. With impratio 1 the
     creep is the same for all coefficients, and in Genesis so is the depth.
@@ -157,7 +157,7 @@ def round_cone_holds(run: Experiment) -> Iterator[Finding]:
         yield within(f"{name}.depth_m", run.metrics[name].depth, same, DEPTH)
 
 
-def engines_agree(run: Experiment) -> Iterator[Finding]:
+def engines_agree(run: Experiment) -> Findings:
     """In MuJoCo a box creeps as in Genesis, within 0.5 % and 2 µm/s, except with the
     pyramid and another impratio than 1: there the box with µ = 2 creeps more than four
     times as fast in MuJoCo.
@@ -171,7 +171,7 @@ def engines_agree(run: Experiment) -> Iterator[Finding]:
     yield above("mujoco_pyramid_100_mu_2.share", share, 4)
 
 
-def creeps_on(run: Experiment) -> Iterator[Finding]:
+def creeps_on(run: Experiment) -> Findings:
     """In 10 s the box slides 10 s times the creep of the formula, within 0.5 %, and
     less than the bound of its formula with d = 0.9.
     """

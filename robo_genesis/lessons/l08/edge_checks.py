@@ -1,10 +1,8 @@
 """Named checks of the page on rates; the docstring of each is its claim."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, within
+from robo_genesis.core.checks import Findings, above, at_most, below, equal, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l08 import checks, edge, metrics, rates
 from robo_genesis.sim.arm.picking import CLOSE
@@ -15,7 +13,7 @@ MEASURES = False
 BAND = 12.5  # Least difference of two counts that is called a difference
 
 
-def window_of_errors(run: Experiment) -> Iterator[Finding]:
+def window_of_errors(run: Experiment) -> Findings:
     """Of 256 errors 36 to 60 end well. With at most 14 mm across the pads, all with 2
     to 6 mm along them do, and none from −10 mm down or from 18 mm up. Of those that end
     well, the hand touches 5 or more before the fingers close, among them at least half
@@ -35,7 +33,7 @@ def window_of_errors(run: Experiment) -> Iterator[Finding]:
     yield equal("outside.succeeded", int(good[outside].sum()), 0)
 
 
-def correction_helps(run: Experiment) -> Iterator[Finding]:
+def correction_helps(run: Experiment) -> Findings:
     """The corrected expert succeeds alone at 10 or more starts and fails alone at 8 at
     most, and by the paired test p is below 0.01.
     """
@@ -45,7 +43,7 @@ def correction_helps(run: Experiment) -> Iterator[Finding]:
     yield below("p", rates.paired(alone, worse), 0.01)
 
 
-def window_is_centred(run: Experiment) -> Iterator[Finding]:
+def window_is_centred(run: Experiment) -> Findings:
     """The corrected expert succeeds at all starts with noise of at most 7 mm along the pads."""
     case = run.cases["corrected"]
     along = (case.beliefs - case.starts - edge.SAG)[:, 0]
@@ -65,7 +63,7 @@ def pairs(run: Experiment, first: int = edge.PAIRS) -> tuple[int, int, int, int]
     return both, alone, int((plain & ~other).sum()), int((~plain & ~other).sum())
 
 
-def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
+def clock_hides_failure(run: Experiment) -> Findings:
     """All episodes finish all phases. With the shortest clock none succeeds; with the
     longest one and with the measured end all do.
     """
@@ -78,7 +76,7 @@ def clock_hides_failure(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{words}.success", int(good[row].sum()), edge.TIMED)
 
 
-def slower_slides_farther(run: Experiment) -> Iterator[Finding]:
+def slower_slides_farther(run: Experiment) -> Findings:
     """At each of three speeds all 16 episodes end well. From each start, a slower arm
     lets the cylinder slide farther. The medians of the slide per second differ by less
     than a tenth.
@@ -94,7 +92,7 @@ def slower_slides_farther(run: Experiment) -> Iterator[Finding]:
     )
 
 
-def hovering_is_a_trap(run: Experiment) -> Iterator[Finding]:
+def hovering_is_a_trap(run: Experiment) -> Findings:
     """At least 13 boxes more are over the bowl at the end than succeed, and at least 10
     of them hang above the rim in the hand. At least 95 % of the episodes finish all
     phases.

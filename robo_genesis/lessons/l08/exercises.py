@@ -1,14 +1,13 @@
 """Checks of the functions that a student writes in L08's lab; see `core/exercises.py`."""
 
-from collections.abc import Callable, Iterator
 from functools import partial
 from math import nan
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, equal, within
-from robo_genesis.core.exercises import as_test, compared, refused, same_array
+from robo_genesis.core.checks import Findings, equal, within
+from robo_genesis.core.exercises import Written, as_test, compared, refused, same_array
 from robo_genesis.lessons.l08 import metrics, rates
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
@@ -23,7 +22,7 @@ OBJECTS = {
 
 
 @as_test
-def grasp(grasp_pose: Callable[..., Any]) -> Iterator[Finding]:
+def grasp(grasp_pose: Written) -> Findings:
     """Check `grasp_pose(place, height)`: positions of the hand at pregrasp and grasp [m]."""
     for name, (place, height) in OBJECTS.items():
         right = np.array(lifting.waypoints(place, height)[:2])
@@ -51,7 +50,7 @@ STATES: dict[str, tuple[bool, bool, dict[tuple[str, int], float]]] = {
 
 
 @as_test
-def ends(ended: Callable[..., Any]) -> Iterator[Finding]:
+def ends(ended: Written) -> Findings:
     """Check `ended(q, qd, goal, of_fingers, since)`: first row by row, then on all rows."""
     rows: list[tuple[Any, ...]] = []
     for shift, (name, (*expected, changed)) in enumerate(STATES.items()):
@@ -124,7 +123,7 @@ def episode(*faults: Any) -> list[Any]:
 
 
 @as_test
-def ladders(rungs: Callable[..., Any]) -> Iterator[Finding]:
+def ladders(rungs: Written) -> Findings:
     """Check `rungs(phase, force, pos, touches, lowest, rim)`: rungs before the first failure."""
     for name, (*faults, expected) in EPISODES.items():
         yield equal(name, int(rungs(*episode(*faults))), expected)
@@ -134,7 +133,7 @@ RATES = ((0, 1), (1, 1), (0, 64), (64, 64), (1, 3), (45, 64), (7, 1000))
 
 
 @as_test
-def intervals(wilson: Callable[..., Any]) -> Iterator[Finding]:
+def intervals(wilson: Written) -> Findings:
     """Check `wilson(k, n)`: both ends of the interval, or ValueError."""
     for k, n in RATES:
         right = rates.wilson(k, n)
@@ -156,7 +155,7 @@ SLIDES = {
 
 
 @as_test
-def sliding(creep: Callable[..., Any]) -> Iterator[Finding]:
+def sliding(creep: Written) -> Findings:
     """Check `creep(hand_z, object_z, t)`: the least-squares speed downwards [m/s]."""
     for name, (times, slid) in SLIDES.items():
         t, down = np.array(times), np.array(slid)

@@ -1,8 +1,6 @@
 """Tables of L08, each a function of the experiment."""
 
-from collections.abc import Iterator
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -57,7 +55,7 @@ def rate_table(run: Experiment, head: str) -> str:
 
 
 @tables.as_table
-def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
+def rung_table(run: Experiment) -> tables.Rows:
     """Return by rung how many episodes reach it, and how many fail there first."""
     left = len(spec.STARTS)
     for rung in metrics.RUNGS:
@@ -72,7 +70,7 @@ def rung_table(run: Experiment) -> Iterator[dict[str, Any]]:
 
 
 @tables.as_table
-def pair_table(run: Experiment) -> Iterator[dict[str, Any]]:
+def pair_table(run: Experiment) -> tables.Rows:
     """Return the outcomes of both experts at the first starts, and p of the paired test."""
     for n in (16, 32, 64, edge.PAIRS):
         both, alone, worse, none = pairs(run, n)
@@ -92,7 +90,7 @@ def pair_table(run: Experiment) -> Iterator[dict[str, Any]]:
 
 
 @tables.as_table
-def side_table(run: Experiment) -> Iterator[dict[str, str]]:
+def side_table(run: Experiment) -> tables.Rows:
     """Return successes by the error along the pads, before any correction."""
     along = 1000 * (run.cases["plain"].beliefs - run.cases["plain"].starts)[:, 0]
     edges = np.array([-np.inf, -8, -4, 0, 4, 8, np.inf])
@@ -108,7 +106,7 @@ def side_table(run: Experiment) -> Iterator[dict[str, str]]:
 
 
 @tables.as_table
-def pace_table(run: Experiment) -> Iterator[dict[str, str]]:
+def pace_table(run: Experiment) -> tables.Rows:
     """Return how long cylinders are held at each speed of the arm, and how far they slide."""
     found = (
         of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
@@ -123,7 +121,7 @@ def pace_table(run: Experiment) -> Iterator[dict[str, str]]:
 
 
 @tables.as_table
-def creep_changes(run: Experiment) -> Iterator[dict[str, str]]:
+def creep_changes(run: Experiment) -> tables.Rows:
     """Return what users change, and the share of the creep that it leaves in both engines."""
     for name, (words, other, price) in creep.CHANGES.items():
         shares = {
