@@ -22,8 +22,12 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_status,
 )
 from robo_genesis.pipeline.pages.book import code_digest, find_pages
-from robo_genesis.pipeline.pages.page_folder import OUTPUTS, PageRefused, read_record
-from robo_genesis.pipeline.pages.results import find_bundle
+from robo_genesis.pipeline.pages.page_folder import (
+    OUTPUTS,
+    PageRefused,
+    find_bundle,
+    read_record,
+)
 from robo_genesis.pipeline.pages.store import folders
 
 Pair = tuple[str, str]
@@ -119,7 +123,7 @@ def read_build(
         for folder in folders(root / ".cache" / STORE, page):
             with suppress(PageRefused):  # it is not of a build of today
                 record = read_record(folder)
-                bundle = find_bundle(folder / OUTPUTS, record.run_id)
+                bundle = find_bundle(folder / OUTPUTS)
                 current = record.engine == version and record.code == code_digest(page)
                 if bundle and current:
                     bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle

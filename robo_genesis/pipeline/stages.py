@@ -122,7 +122,7 @@ def execute_one(name: str, build: Build) -> list[str]:
         [result], _ = _execute(build, chosen, into, Progress(build.say))
     return [
         f"Executed page: {result.folder}",
-        f"Engine: {project.ENGINE} {engine}, run {result.run_id}",
+        f"Engine: {project.ENGINE} {engine}",
     ]
 
 

@@ -10,7 +10,7 @@ from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import outputs
-from robo_genesis.pipeline.pages.page_folder import RECORD, stored_notebook
+from robo_genesis.pipeline.pages.page_folder import RECORD, executed_cells
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.pipeline.pages.store import Verify
@@ -44,7 +44,7 @@ def verify_results(
         if result.bundle is None:
             continue
         try:
-            manifest = verify(result.bundle, result.run_id)
+            manifest = verify(result.bundle)
             require_contract(manifest, contract)
             compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
@@ -81,9 +81,8 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     inputs = [(folder / RECORD).read_text("utf8"), prints(result.page.notebook), code]
 
     def compare() -> int:
-        return outputs.require_shown(
-            result.page, stored_notebook(result), bundle, manifest
-        )
+        executed = executed_cells(folder)
+        return outputs.require_shown(result.page, executed, bundle, manifest)
 
     return int(derived_value("shown", inputs, compare))
 

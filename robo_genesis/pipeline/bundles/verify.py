@@ -150,7 +150,6 @@ def check_backend(folder: Path, manifest: Manifest) -> None:
 
 def verify_bundle(
     folder: Path,
-    run_id: str | None = None,
     *,
     lesson: str | None = None,
     page: str | None = None,
@@ -164,7 +163,6 @@ def verify_bundle(
 
     Args:
         folder: the bundle, named after its actual backend.
-        run_id: the required run, None for any.
         lesson: the required lesson, None for any.
         page: the required page, None for any.
         root: the checkout, for pin, lock and modules.
@@ -182,10 +180,6 @@ def verify_bundle(
         ProjectError, PageError: the checkout itself cannot be read.
     """
     manifest = bundle.read_manifest(folder)
-    again = "Execute the page again."
-    expect(
-        "run-id", MANIFEST, "run_id", manifest.run_id, run_id or manifest.run_id, again
-    )
     for what, required in (("lesson", lesson), ("page", page)):
         found = getattr(manifest, what)
         expect("lesson", MANIFEST, what, found, required or found, MOVE)

@@ -1,37 +1,23 @@
 """The executed pages of the book and their code cells."""
 
 import pickle
-import re
-from collections.abc import Iterable, Mapping
-from copy import deepcopy
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
-from typing import cast
 
 import yaml
 from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.core.files import NO_SOURCE, derived, files_below, json_digest
-from robo_genesis.core.project import PUBLISHED, ROOT, ProjectError
-from robo_genesis.pipeline.pages import page_rules as rules
-from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
+from robo_genesis.core.files import derived, json_digest
+from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.pipeline.pages.page_rules import declared, page_problems
+from robo_genesis.pipeline.pages.syntax import Code, read_code
 
 # The name of a lesson's lab, and the file with its work sheet.
 LAB, WORK_SHEET = "lab", "worksheet.md"
 
 TOC = "_toc.yml"
-CREATE = "Pages are .md files: create it, or remove its name here."
-PAGES = (".md", ".markdown", ".rst", ".ipynb")
-STRAY = (
-    "no line of _toc.yml names this file, so no reader finds it. Add it there as a .md file, or "
-    "move it out of the book or into a folder whose name begins with _."
-)
-TWICE = (
-    "the front matter declares {}/{}, as {} does. Declare another page of the lesson."
-)
 
 
 class PageError(ProjectError):
@@ -94,85 +80,38 @@ def find_pages(book: Path) -> list[Page]:
     Raises:
         PageError: naming file, line and cure of each problem of the book's pages.
     """
-    files = page_files(book)
-    own = sorted(files_below(book, (PUBLISHED, f".{PUBLISHED}"), NO_SOURCE))
-    problems = [
-        _report(path, [(1, STRAY)]) for path in own if _is_stray(path, book, files)
-    ]
     pages: list[Page] = []
-    measuring: dict[tuple[str | None, str | None], Path] = {}
-    for name, path in files.items():
+    problems: list[str] = []
+    measuring: dict[tuple[str, str], Path] = {}
+    for name, path in page_files(book).items():
         try:
-            notebook = _read(path, book / TOC)
+            notebook = read_notebook(path)
         except PageError as error:
             problems.append(str(error))
             continue
         if notebook is None:
             continue
-        measures = rules.declared(notebook) or (None, None)
-        other = measuring.setdefault(measures, path) if measures[0] else path
-        if other != path:
-            line = _line_of(f"{PACKAGE}:", path)
-            problems.append(_report(path, [(line, TWICE.format(*measures, other))]))
-        pages.append(Page(name, path, notebook, *measures))
+        found = [*page_problems(notebook)]
+        if measures := declared(notebook):
+            other = measuring.setdefault(measures, path)
+            if other != path:
+                found.append(
+                    (1, f"it declares the lesson and page that {other} declares.")
+                )
+        problems += [f"{path}:{line}: {problem}" for line, problem in found]
+        pages.append(Page(name, path, notebook, *(measures or ())))
     if problems:
-        raise PageError("\n".join(problems))
+        raise PageError("\n".join(problems).replace(f"{ROOT}/", ""))
     return pages
-
-
-def _read(path: Path, toc: Path) -> NotebookNode | None:
-    """Return a page that has code cells; raise PageError with all that it may not contain."""
-    if not path.is_file():
-        line = _line_of(path.stem, toc)
-        raise PageError(_report(toc, [(line, f"there is no {path}. {CREATE}")]))
-    notebook = read_notebook(path)
-    if problems := [*rules.page_problems(path.read_text("utf8"), notebook)]:
-        raise PageError(_report(path, problems))
-    return notebook
 
 
 def page_files(book: Path) -> dict[str, Path]:
     """Return the file of each page by its name, in the order of the table of contents."""
-    toc = book / TOC
     try:
-        site_map = parse_toc_yaml(toc)
+        names = [str(name).removesuffix(".md") for name in parse_toc_yaml(book / TOC)]
     except (OSError, ValueError, yaml.YAMLError, MalformedError) as error:
-        raise PageError(
-            _report(toc, [(1, f"it cannot be read: {error}\nCorrect it.")])
-        ) from error
-    if site_map.globs():
-        raise PageError(
-            f"_toc.yml uses globs {sorted(site_map.globs())}. List every page instead."
-        )
-    names = [str(docname).removesuffix(".md") for docname in site_map]
+        raise PageError(f"{book / TOC} cannot be read: {error}") from error
     return {name: book / f"{name}.md" for name in names}
-
-
-def _is_stray(path: Path, book: Path, files: Mapping[str, Path]) -> bool:
-    """Whether a file looks like a page, and no line of the table of contents names it."""
-    hidden = any(part.startswith("_") for part in path.relative_to(book).parts)
-    is_page = path.suffix.lower() in PAGES and path.name != WORK_SHEET
-    return is_page and not hidden and path not in files.values()
-
-
-def _line_of(word: str, path: Path) -> int:
-    """Return the number of the first line of a file with a word."""
-    lines = path.read_text("utf8").split("\n")
-    return 1 + next((n for n, line in enumerate(lines) if word in line), 0)
-
-
-def _line_of_error(error: Exception) -> int:
-    """Return the line of what the reader of a page or of YAML does not accept."""
-    if at := re.search(r"at line (\d+)", str(error)):
-        return int(at[1])
-    at = re.search(r"line (\d+), column", str(error))  # of the front matter
-    return int(at[1]) + 1 if at else 1
-
-
-def _report(path: Path, problems: Iterable[rules.Problem]) -> str:
-    """Return a line for each problem of a file."""
-    name = str(path).removeprefix(f"{ROOT}/")
-    return "\n".join(f"{name}:{line}: {problem}" for line, problem in problems)
 
 
 def read_notebook(path: Path) -> NotebookNode | None:
@@ -181,32 +120,19 @@ def read_notebook(path: Path) -> NotebookNode | None:
     Raises:
         PageError: it cannot be read.
     """
+
+    def parse() -> bytes:
+        # Parse first: MyST-NB takes a notebook with a broken front matter for plain text.
+        notebook = myst_nb_reader_plugin(str(path)) if text.startswith("---") else None
+        return pickle.dumps(notebook if is_myst_markdown_notebook(text) else None)
+
     try:
         text = path.read_text("utf8")
-        # Parse first: MyST-NB mistakes a notebook with a broken front matter for plain
-        # text.
-        notebook = deepcopy(_parsed(path, text)) if text.startswith("---") else None
+        return pickle.loads(derived("parsed", [text.encode()], parse))
     except Exception as error:  # the parser raises exceptions of many types
-        why = f"the page cannot be read: {error}\nFront matter and options of cells are YAML."
-        raise PageError(_report(path, [(_line_of_error(error), why)])) from error
-    return notebook if _is_notebook(text) else None
-
-
-@lru_cache(maxsize=128)
-def _is_notebook(text: str) -> bool:
-    """Return whether the text of a page has code cells."""
-    return bool(is_myst_markdown_notebook(text))
-
-
-@lru_cache(maxsize=64)
-def _parsed(path: Path, text: str) -> NotebookNode:
-    """Return a page as a notebook; a build needs each page several times, in two processes."""
-    read = derived(
-        "parsed",
-        [text.encode()],
-        lambda: pickle.dumps(myst_nb_reader_plugin(str(path))),
-    )
-    return cast(NotebookNode, pickle.loads(read))
+        raise PageError(
+            f"{path} cannot be read: {error}\nFront matter and options of cells are YAML."
+        ) from error
 
 
 def code_cells(notebook: NotebookNode) -> list[NotebookNode]:

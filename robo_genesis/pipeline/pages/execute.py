@@ -12,7 +12,7 @@ from robo_genesis.core import project
 from robo_genesis.pipeline.command import TIMEOUT
 from robo_genesis.pipeline.pages import progress
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.page_folder import PageRefused
+from robo_genesis.pipeline.pages.page_folder import RECORD, PageRefused
 from robo_genesis.pipeline.pages.page_run import PageRun
 from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import Failure, PageResult
@@ -160,7 +160,7 @@ class Schedule:
             result = run.execute(lambda: self.events.put((run, None)))
         except Exception as error:  # of a full disk, or a defect of this module
             failure = Failure(type(error).__name__, str(error))
-            result = PageResult(run.page, "failed", 0.0, run.run_id, failure=failure)
+            result = PageResult(run.page, "failed", run.place, failure=failure)
         self.events.put((run, result))
 
 
@@ -186,20 +186,28 @@ def in_order(runs: Iterable[PageRun], first: Sequence[PageRun] = ()) -> list[Pag
     """Return runs in the order in which they start: the longest first, those with `alone` last.
 
     Args:
-        runs: the pages to execute. Those that were never executed come before the
-            others, and among them those with the most cells.
+        runs: the pages to execute. Those whose last run failed come before the
+            others, then those that were never executed, the ones with the most cells
+            first.
         first: come before all others, in this order.
     """
 
-    def sooner(run: PageRun) -> tuple[int, bool, float, int]:
+    def sooner(run: PageRun) -> tuple[int, bool, bool, float, int]:
         return (
             first.index(run) if run in first else len(first),
             bool(run.page.alone),
+            not failed_last(run),
             -run.last.seconds if run.last else -inf,
             -len(run.page.code.sources),
         )
 
     return sorted(runs, key=sooner)
+
+
+def failed_last(run: PageRun) -> bool:
+    """Whether the last run of a page failed: its log is newer than the page in the store."""
+    stored = (file.stat().st_mtime for file in run.place.parent.glob(f"*/{RECORD}"))
+    return run.log.is_file() and run.log.stat().st_mtime > max(stored, default=0)
 
 
 def _first(waiting: Sequence[PageRun], environment: Mapping[str, str]) -> list[PageRun]:

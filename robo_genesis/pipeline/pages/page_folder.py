@@ -15,10 +15,9 @@ from pydantic import ValidationError
 
 from robo_genesis.core.files import files_below, replaced
 from robo_genesis.core.project import ENGINE, ProjectError, installed_version
-from robo_genesis.evidence.bundle import RunId, Sha256, Strict, sha256
-from robo_genesis.pipeline.pages.book import Page, code_cells, code_digest, code_of
+from robo_genesis.evidence.bundle import MANIFEST, Sha256, Strict, sha256
+from robo_genesis.pipeline.pages.book import Page, code_cells, code_digest
 from robo_genesis.pipeline.pages.outputs import keep_outputs
-from robo_genesis.pipeline.pages.results import PageResult, find_bundle
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
 SECONDS = "cell_seconds"  # In the metadata of the notebook
@@ -31,17 +30,11 @@ class PageRefused(ProjectError):  # noqa: N818 - the word of the domain, as for 
 class Record(Strict):
     """`page.json`: what was executed, with what, and the files that the run left.
 
-    `fingerprint` names everything that decides outputs, `code` is the digest of the
-    page's own code. `engine` is its version, None if it is unknown. `seconds` is the
-    duration of the execution; `files` maps names to digests.
+    `code` is the digest of the page's own code, `engine` its version, None if it is
+    unknown. `seconds` is the duration of the execution; `files` maps names to digests.
     """
 
-    docname: str
-    lesson: str | None
-    page: str | None
-    fingerprint: str
     code: Sha256
-    run_id: RunId
     engine: str | None
     seconds: float
     files: dict[str, Sha256]
@@ -52,7 +45,6 @@ def write_page(
     page: Page,
     notebook: NotebookNode,
     left: Path,
-    run_id: str,
     seconds: float,
     cell_seconds: Sequence[float],
 ) -> None:
@@ -64,7 +56,6 @@ def write_page(
         notebook: its cells with their outputs.
         left: the folder with the files that the run left; used if the page declares a
             bundle.
-        run_id: of the run.
         seconds: how long the execution took.
         cell_seconds: how long each cell with code took.
 
@@ -79,15 +70,10 @@ def write_page(
         nbformat.write(code, fresh / NOTEBOOK)
         if page.declares_bundle:
             shutil.copytree(left, fresh / OUTPUTS)
-            if bundle := find_bundle(fresh / OUTPUTS, run_id):
+            if bundle := find_bundle(fresh / OUTPUTS):
                 keep_outputs(bundle, notebook)
         record = Record(
-            docname=page.docname,
-            lesson=page.lesson,
-            page=page.page,
-            fingerprint=place.name,
             code=code_digest(page),
-            run_id=run_id,
             engine=installed_version(ENGINE),
             seconds=round(seconds, 3),
             files=_digests(fresh),
@@ -120,8 +106,8 @@ def read_record(place: Path) -> Record:
         ) from error
 
 
-def read_page(place: Path) -> tuple[Record, NotebookNode]:
-    """Return record and notebook of an executed page whose files are as they were stored.
+def read_page(place: Path) -> NotebookNode:
+    """Return the notebook of an executed page whose files are as they were stored.
 
     Raises:
         PageRefused: naming each file that is missing, was added or changed.
@@ -129,22 +115,16 @@ def read_page(place: Path) -> tuple[Record, NotebookNode]:
     record, digests = read_record(place), _digests(place)
     names = {*digests, *record.files}
     damaged = [n for n in sorted(names) if digests.get(n) != record.files.get(n)]
-    if damaged or record.fingerprint != place.name:
-        raise PageRefused(
-            f"{', '.join(damaged or [RECORD])} changed since {place} was stored."
-        )
-    return record, nbformat.read(place / NOTEBOOK, as_version=4)
+    if damaged:
+        raise PageRefused(f"{', '.join(damaged)} changed since {place} was stored.")
+    return executed_cells(place)
 
 
-def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
-    """Return the digests of a notebook's code cells and the name of the kernel that executes them.
-
-    Comments and layout of the cells do not count.
-    """
-    kernel = notebook.metadata.get("kernelspec", {}).get("name")
-    return code_of(notebook).digests, kernel
+def executed_cells(place: Path) -> NotebookNode:
+    """Return the code cells of a page in its folder, with their outputs."""
+    return nbformat.read(place / NOTEBOOK, as_version=4)
 
 
-def stored_notebook(result: PageResult) -> NotebookNode:
-    """Return the code cells of a page that was executed, with their outputs."""
-    return nbformat.read(result.folder / NOTEBOOK, as_version=4)
+def find_bundle(left: Path) -> Path | None:
+    """Return the bundle among the files that a page left, None if there is none."""
+    return next((file.parent for file in sorted(left.glob(f"*/{MANIFEST}"))), None)

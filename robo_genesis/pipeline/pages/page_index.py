@@ -6,18 +6,13 @@ from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Self
 
-import nbformat
 from nbformat import NotebookNode
 from pydantic import Field
 
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.bundle import Strict
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.page_folder import (
-    NOTEBOOK,
-    OUTPUTS,
-    SECONDS,
-)
+from robo_genesis.pipeline.pages.page_folder import OUTPUTS, SECONDS, executed_cells
 from robo_genesis.pipeline.pages.results import PageResult
 
 # A variable: if it is set, a page whose code changed is shown with the outputs of its
@@ -71,7 +66,7 @@ def executed_notebook(docname: str, page: NotebookNode) -> NotebookNode:
     Raises:
         KeyError: the page is not executed.
     """
-    executed = nbformat.read(page_index().folders[docname] / NOTEBOOK, as_version=4)
+    executed = executed_cells(page_index().folders[docname])
     if LAST_OUTPUTS in os.environ:
         cells = [cell for cell in page.cells if cell.cell_type == "code"]
         executed.cells = with_last_outputs(cells, executed.cells)
@@ -112,7 +107,7 @@ def cell_seconds(docname: str) -> list[float]:
     folder = page_index().folders.get(docname)
     if folder is None:
         raise LookupError(f"{docname} is not executed. Build with `make book`.")
-    return nbformat.read(folder / NOTEBOOK, as_version=4).metadata[SECONDS]
+    return executed_cells(folder).metadata[SECONDS]
 
 
 def measuring_page(docname: str) -> str:

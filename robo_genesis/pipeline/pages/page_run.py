@@ -21,12 +21,7 @@ from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages import kernels, results
 from robo_genesis.pipeline.pages.book import Page, code_digest
-from robo_genesis.pipeline.pages.page_folder import (
-    OUTPUTS,
-    PageRefused,
-    Record,
-    write_page,
-)
+from robo_genesis.pipeline.pages.page_folder import PageRefused, Record, write_page
 from robo_genesis.pipeline.pages.results import Failure, PageResult
 
 # What a warning names in the place of a file: a temporary one with the number of the
@@ -54,7 +49,6 @@ class PageRun:
     timeout: int
     environment: Mapping[str, str]
     last: Record | None = None
-    run_id: str = field(default_factory=lambda: uuid.uuid4().hex)
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
     alone: bool = False
@@ -76,18 +70,8 @@ class PageRun:
         if failure:
             text = self.log.read_text("utf8", errors="replace")
             failure = replace(failure, log=results.last_lines(text))
-        left = self.place / OUTPUTS
-        bundle = None if failure else results.find_bundle(left, self.run_id)
-        return PageResult(
-            self.page,
-            "failed" if failure else "executed",
-            seconds,
-            self.run_id,
-            bundle,
-            failure,
-            self.place,
-            self.log,
-        )
+        status: results.Status = "failed" if failure else "executed"
+        return PageResult(self.page, status, self.place, seconds, failure, self.log)
 
     def _execute(
         self, folder: Path, log: BinaryIO, on_cell: Callable[[], None]
@@ -121,7 +105,7 @@ class PageRun:
             seconds.append(round(time.monotonic() - begins[cell_index], 3))
 
         own = {
-            project.RUN_ID: self.run_id,
+            project.RUN_ID: uuid.uuid4().hex,
             project.OUTPUTS_DIR: str(outputs),
             project.PAGE_SHA256: code_digest(self.page),
             project.PAGE_IMPORTS: " ".join(self.page.code.imports),
@@ -153,13 +137,8 @@ class PageRun:
         left = outputs / str(self.page.lesson) / str(self.page.page)
         if failure := self._failure(notebook, error, list(begins), left):
             return elapsed, failure
-        notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = (
-            self.run_id
-        )
         try:
-            write_page(
-                self.place, self.page, notebook, left, self.run_id, elapsed, seconds
-            )
+            write_page(self.place, self.page, notebook, left, elapsed, seconds)
         except (PageRefused, OSError, RuntimeError, ValueError) as caught:
             return elapsed, Failure(
                 "NotStored", f"the executed page cannot be stored: {caught}"
@@ -175,9 +154,8 @@ class PageRun:
     ) -> Failure | None:
         """Return why the page failed, None if it did not."""
         if error is None:
-            return results.unexpected_outcome(
-                self.page, notebook
-            ) or results.missing_bundle(left, self.page, self.run_id)
+            wrong = results.unexpected_outcome(self.page, notebook)
+            return wrong or results.missing_bundle(left, self.page)
         name, message = type(error).__name__, str(error)
         if isinstance(error, CellExecutionError):
             name, message = error.ename, error.evalue

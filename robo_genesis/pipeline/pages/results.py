@@ -1,6 +1,5 @@
 """The result of executing a page: expected exceptions, its bundle, the failure and the report."""
 
-import json
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -12,11 +11,11 @@ from nbformat import NotebookNode
 
 from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
-from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
 from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page, code_cells
 from robo_genesis.pipeline.pages.guards import contradicted
+from robo_genesis.pipeline.pages.page_folder import OUTPUTS, find_bundle
 from robo_genesis.pipeline.pages.page_rules import first_line
 
 LOG_LINES = 15
@@ -71,20 +70,21 @@ class Failure:
 class PageResult:
     """The result of one page in one build.
 
-    `bundle` is None if the page declares none. `folder` is the page's folder: in the
-    store, where a failed page may be absent, or outside if it is taken over from
-    another machine. `log` is the file with all that an executed page wrote, None if
-    that is not kept.
+    `folder` is the page's folder in the store, where a failed page may be absent. `log`
+    is the file with all that an executed page wrote.
     """
 
     page: Page
     status: Status
-    seconds: float
-    run_id: str
-    bundle: Path | None = None
+    folder: Path
+    seconds: float = 0.0
     failure: Failure | None = None
-    folder: Path = Path()
     log: Path | None = None
+
+    @property
+    def bundle(self) -> Path | None:
+        """The evidence bundle that the page left, None if it declares none."""
+        return find_bundle(self.folder / OUTPUTS)
 
     @property
     def ended(self) -> str:
@@ -97,32 +97,14 @@ class PageResult:
         return f"{self.status} in {self.seconds:.0f} s{why}"
 
 
-def find_bundle(left: Path, run_id: str) -> Path | None:
-    """Return the bundle folder that a run of a page left, None if there is none of that run.
-
-    Args:
-        left: the folder of the files that the page left.
-        run_id: the run that the bundle's manifest must name.
-    """
-    for manifest in sorted(left.glob("*/manifest.json")):
-        try:
-            found = json.loads(manifest.read_text("utf8"))["run_id"]
-        except (OSError, ValueError, KeyError):
-            continue
-        if found == run_id:
-            return manifest.parent
-    return None
-
-
-def missing_bundle(left: Path, page: Page, run_id: str) -> Failure | None:
+def missing_bundle(left: Path, page: Page) -> Failure | None:
     """Return the failure of a page that declares a bundle and did not leave it."""
-    if not page.declares_bundle or find_bundle(left, run_id):
+    if not page.declares_bundle or find_bundle(left):
         return None
-    wanted = f"{page.lesson}/{page.page}/<backend>/manifest.json"
     return Failure(
         "BundleMissing",
-        f"the front matter declares a bundle, but the run left no {wanted} with run_id "
-        f"{run_id}. Write one to {OUTPUTS_DIR} with {RUN_ID}, "
+        "the front matter declares a bundle, but the run left no "
+        f"{page.lesson}/{page.page}/<backend>/manifest.json. Write it with page.finish, "
         "or remove `robo_genesis` from the front matter.",
     )
 

@@ -7,10 +7,9 @@ covers whatever it imports.
 
 import os
 import platform
-import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache, cached_property, partial
+from functools import cache, cached_property
 from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,12 +18,7 @@ from robo_genesis.core import project
 from robo_genesis.core.files import NO_SOURCE, files_below, json_digest
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence.bundle import sha256
-from robo_genesis.pipeline.pages.syntax import (
-    PACKAGE,
-    claims_in,
-    imported_names,
-    syntax_digest,
-)
+from robo_genesis.pipeline.pages.syntax import PACKAGE, ModuleCode, read_module
 
 if TYPE_CHECKING:  # a verification loads no Jupyter
     from robo_genesis.pipeline.pages.book import Page
@@ -33,9 +27,6 @@ USED_BY_NO_PAGE = ("maintain", "site")
 
 COMPUTING = ("core", "sim", "lessons")  # The sub-packages with modules that measure
 
-# How a module says that no measured value depends on it, and so no evidence key.
-MEASURES_NOTHING = re.compile(r"^MEASURES = False$", re.MULTILINE)
-
 
 class Tree:
     """The files of the package below a folder, each looked for and read once, for several pages."""
@@ -43,9 +34,7 @@ class Tree:
     def __init__(self, root: Path = ROOT) -> None:
         self.root = root
         self.module: Callable[[str], Path | None] = cache(self._module)
-        self.text: Callable[[Path], str] = cache(
-            partial(Path.read_text, encoding="utf8")
-        )
+        self.code: Callable[[Path], ModuleCode] = cache(self._code)
         self.digest: Callable[[Path], str] = cache(sha256)
 
     def _module(self, name: str) -> Path | None:
@@ -55,6 +44,10 @@ class Tree:
         )  # called for thousands of names
         candidates = (f"{base}.py", os.path.join(base, "__init__.py"))
         return next((Path(path) for path in candidates if os.path.isfile(path)), None)
+
+    def _code(self, path: Path) -> ModuleCode:
+        package = ".".join(path.parent.relative_to(self.root).parts)
+        return read_module(path.read_text("utf8"), package)
 
     def closure(
         self,
@@ -81,10 +74,7 @@ class Tree:
                 if path is None or not enter(name, path):
                     continue
                 found[name] = path
-                package = (
-                    name if path.name == "__init__.py" else name.rpartition(".")[0]
-                )
-                waiting += imported_names(self.text(path), package)
+                waiting += self.code(path).imports
         return found
 
     def measures(self, name: str, path: Path) -> bool:
@@ -95,8 +85,7 @@ class Tree:
         judges them, or holds data that `parameters()` covers.
         """
         inside = name.removeprefix(f"{PACKAGE}.").split(".")[0] in COMPUTING
-        silent = path.name == "__init__.py" or MEASURES_NOTHING.search(self.text(path))
-        return inside and not silent
+        return inside and path.name != "__init__.py" and self.code(path).measures
 
     @cached_property
     def data(self) -> list[Path]:
@@ -121,11 +110,6 @@ class Tree:
             for path in self.data
             if others.isdisjoint(path.parents)
         }
-
-    def behind(self, page: "Page") -> dict[str, Path]:
-        """Return the modules that a page imports, and all of its lesson."""
-        own = lesson_modules(page.lesson, self.root) if page.lesson else []
-        return self.closure([*page.code.imports, *own])
 
 
 def lesson_modules(lesson: str, root: Path) -> list[str]:
@@ -161,7 +145,7 @@ def measuring_modules(
         [*modules.values(), root / PACKAGE / "lessons" / lesson / "__init__.py"]
     )
     return {
-        name.removeprefix(f"{PACKAGE}."): syntax_digest(tree.text(path))
+        name.removeprefix(f"{PACKAGE}."): tree.code(path).digest
         for name, path in sorted(modules.items())
     } | {
         name: digest
@@ -197,17 +181,16 @@ def page_fingerprint(
     Returns:
         20 hex digits.
     """
-    modules = tree.behind(page)
+    own = lesson_modules(page.lesson, tree.root) if page.lesson else []
+    modules = tree.closure([*page.code.imports, *own])
+    code = {name: tree.code(path) for name, path in modules.items()}
     parts = {
         "lock": project.lock_digest(tree.root),
         "installed": sorted({name for _, name, _ in project.installed(sys.path)}),
         "python": platform.python_version(),
         "environment": project.environment_contract(environment),
         "cells": page.code.digests,
-        "modules": {
-            name: syntax_digest(tree.text(path)) for name, path in modules.items()
-        },
-        "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
+        "modules": {name: [each.digest, each.claims] for name, each in code.items()},
         "data": tree.data_for(modules.values()),
         "alone": page.alone,
     }

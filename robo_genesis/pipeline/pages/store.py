@@ -9,21 +9,16 @@ from typing import Any
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.page_folder import (
-    OUTPUTS,
     PageRefused,
     Record,
     read_page,
     read_record,
 )
-from robo_genesis.pipeline.pages.results import (
-    PageResult,
-    find_bundle,
-    unexpected_outcome,
-)
+from robo_genesis.pipeline.pages.results import PageResult, unexpected_outcome
 from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint
 
-# Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused.
-Verify = Callable[[Path, str], Any]
+# Takes a bundle's folder; returns the manifest or raises BundleRefused.
+Verify = Callable[[Path], Any]
 
 KEPT = 3  # Folders that are kept of each page; RENDER=0 and RENDER=1 have one each
 
@@ -63,11 +58,9 @@ def stored_result(page: Page, place: Path) -> PageResult | None:
     """
     if not place.is_dir():
         return None
-    record, notebook = read_page(place)
-    if outcome := unexpected_outcome(page, notebook):
+    if outcome := unexpected_outcome(page, read_page(place)):
         raise PageRefused(str(outcome))
-    bundle = find_bundle(place / OUTPUTS, record.run_id)
-    return PageResult(page, "reused", 0.0, record.run_id, bundle, folder=place)
+    return PageResult(page, "reused", place)
 
 
 def folders(store: Path, page: Page) -> list[Path]:

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import resolve_name
@@ -14,9 +15,29 @@ PACKAGE = "robo_genesis"
 NOT_CODE = ("kind", "type_comment")  # Fields of a syntax tree that decide nothing
 
 
+# How a module says that no measured value depends on it, and so no evidence key.
+MEASURES_NOTHING = "MEASURES = False"
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleCode:
+    """What a module does.
+
+    `digest` is the sha256 of its syntax tree, `imports` has the dotted names below the
+    course package that it imports anywhere, of modules or of something in a module.
+    `claims` has the docstrings of its checks by name. `measures` is false in a module
+    that says `MEASURES = False`.
+    """
+
+    digest: str
+    imports: list[str]
+    claims: dict[str, str]
+    measures: bool
+
+
 @lru_cache(maxsize=1024)
-def syntax_digest(source: str) -> str:
-    """Return the sha256 of what a module does: of its syntax tree, not of its text.
+def read_module(source: str, package: str = "") -> ModuleCode:
+    """Return what a module does, by its syntax tree and not by its text.
 
     Comments, layout, quotes and strings that are statements of their own do not count.
     Python 3.11 to 3.14 give the same digest, because fields that are empty or have to
@@ -26,16 +47,27 @@ def syntax_digest(source: str) -> str:
 
     Args:
         source: Python. One that does not parse counts by its text.
+        package: the package of the module, to which relative imports refer.
     """
 
-    def make() -> str:
-        try:
-            return json_digest(_canonical(ast.parse(source)))
-        except (SyntaxError, ValueError):
-            return json_digest(source)
+    def make() -> dict[str, Any]:
+        tree = _parsed(source)
+        lines = map(ast.unparse, tree.body if tree else ())
+        return {
+            "digest": json_digest(_canonical(tree) if tree else source),
+            "imports": [*_imports(tree, package)],
+            "claims": dict(_claims(tree)),
+            "measures": MEASURES_NOTHING not in lines,
+        }
 
-    digest: str = derived_value("syntax", source, make)
-    return digest
+    return ModuleCode(**derived_value("module", [source, package], make))
+
+
+def _parsed(source: str) -> ast.Module | None:
+    """Return the syntax tree of a source, None if it does not parse."""
+    with suppress(SyntaxError, ValueError):
+        return ast.parse(source)
+    return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +94,7 @@ def read_code(cells: Iterable[str]) -> Code:
             "sources": sources,
             "digests": [cell_digest(source) for source in sources],
             "imports": sorted(
-                {name for source in sources for name in _names(source, "")}
+                {name for source in sources for name in _imports(_parsed(source))}
             ),
         }
 
@@ -87,9 +119,8 @@ def cell_digest(source: str) -> str:
     A string that is a statement counts, other than in a module, because it may be the
     output of the cell. So does a semicolon at the end, which hides the output.
     """
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
+    tree = _parsed(source)
+    if tree is None:
         return json_digest(source)
     statements = [_canonical(statement) for statement in tree.body]
     return json_digest([statements, _ends_with_semicolon(source, tree.body)])
@@ -137,45 +168,24 @@ def _ends_with_semicolon(source: str, statements: Sequence[ast.stmt]) -> bool:
     return line[end.end_col_offset :].lstrip().startswith(b";")
 
 
-@lru_cache(maxsize=1024)
-def claims_in(source: str) -> dict[str, str]:
-    """Return the claims of the checks in a module: docstrings, by name, of what yields findings."""
-    if "Iterator[Finding]" not in source:
-        return {}
-    return {
-        node.name: ast.get_docstring(node) or ""
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.FunctionDef)
-        and node.returns
-        and ast.unparse(node.returns) == "Iterator[Finding]"
-    }
+def _claims(tree: ast.AST | None) -> Iterator[tuple[str, str]]:
+    """Yield name and docstring of each function that yields findings."""
+    for node in ast.walk(tree) if tree else ():
+        if (
+            isinstance(node, ast.FunctionDef)
+            and node.returns
+            and ast.unparse(node.returns) == "Iterator[Finding]"
+        ):
+            yield node.name, ast.get_docstring(node) or ""
 
 
-@lru_cache(maxsize=1024)
-def imported_names(source: str, package: str = "") -> tuple[str, ...]:
-    """Return the dotted names below the course package that a source imports anywhere.
-
-    A name may be that of a module or of something in a module.
-
-    Args:
-        source: Python. One that does not parse imports nothing: its page fails when it
-            is executed.
-        package: the package of the source, to which relative imports refer.
-    """
-    return tuple(
-        derived_value("imports", [source, package], lambda: _names(source, package))
-    )
-
-
-def _names(source: str, package: str) -> list[str]:
-    names: list[str] = []
-    try:
-        for node in ast.walk(ast.parse(source)):
-            if isinstance(node, ast.Import):
-                names += [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom):
-                base = resolve_name("." * node.level + (node.module or ""), package)
-                names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
-    except (SyntaxError, ValueError, ImportError):
-        return []
-    return [name for name in names if name.split(".")[0] == PACKAGE]
+def _imports(tree: ast.AST | None, package: str = "") -> Iterator[str]:
+    """Yield the names below the course package; a relative one needs the module's package."""
+    for node in ast.walk(tree) if tree else ():
+        names: list[str] = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and (package or not node.level):
+            base = resolve_name("." * node.level + (node.module or ""), package)
+            names = [base, *(f"{base}.{alias.name}" for alias in node.names)]
+        yield from (name for name in names if name.split(".")[0] == PACKAGE)

@@ -218,7 +218,7 @@ def _run(
         raise project.ProjectError(f"{result.failure}\n\n{failure_report([result])}")
     assert result.bundle is not None  # a lab without a bundle has failed
     try:
-        manifest = recording.verify(result.bundle, result.run_id)
+        manifest = recording.verify(result.bundle)
         require_contract(manifest, contract)
         outputs_compared(result, manifest)
     except BundleRefused as error:

@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_markdown_cell, new_notebook
 
 from robo_genesis.pipeline.pages.book import LAB, WORK_SHEET, Page, read_notebook
-from robo_genesis.pipeline.pages.page_rules import ADMONITIONS, DIRECTIVE, PARSER
+from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
 from robo_genesis.site.text.excerpts import excerpt, without_docstrings
 
 WORDS_A_MINUTE = (

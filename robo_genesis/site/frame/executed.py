@@ -10,8 +10,8 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 from robo_genesis.core.project import EXECUTED_PAGES
+from robo_genesis.pipeline.pages.book import code_of
 from robo_genesis.pipeline.pages.outputs import shown_outputs
-from robo_genesis.pipeline.pages.page_folder import code_and_kernel
 from robo_genesis.pipeline.pages.page_index import executed_notebook
 
 # Of each page that was read, the cells whose outputs but streams `page.show` displayed.
@@ -39,9 +39,7 @@ class ExecutedPage(NotebookClientBase):
             executed = executed_notebook(page.as_posix(), self.notebook)
         except KeyError:
             executed = None
-        if executed is None or code_and_kernel(executed) != code_and_kernel(
-            self.notebook
-        ):
+        if not executed or code_of(executed).digests != code_of(self.notebook).digests:
             raise ExtensionError(
                 f"{self.path} is not executed, and Sphinx executes nothing. Build with `make book`."
             )

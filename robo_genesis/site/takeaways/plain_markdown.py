@@ -11,16 +11,30 @@ from pathlib import Path
 from urllib.parse import urljoin
 
 from docutils.parsers.rst.directives.misc import TestDirective
+from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
+from myst_parser.config.main import MdParserConfig
 from myst_parser.parsers.directives import parse_directive_text
+from myst_parser.parsers.mdit import create_md_parser
 
-from robo_genesis.pipeline.pages.page_rules import (
-    ADMONITIONS,
-    DIRECTIVE,
-    PARSER,
-    SOLUTION,
-)
+from robo_genesis.pipeline.pages.page_rules import SOLUTION
 from robo_genesis.site.text.excerpts import excerpt
+
+PARSER = create_md_parser(
+    MdParserConfig(enable_extensions={"amsmath", "colon_fence", "dollarmath"}),
+    RendererHTML,
+)
+DIRECTIVE = re.compile(r"\{([\w:-]+)\}\s*(.*)")
+ADMONITIONS = (
+    "note",
+    "tip",
+    "hint",
+    "important",
+    "attention",
+    "caution",
+    "warning",
+    "danger",
+)
 
 # Words that replace a role whose text only the site can write.
 UNTITLED = {

@@ -8,12 +8,43 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.transforms import SphinxTransform
+from sphinx.util import logging
 
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
 
 # The second is the class that a code cell has from its tag.
 MARKS = {SOLUTION, f"tag_{SOLUTION}"}
+EXPLANATION = "explanation"  # The class of a fold that a site without solutions keeps
+
+# What a click shows: directives, and a class of others.
+FOLDS = {"dropdown", "toggle"}
+UNMARKED = (
+    f"a fold does not say whether it is a solution. Add `:class-container: {SOLUTION}`, or "
+    f"`{EXPLANATION}` if a site without solutions may show it."
+)
+
+logger = logging.getLogger(__name__)
+
+
+def classes_of(node: nodes.Element) -> list[str]:
+    """Return the classes of an element, and those of a dropdown's container."""
+    return [*node["classes"], *node.get("container_classes", ())]
+
+
+class RequireMarks(SphinxTransform):
+    """Warn of each fold that neither is marked as a solution nor as an explanation."""
+
+    default_priority = 199
+
+    def apply(self, **kwargs: object) -> None:
+        """Look at dropdowns and toggles."""
+        for node in self.document.findall(nodes.Element):
+            classes = classes_of(node)
+            folds = FOLDS.intersection([node.get("design_component"), *classes])
+            marked = {SOLUTION, EXPLANATION}.intersection(classes)
+            if folds and not marked:
+                logger.warning(UNMARKED, location=node)
 
 
 class LeaveOutSolutions(SphinxTransform):
@@ -24,7 +55,7 @@ class LeaveOutSolutions(SphinxTransform):
     def apply(self, **kwargs: object) -> None:
         """Remove them from the page; the outputs of cells below a solution follow from it."""
         for node in [*self.document.findall(nodes.Element)]:
-            classes = [*node["classes"], *node.get("container_classes", ())]
+            classes = classes_of(node)
             if MARKS.intersection(classes):
                 note = nodes.paragraph("", "", nodes.emphasis("", NO_SOLUTION))
                 node.parent.replace(node, [note] if "cell" in classes else [])
@@ -37,7 +68,8 @@ def hide_sources(app: Sphinx, config: Config) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Register what leaves solutions out, if they are not shown."""
+    """Register what requires marks and, if solutions are not shown, leaves them out."""
+    app.add_transform(RequireMarks)
     if not solutions_shown():
         app.add_transform(LeaveOutSolutions)
         app.connect("config-inited", hide_sources)

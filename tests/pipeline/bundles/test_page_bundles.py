@@ -22,9 +22,11 @@ def test_an_accepted_page_is_compared_again_when_its_record_changed(
     tmp_path, monkeypatch
 ):
     (tmp_path / RECORD).write_text(os.urandom(16).hex())
-    monkeypatch.setattr(page_bundles, "stored_notebook", lambda result: None)
+    monkeypatch.setattr(page_bundles, "executed_cells", lambda folder: None)
     page = SimpleNamespace(notebook=new_notebook())
-    result = PageResult(page, "reused", 0.0, "run", tmp_path / "cpu", folder=tmp_path)
+    (tmp_path / "outputs/cpu").mkdir(parents=True)
+    (tmp_path / "outputs/cpu/manifest.json").touch()
+    result = PageResult(page, "reused", tmp_path)
     compare = Mock(side_effect=[7, BundleRefused("shown", "other"), 8])
     monkeypatch.setattr(outputs, "require_shown", compare)
     assert [outputs_compared(result, None) for _ in range(2)] == [7, 7]

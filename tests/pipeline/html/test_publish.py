@@ -29,13 +29,12 @@ def test_site_and_bundles_are_published_together_for_everybody_to_read(
     lecture = notebook(cell("2"), front=LAB_FRONT.replace("page: lab", "page: lecture"))
     lab = notebook(cell("1"), front=LAB_FRONT)
     book = make_book(tmp_path, lab=lab, lecture=lecture)
-    bundle = tmp_path / "outputs" / "cpu"
+    bundle = tmp_path / "stored" / "outputs" / "cpu"
     bundle.mkdir(parents=True)
     (bundle / "manifest.json").touch()
     old_site(book)
-    results = [
-        PageResult(page, "executed", 1.0, "a", bundle) for page in find_pages(book)
-    ]
+    stored = tmp_path / "stored"
+    results = [PageResult(page, "executed", stored) for page in find_pages(book)]
     before = os.umask(0o077)
     try:
         html = publish(book, rendered, results, lambda site: (site / "a").touch())

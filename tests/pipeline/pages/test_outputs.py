@@ -29,7 +29,7 @@ from robo_genesis.pipeline.pages.outputs import (
     require_printed,
     require_shown,
 )
-from robo_genesis.pipeline.pages.page_folder import stored_notebook
+from robo_genesis.pipeline.pages.page_folder import executed_cells
 
 TABLE, HEIGHT, POSTURE = (
     f"robo_genesis.lessons.l02.{name}"
@@ -243,7 +243,7 @@ def test_each_digit_that_a_page_puts_out_is_compared_with_its_bundle(tmp_path):
         tmp_path, lab=notebook(cell(WRITE_BUNDLE), *cells, front=LAB_FRONT)
     )
     (result,) = run_pages(find_pages(book), tmp_path)
-    ran = stored_notebook(result)
+    ran = executed_cells(result.folder)
     for number, ran_cell in enumerate(ran.cells, start=1):
         for index, sound in enumerate(ran_cell.outputs):
             text = json.dumps(sound)

@@ -9,7 +9,7 @@ from small_book import executed
 from tiny_book import cell, make_book, notebook, raising
 
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.page_folder import stored_notebook
+from robo_genesis.pipeline.pages.page_folder import executed_cells
 from robo_genesis.pipeline.pages.results import at_cell, unexpected_outcome
 
 RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}
@@ -158,7 +158,7 @@ def failing(tmp_path_factory):
     ]
     [page] = find_pages(make_book(folder, page=notebook(cell(HELPER), *cells)))
     [result] = executed([page], folder)
-    return page, stored_notebook(result)
+    return page, executed_cells(result.folder)
 
 
 @pytest.mark.parametrize("number", range(len(FAILING)))

@@ -49,12 +49,6 @@ def place(sound, tmp_path) -> Path:
 
 def test_a_stored_page_has_a_digest_of_each_file_and_the_time_of_each_cell(place):
     record = json.loads((place / "page.json").read_text())
-    assert (record["docname"], record["lesson"], record["page"]) == (
-        "lab",
-        "l04",
-        "lab",
-    )
-    assert record["fingerprint"] == place.name
     ran = nbformat.read(place / "executed.ipynb", as_version=4)
     assert len(ran.metadata["cell_seconds"]) == 2
     assert set(record["files"]) == {

@@ -13,7 +13,7 @@ from PIL import Image
 from small_book import render_with
 from tiny_book import cell, make_book, notebook
 
-from robo_genesis.core.project import ROOT
+from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline.html.checks import Site, run_checks
 
 ADDRESS = "https://example.org/robot/course/"
@@ -107,6 +107,20 @@ def leaks(html: Path, text: str) -> set[str]:
     return {
         path.name for path in files if marked.search(path.read_text("utf8", "ignore"))
     }
+
+
+@pytest.mark.parametrize(
+    "fold",
+    [
+        ":::{dropdown} More\n:class-container: solutions",
+        ":::{toggle}",
+        ":::{admonition} More\n:class: tip dropdown",
+    ],
+)
+def test_a_fold_that_does_not_say_whether_it_is_a_solution_is_refused(tmp_path, fold):
+    book = make_book(tmp_path, text=f"# Text\n\n{fold}\nIn it.\n:::\n")
+    with pytest.raises(ProjectError, match=r"text\.md:3: WARNING: a fold does not say"):
+        render_with(book, tmp_path, {})
 
 
 def test_no_file_has_a_solution_or_an_answer(html, tmp_path):
