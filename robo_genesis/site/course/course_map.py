@@ -7,9 +7,9 @@
 | {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
 
-import fnmatch
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 
 import yaml
@@ -20,11 +20,12 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
+from robo_genesis.core.markup import filled
 from robo_genesis.core.text import listed
 from robo_genesis.pipeline.pages.book import LAB
 from robo_genesis.site.course.facts import MINUTES
 from robo_genesis.site.course.sizes import Minutes
-from robo_genesis.site.evidence.plain_nodes import bullets, html, marked, paragraph
+from robo_genesis.site.evidence.plain_nodes import late
 from robo_genesis.site.pages import PageDirective, PageRole
 
 FILE = "course_map.yml"
@@ -144,101 +145,48 @@ def page_link(source: str, target: str, words: str) -> nodes.Node:
     )
 
 
-class page_minutes(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
-    """Placeholder for the minutes of pages until all pages are read."""
-
-
-class card_picture(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
-    """Placeholder for the picture of a lesson's first replay until all pages are read."""
-
-
 class CourseMap(MapDirective):
     """Show the published lessons as cards, and the planned ones as a list."""
 
     def shown(self) -> list[nodes.Node]:
-        """Return the cards and the list, without the list where no lesson is planned."""
-        lessons = self.lessons()
-        cards = [self.card(lesson, lesson.page) for lesson in lessons if lesson.page]
-        lists: list[nodes.Node] = [
-            nodes.bullet_list("", *cards, classes=["course-map"])
-        ]
-        planned = [
-            nodes.list_item("", named(lesson, lesson.title), ids=[anchor(lesson.id)])
-            for lesson in lessons
-            if not lesson.page
-        ]
-        if planned:
-            lists.append(nodes.paragraph("", "Planned lessons:"))
-            lists.append(nodes.bullet_list("", *planned, classes=["planned-lessons"]))
-        return lists
-
-    def card(self, lesson: Lesson, lecture: str) -> nodes.list_item:
-        """Return the card of a published lesson."""
-        title = page_link(self.env.docname, lecture, lesson.title)
-        card = nodes.list_item("", card_picture(lesson=lesson.id.lower()))
-        card += [named(lesson, title), bullets(*map(marked, lesson.outcomes))]
-        if lesson.needs is not None:
-            before = listed(lesson.needs) if lesson.needs else "no other lesson"
-            card += nodes.paragraph("", f"Builds on {before}.", classes=["needs"])
-        card += self.times(lesson, lecture)
-        card["ids"] = [anchor(lesson.id)]
-        return card
-
-    def times(self, lesson: Lesson, lecture: str) -> list[nodes.Node]:
-        """Return a line for the lecture, for the lab, and for the other pages together."""
-        pages = lesson_pages(self.env.found_docs, lesson.id.lower())
-        lab = pages.pop(LAB, None)
-        others = [page for page in pages.values() if page != lecture]
-        lines = [
-            (page_link(self.env.docname, page, word), [page])
-            for word, page in (("Lecture", lecture), ("Lab", lab))
-            if page
-        ]
-        if others:
-            words = f"{len(others)} more page{'s' * (len(others) > 1)}"
-            lines.append((nodes.Text(words), others))
-        return [
-            paragraph(words, ": ", page_minutes(pages=names), classes=["time"])
-            for words, names in lines
-        ]
+        """Return the place of the map."""
+        self.lessons()
+        return [late(make=cards)]
 
 
-def named(lesson: Lesson, title: str | nodes.Node) -> nodes.paragraph:
-    """Return a line of a lesson's name and title."""
-    return paragraph(nodes.strong("", f"{lesson.id} "), title)
+def cards(app: Sphinx, docname: str) -> str:
+    """Return the map, when the minutes of all pages and the pictures of replays are known."""
+    lessons = read_map(Path(app.srcdir))
+    return filled(
+        Path(__file__).with_suffix(".html"),
+        lessons=lessons,
+        times=partial(times, app.env),
+        pictures=sorted(name for _, name in app.env.images.values()),
+        link=partial(app.builder.get_relative_uri, docname),
+        up="../" * docname.count("/"),
+        listed=listed,
+    )
 
 
-def anchor(lesson: str) -> str:
-    """Return the anchor of a lesson on the map."""
-    return f"lesson-{lesson.lower()}"
-
-
-def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
-    """Return the time that some pages take together."""
-    times: list[Minutes] = [env.metadata[page][MINUTES] for page in pages]
-    read, work = sum(time.read for time in times), sum(time.work for time in times)
-    return Minutes(read, work, sheet=any(time.sheet for time in times))
-
-
-def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:
-    """Write the minutes of the pages, as each page itself shows them, and the pictures of cards."""
-    names = sorted(name for _, name in app.env.images.values())
-    up = "../" * docname.count("/")
-    for place in list(document.findall(card_picture)):
-        lesson = place["lesson"]
-        pictures = fnmatch.filter(names, f"replay-{lesson}-lecture-cpu*.webp")[:1]
-        alt = f"{lesson.upper()}: the start of its replay."
-        images = [f'<img src="{up}_images/{name}" alt="{alt}">' for name in pictures]
-        place.replace_self([*map(html, images)])
-    for place in list(document.findall(page_minutes)):
-        place.replace_self(nodes.Text(str(total_minutes(app.env, place["pages"]))))
+def times(
+    env: BuildEnvironment, lesson: str, lecture: str
+) -> Iterator[tuple[str, list[str], Minutes]]:
+    """Yield (name, pages, minutes) of the lecture, the lab, and without a name the other pages."""
+    groups: dict[str, list[str]] = {"Lecture": [lecture], "Lab": [], "": []}
+    for name, page in lesson_pages(env.found_docs, lesson.lower()).items():
+        if page != lecture:
+            groups["Lab" if name == LAB else ""].append(page)
+    for name, pages in groups.items():
+        if pages:
+            found: list[Minutes] = [env.metadata[page][MINUTES] for page in pages]
+            read, work = (
+                sum(getattr(time, of) for time in found) for of in ("read", "work")
+            )
+            yield name, pages, Minutes(read, work, any(time.sheet for time in found))
 
 
 def setup(app: Sphinx) -> None:
-    """Register the directives, the role and the later step."""
+    """Register the directives and the role."""
     app.add_directive("featured", Featured)
     app.add_role("lesson", LessonLink())
     app.add_directive("course-map", CourseMap)
-    app.add_node(page_minutes)
-    app.add_node(card_picture)
-    app.connect("doctree-resolved", fill_in)

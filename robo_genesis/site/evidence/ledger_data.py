@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.pipeline.html.archive import write_zip
 from robo_genesis.site.evidence.runs import PageRun
 
@@ -67,19 +66,6 @@ def provenance(kind: str, runs: Sequence[PageRun]) -> str:
         if (accepted := run.manifest)
     )
     return f"{PRINTED if kind == 'printed' else MEASURED} {' and '.join(origins)}"
-
-
-def facts(backend: str, manifest: Manifest) -> dict[str, str]:
-    """Return the facts of an accepted run that the ledger shows."""
-    return {
-        "run": manifest.run_id[:8],
-        "backend": backend,
-        "device": manifest.backend.device_name,
-        "engine": f"Genesis {manifest.engine.version}",
-        "started (UTC)": manifest.started[:19].replace("T", " "),
-        "command": manifest.command,
-        "checks passed": manifest.passed,
-    }
 
 
 def picture_kind(path: Path) -> str:

@@ -2,17 +2,18 @@
 
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import partial
+from html import escape
 from itertools import cycle
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 from docutils import nodes
+from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
 MARKED = re.compile(r"\*\*([^*]+)\*\*|`([^`]+)`")
-Cell: TypeAlias = str | nodes.Node | Sequence[str | nodes.Node]
 KINDS = (nodes.Text, partial(nodes.strong, ""), partial(nodes.literal, ""))
 
 
@@ -26,6 +27,16 @@ def _write(part: str, self: Any, node: between) -> None:
 
 # What Sphinx calls before and after such nodes.
 WRITERS = (partial(_write, "opening"), partial(_write, "closing"))
+
+
+class late(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
+    """Markup that needs all pages: `make(app, docname)` returns it when they are read."""
+
+
+def fill_in(app: Sphinx, doctree: nodes.document, docname: str) -> None:
+    """Write the markup that waited for all pages."""
+    for place in list(doctree.findall(late)):
+        place.replace_self(html(place["make"](app, docname)))
 
 
 def marked(text: str) -> list[nodes.Node]:
@@ -66,29 +77,9 @@ def bullets(*items: Iterable[str | nodes.Node], **attributes: Any) -> nodes.bull
     return nodes.bullet_list("", *lines, **attributes)
 
 
-def table(
-    head: Sequence[str],
-    rows: Sequence[Sequence[Cell]],
-    ids: Sequence[str] = (),
-    **attributes: Any,
-) -> nodes.table:
-    """Return a table; `head` may be empty, `ids` are those of the rows.
-
-    A cell is one node or text, or several that become paragraphs.
-    """
-    width = len(rows[0])
-    group = nodes.tgroup(
-        "", *(nodes.colspec(colwidth=1) for _ in range(width)), cols=width
+def scroll_box(label: str, *inside: nodes.Node) -> between:
+    """Return a box that scrolls a wide table and accepts the keyboard's focus."""
+    named = (
+        f'aria-label="{escape(label)}" class="scroll-box" role="region" tabindex="0"'
     )
-    if head:
-        group += nodes.thead("", _row(head))
-    body = nodes.tbody("", *map(_row, rows))
-    for row, name in zip(body, ids, strict=False):
-        row["ids"].append(name)
-    group += body
-    return nodes.table("", group, **attributes)
-
-
-def _row(cells: Iterable[Cell]) -> nodes.row:
-    parts = ([cell] if isinstance(cell, str | nodes.Node) else cell for cell in cells)
-    return nodes.row("", *(nodes.entry("", *map(paragraph, cell)) for cell in parts))
+    return between("", *inside, opening=f"<div {named}>\n", closing="</div>\n")

@@ -9,16 +9,17 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
-from html import escape
+from functools import lru_cache, partial
 from pathlib import Path
+from typing import Any
 
 from docutils import nodes
+from markupsafe import Markup
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
-from robo_genesis.core.text import listed
+from robo_genesis.core.markup import filled
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
@@ -29,12 +30,10 @@ from robo_genesis.pipeline.bundles.status import (
 )
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.page_index import page_outputs
-from robo_genesis.site.course.course_map import MapDirective, named, page_link
-from robo_genesis.site.evidence.plain_nodes import between, bullets, paragraph
+from robo_genesis.site.course.course_map import MapDirective
+from robo_genesis.site.evidence.plain_nodes import html
 
 BACKEND, REFERENCE = project.BUILD_BACKEND, "amdgpu"
-READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
-EXPLANATION = "evidence/index"  # The page that explains the evidence
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +50,16 @@ class PageRun:
         """Page and backend, as items name their run."""
         recorded = "/recorded" if self.recorded else ""
         return f"{self.page}/{self.status.backend}{recorded}"
+
+    @property
+    def anchor(self) -> str:
+        """Its anchor in the ledger."""
+        return f"run-{self.key}".replace("/", "-")
+
+    @property
+    def started(self) -> str:
+        """Date and time (UTC) at which the accepted run began."""
+        return self.manifest.started[:19].replace("T", " ") if self.manifest else ""
 
     @property
     def lesson(self) -> str:
@@ -108,30 +117,10 @@ def all_runs(book: Path) -> dict[str, PageRun]:
     return {run.key: run for run in (*runs, *recorded)}
 
 
-def badge_node(status: Status) -> nodes.Node:
+def badge(status: Status) -> Markup:
     """Return a state as the site shows it everywhere: one word and its colour."""
-    classes = ["evidence-badge", f"state-{status.state}"]
-    return nodes.inline("", status.badge, classes=classes)
-
-
-def status_list(statuses: Iterable[Status]) -> nodes.bullet_list:
-    """Return the states of runs as a list: the badge and a sentence on each."""
-    lines = ((badge_node(status), f" {status.sentence}") for status in statuses)
-    return bullets(*lines, classes=["lesson-status"])
-
-
-def status_line(statuses: Iterable[Status]) -> str:
-    """Return the states of runs as a line of HTML; an accepted one has its engine."""
-    words = []
-    for status in statuses:
-        backend = READABLE.get(status.backend, status.backend)
-        text = f"{backend} run: {status.state}"
-        if status.state == "verified" and status.manifest:
-            version = status.manifest.engine.version
-            text = f"Measured on {backend} with Genesis {version}"
-        kind = f"status-word state-{status.state}"
-        words.append(f'<span class="{kind}">{escape(text)}</span>')
-    return " · ".join(words)
+    span = Markup('<span class="evidence-badge state-{}">{}</span>')
+    return span.format(status.state, status.badge)
 
 
 def lesson_statuses(book: Path, lesson: str) -> list[Status]:
@@ -152,13 +141,8 @@ class LessonStatus(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
-        known = [status for status in statuses if status.state != "missing"] or statuses
-        opening = (
-            f'<details class="status-line"><summary>{status_line(known)}</summary>'
-        )
-        return [
-            between("", status_list(statuses), opening=opening, closing="</details>")
-        ]
+        known = [status for status in statuses if status.state != "missing"]
+        return [status_list(statuses, line=known or statuses)]
 
 
 class CourseStatus(MapDirective):
@@ -166,24 +150,31 @@ class CourseStatus(MapDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return a title and a list for each lesson."""
-        parts: list[nodes.Node] = []
-        for lesson in self.lessons():
-            if lesson.page:
-                title = page_link(self.env.docname, lesson.page, lesson.title)
-                statuses = lesson_statuses(Path(self.env.srcdir), lesson.id.lower())
-                parts += [named(lesson, title), status_list(statuses)]
-        return parts
+        book, lessons = Path(self.env.srcdir), self.lessons()
+        link = partial(self.env.app.builder.get_relative_uri, self.env.docname)
+        return [
+            status_list(lesson_statuses(book, x.id.lower()), lesson=x, link=link)
+            for x in lessons
+            if x.page
+        ]
+
+
+def status_list(statuses: Iterable[Status], **values: Any) -> nodes.Node:
+    """Return the states of runs as a list, below a lesson's title or in the fold of a line."""
+    template = Path(__file__).with_name("statuses.html")
+    return html(filled(template, statuses=statuses, badge=badge, **values))
 
 
 class CourseMeasured(SphinxDirective):
-    """Show with which engine and when the runs of this build were measured."""
+    """Show with which engine and when the runs of this build were measured, then its content."""
+
+    has_content = True
 
     def run(self) -> list[nodes.Node]:
-        """Return the line, with a link to the page on evidence where the book has it."""
+        """Return the paragraph."""
         line = measured_line(all_runs(Path(self.env.srcdir)).values())
-        link = page_link(self.env.docname, EXPLANATION, "How to read the evidence")
-        more = [" ", link] if EXPLANATION in self.env.found_docs else []
-        return [paragraph(line, *more, classes=["course-measured"])]
+        text = "\n".join(["{.course-measured}", line, *self.content])
+        return self.parse_text_to_nodes(text)
 
 
 def measured_line(runs: Iterable[PageRun]) -> str:
@@ -196,10 +187,9 @@ def measured_line(runs: Iterable[PageRun]) -> str:
     accepted = [run.manifest for run in own if run.manifest]
     if not accepted:
         return "No run of this build was accepted."
-    engines = sorted({manifest.engine.version for manifest in accepted})
     dates = sorted({manifest.started[:10] for manifest in accepted})
     when = f"on {dates[0]}" if len(dates) == 1 else f"from {dates[0]} to {dates[-1]}"
-    line = f"Measured on {READABLE[BACKEND]} with Genesis {listed(engines)} {when}."
+    line = f"Measured on CPU with Genesis {project.engine_pin()} {when}."
     lacking = len(own) - len(accepted)
     return (
         f"{line} {lacking} of {len(own)} runs were not accepted." if lacking else line

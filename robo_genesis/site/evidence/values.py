@@ -27,7 +27,7 @@ from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages.page_index import measuring_page, page_outputs
 from robo_genesis.pipeline.pages.values import value_of
-from robo_genesis.site.evidence.plain_nodes import WRITERS, between
+from robo_genesis.site.evidence.plain_nodes import WRITERS, between, fill_in, late
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.pages import PageRole
 
@@ -162,6 +162,8 @@ def setup(app: Sphinx) -> None:
     for name in ("engine-source", "engine-release"):
         app.add_role(name, EngineLink())
     app.add_node(between, html=WRITERS)
+    app.add_node(late)
+    app.connect("doctree-resolved", fill_in)
     app.add_node(
         measured_value,
         html=(visit_measured, lambda self, _: self.body.append("</span>")),

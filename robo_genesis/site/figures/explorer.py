@@ -53,8 +53,7 @@ from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
 from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
-from robo_genesis.site.evidence.ledger import scroll_box
-from robo_genesis.site.evidence.plain_nodes import html, image
+from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls

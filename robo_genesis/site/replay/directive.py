@@ -29,8 +29,13 @@ from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.sim import visual_shape
-from robo_genesis.site.evidence.ledger import scroll_box
-from robo_genesis.site.evidence.plain_nodes import bullets, html, image, marked
+from robo_genesis.site.evidence.plain_nodes import (
+    bullets,
+    html,
+    image,
+    marked,
+    scroll_box,
+)
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.pages import PageDirective

@@ -4,12 +4,12 @@ import shutil
 
 import pytest
 from spoilers import metrics, on, part, seal
-from without_sphinx import rows_of
+from without_sphinx import Panel, rows_of
 
 from robo_genesis.core.text import six_digits
 from robo_genesis.evidence import bundle
+from robo_genesis.evidence.compare import compare
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.site.evidence import panel as sphinx_panel
 
 
 @pytest.fixture
@@ -28,7 +28,8 @@ def moved(folder, case, metric, by):
 
 def compared(folder, there):
     """The text on two bundles of L04, and the cells of every row of its tables."""
-    found = sphinx_panel.comparison(folder, there)
+    both = compare(folder, there)
+    found = Panel(folder).filled("comparison.md", compared=both)
     return "\n".join(node.astext() for node in found), rows_of(found)
 
 

@@ -5,6 +5,7 @@ from collections import defaultdict
 from types import SimpleNamespace
 
 import pytest
+from bs4 import BeautifulSoup
 from bundles import engine_on, written
 from docutils import nodes
 from docutils.utils import new_document
@@ -12,7 +13,6 @@ from spoilers import on
 from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core import project
-from robo_genesis.core.channels import Replay
 from robo_genesis.core.files import put
 from robo_genesis.evidence import bundle, recorder, report
 from robo_genesis.evidence.compare import compare
@@ -23,8 +23,6 @@ from robo_genesis.site.evidence import ledger_data, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.runs import PageRun
 
-FILMED = Replay(("G1",), "box", "box")
-
 
 def write_shape(folder, tmp_path):
     """Let this build's lecture have the shape of a bundle's links."""
@@ -32,24 +30,21 @@ def write_shape(folder, tmp_path):
     visual_shape.write_shape(tmp_path / "l04" / "lecture" / "cpu", parts)
 
 
-def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, tmp_path):
-    env = Panel(tmp_path / "book").env
-    found = list(sphinx_panel.frames(env, "run", folder, FILMED, "cpu"))
-    names = ("initial", "final")
-    assert [figure["ids"] for figure in found] == [[f"run-{name}"] for name in names]
-    for figure, name in zip(found, names, strict=True):
-        image = figure.next_node(nodes.image)
-        shown = tmp_path / "book" / image["uri"].removeprefix("/")
-        assert shown.read_bytes() == (folder / "frames" / f"{name}.png").read_bytes()
-        assert image["alt"] == f"Camera frame of the box, {name} state on cpu."
-    shutil.rmtree(folder / "frames")
-    assert list(sphinx_panel.frames(env, "run", folder, FILMED, "cpu")) == []
-
-
 def accepted(page, folder, **more) -> PageRun:
     """An accepted run whose bundle is in a folder that is named after its backend."""
     status = Status("verified", folder.name, "", bundle.read_manifest(folder))
     return PageRun(page, folder, status, **more)
+
+
+def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder):
+    run = accepted("l04/lab", folder)
+    _, *found = sphinx_panel.pictures(run)
+    for name, content, alt, _ in found:
+        assert content == (folder / "frames" / name).read_bytes()
+        state = name.removesuffix(".png")
+        assert alt == f"Camera frame of the Franka, {state} state on cpu."
+    shutil.rmtree(folder / "frames")
+    assert (len(found), len(list(sphinx_panel.pictures(run)))) == (2, 1)
 
 
 @pytest.fixture
@@ -92,12 +87,15 @@ def test_the_comparison_names_both_runs_and_all_else_one(
     both = ("l04/lab/cpu", "l04/lab/cuda/recorded")
     found = [item.runs for item in env.metadata["page"][provenance.ITEMS]]
     assert found == [both[1:]] * 6 + [both] * 2
-    run, badge, *_ = sphinx_ledger._of_runs(both_runs)
-    assert [link["refuri"] for link in run] == [
-        "#run-l04-lab-cpu",
-        "#run-l04-lab-cuda-recorded",
-    ]
-    assert [node.astext() for node in badge] == ["cpu-verified", "cuda-verified"]
+    items = [(env.metadata["page"][provenance.ITEMS][-1], both_runs)]
+    known = {"pages": {}, "link": str, "items": items}
+    row = BeautifulSoup(
+        sphinx_ledger._filled("ledger_items.html", "page", **known), "html.parser"
+    )
+    links = [f"#run-{'-'.join(run.key.split('/'))}" for run in both_runs]
+    assert [link["href"] for link in row.select("td:nth-of-type(4) a")] == links
+    badges = [badge.text for badge in row.select(".evidence-badge")]
+    assert badges == ["cpu-verified", "cuda-verified"]
 
 
 @pytest.mark.parametrize(
@@ -171,8 +169,3 @@ def test_a_run_that_was_never_recorded_has_no_panel(tmp_path, record, monkeypatc
 
 def classes(node):
     return node.get("classes", ()) if isinstance(node, nodes.Element) else ()
-
-
-def test_warnings_are_escaped_and_folded():
-    fold = "<details><summary>1 engine warnings</summary><ol><li>a &lt; b</li></ol></details>"
-    assert sphinx_panel.warnings_html(["a < b"]) == fold
