@@ -69,7 +69,7 @@ def readings(
 
     Raises:
         BundleRefused: `metrics` if a group lacks a value or has another one, or if a
-            value is beyond its limits or a count that is not an integer.
+            count is not an integer from 0.
     """
     reported = {}
     for group, declared in page.groups(rendered).items():
@@ -81,7 +81,7 @@ def readings(
         what = f"list of values in {group}"
         expect("metrics", METRICS, what, sorted(values), sorted(declared.units))
         for name, value in values.items():
-            possible = declared.possible(name, value)
+            possible = declared.possible(value)
             what = f"whether {group}.{name} = {value} is possible"
             expect("metrics", METRICS, what, possible, True)
         reported[group] = values

@@ -1,16 +1,29 @@
 """Named checks that several lessons use."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from robo_genesis.core.check_spec import START_TOLERANCE, TIME_TOLERANCE
-from robo_genesis.core.checks import Finding, above, at_most, equal, within
+from robo_genesis.core.checks import (
+    Finding,
+    Findings,
+    above,
+    at_most,
+    equal,
+    model_counts,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
+from robo_genesis.sim.arm.franka import JOINT_NAMES, MODEL_COUNTS
 from robo_genesis.sim.camera.frames import FrameError, require_frame
 
 
-def stamps(run: Experiment) -> Iterator[Finding]:
+def structure(run: Experiment) -> Findings:
+    """The robot has the links, joints and DOFs of its model file."""
+    yield from model_counts(run.readings["model"], MODEL_COUNTS)
+    yield equal("joint_names", run.joints.names, JOINT_NAMES)
+
+
+def stamps(run: Experiment) -> Findings:
     """Each run has a state at t = 0 and one after each of its configured outer steps, at k · dt."""
     for name, case in run.cases.items():
         t = run.traces[name].t
@@ -19,7 +32,7 @@ def stamps(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.time_error_s", apart, TIME_TOLERANCE)
 
 
-def start(run: Experiment) -> Iterator[Finding]:
+def start(run: Experiment) -> Findings:
     """Each run begins with the body at rest at the height of its case."""
     for name, case in run.cases.items():
         trace = run.traces[name]
@@ -29,7 +42,7 @@ def start(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{name}.start_turning_rad_s", np.abs(trace.link_ang[0]).max(), 0.0)
 
 
-def posture(run: Experiment) -> Iterator[Finding]:
+def posture(run: Experiment) -> Findings:
     """Two different camera frames, or a schematic whose links moved, show both ends of the run."""
     views = {*run.page.frames} - {"initial", "final"} if run.rendered else set()
     frames = {name: frame for name, frame in run.frames.items() if name not in views}

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Findings, at_most, below, equal
+from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.exercises import Written, as_test, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
@@ -55,44 +55,37 @@ def forward(chain: Written, trace: Trace) -> Findings:
 
 
 def near(label: str, found: Any, expected: Pose, tiny: float) -> Findings:
-    """Require a pose of the right shapes that differs from the expected one by rounding."""
-    position, quat = (np.asarray(part, dtype=float) for part in found)
-    yield equal(f"{label}.shapes", [list(position.shape), list(quat.shape)], [[3], [4]])
-    if (position.shape, quat.shape) == ((3,), (4,)):
-        yield from same_array(f"{label}.position_m", position, expected.position, tiny)
-        yield at_most(f"{label}.norm_error", abs(float(np.linalg.norm(quat)) - 1), 1e-5)
-        _, angle = kinematics.distances(
-            kinematics.pose_error(expected, Pose(position, quat))
-        )
-        yield at_most(f"{label}.angle_rad", float(angle), tiny)
+    """Require a pose that differs by rounding; the quaternion may have the other sign."""
+    position, quat = found
+    yield from same_array(f"{label}.position_m", position, expected.position, tiny)
+    k = np.abs(expected.quat).argmax()
+    right = expected.quat * np.sign(np.ravel(quat)[k] * expected.quat[k])
+    yield from same_array(f"{label}.quaternion", quat, right, tiny)
 
 
 @as_test
 def step(damped: Written) -> Findings:
     """Check `damped(J, error, damping)`: one step (n,) of damped least squares.
 
-    `J` is (m, n), `error` (m,). The postures are the start and a nearly singular one; a
-    step with little damping must bring the hand nearer.
+    `J` is (m, n), `error` (m,). The postures are the start and a nearly singular one.
     """
     start = np.array(spec.BASELINE.q_start[:ARM])
     target = Pose(spec.TARGET, spec.DOWN)
+    given = {
+        f"{rows}_rows": (
+            kinematics.jacobian(start)[:rows, : rows - 1],
+            np.linspace(-0.01, 0.02, rows),
+        )
+        for rows in (3, 6)
+    }
     for name, q in (("start", start), ("nearly_singular", spec.NEARLY_STRETCHED)):
-        of = kinematics.jacobian(q)
         error = kinematics.pose_error(target, kinematics.hand_pose(q))
+        given[name] = kinematics.jacobian(q), error
+    for name, (of, error) in given.items():
         for damping in (0.01, 0.3):
             right = kinematics.damped_step(of, error, damping)
             found = damped(of, error, damping)
             yield from same_array(f"{name}_{damping:g}", found, right, TINY)
-    for rows, damping in ((3, 0.3), (6, 0.1)):
-        of = kinematics.jacobian(start)[:rows, : rows - 1]
-        error = np.linspace(-0.01, 0.02, rows)
-        right = kinematics.damped_step(of, error, damping)
-        yield from same_array(f"{rows}_rows", damped(of, error, damping), right, TINY)
-    of, error = kinematics.jacobian(start)[:3], np.array([0.01, 0.0, -0.01])
-    moved = start + np.asarray(damped(of, error, 0.01), dtype=float).reshape(ARM)
-    before, after = (kinematics.hand_pose(q).position for q in (start, moved))
-    left = float(np.linalg.norm(before + error - after))
-    yield below("position_only.distance_left_m", left, 1e-3)
 
 
 @as_test

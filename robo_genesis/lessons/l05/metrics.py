@@ -56,20 +56,13 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
         IndexError: the trace lacks the hand.
     """
     target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
-    end, found = (
-        measured_hand(trace, -1),
-        {"final_speed": float(np.abs(trace.qd[-1]).max())},
+    end, path = measured_hand(trace, -1), measured_hand(trace, slice(None)).position
+    return ReachMetrics(  # in the order of its fields
+        float(np.linalg.norm(path[0] - case.position)),
+        *distance_and_angle(target, command),
+        *distance_and_angle(command, end),
+        float(np.linalg.norm(fingertip(command) - fingertip(end))),
+        *distance_and_angle(target, end),
+        passed_by(path, case.position),
+        float(np.abs(trace.qd[-1]).max()),
     )
-    path = measured_hand(trace, slice(None)).position
-    found["start_distance"] = float(np.linalg.norm(path[0] - case.position))
-    found["overshoot"] = passed_by(path, case.position)
-    tips = fingertip(command) - fingertip(end)
-    found["tip_tracking_distance"] = float(np.linalg.norm(tips))
-    pairs = {
-        "command": (target, command),
-        "tracking": (command, end),
-        "final": (target, end),
-    }
-    for name, pair in pairs.items():
-        found[f"{name}_distance"], found[f"{name}_angle"] = distance_and_angle(*pair)
-    return ReachMetrics(**found)

@@ -30,12 +30,8 @@ EXPECTED_MODEL = franka.MODEL_COUNTS
 
 # Lower and upper limits (7,) of the arm's joints in the model file [rad].
 ARM_LIMITS = (
-    franka.per_joint(
-        -2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0
-    )[:7],
-    franka.per_joint(
-        2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04
-    )[:7],
+    read_only([-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973]),
+    read_only([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]),
 )
 
 # Target of the hand's origin in the world [m].
@@ -199,11 +195,9 @@ BEYOND_NEAREST = 0.01
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    asked = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
-    asked, counted = (
-        asked | {"stretched": NEARLY_STRETCHED.tolist()},
-        list(EXPECTED_MODEL),
-    )
+    asked: dict[str, Any] = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
+    asked["stretched"] = NEARLY_STRETCHED.tolist()
+    counted = list(EXPECTED_MODEL)
     return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS)
 
 

@@ -74,8 +74,9 @@ JACOBIANS, POSTURES = "jacobians", ("start", "answer", "nearly_stretched")
 STEP = 1e-4  # Angle of the central differences [rad]
 
 
-def jacobian_postures(run: Trace) -> dict[str, FloatArray]:
-    """Return the joint positions (9,) in which Jacobians are compared [rad or m]."""
+def jacobian_postures(of: Any) -> dict[str, FloatArray]:
+    """Return the joint positions (9,) in which a page compares Jacobians [rad or m]."""
+    run = of.traces["baseline"]
     stretched = np.append(spec.NEARLY_STRETCHED, spec.BASELINE.q_start[ARM:])
     return dict(zip(POSTURES, (run.q[0], run.target[-1], stretched), strict=True))
 
@@ -83,7 +84,7 @@ def jacobian_postures(run: Trace) -> dict[str, FloatArray]:
 def read_jacobians(page: Any, robot: Any, joints: JointMap) -> None:
     """Give a page the largest differences of the engine's Jacobian and ours; it assigns states."""
     found = {}
-    for name, q in jacobian_postures(page.traces["baseline"]).items():
+    for name, q in jacobian_postures(page).items():
         robot.set_dofs_position(
             q.copy(), joints.dofs_idx_local.tolist(), zero_velocity=True
         )
@@ -123,21 +124,22 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
     return np.asarray(-kinematics.jacobian(q) @ angles)
 
 
-def sag_lengths(trace: Trace, kp: FloatArray) -> tuple[float, float, float, float]:
+def sag_lengths(run: Experiment, name: str) -> tuple[float, float, float, float]:
     """Return the lengths of the measured motion from command to end and of the expected one [m].
 
     The third number is the length of their difference as a share of the expected one,
     the fourth the expected rotation [rad].
     """
+    trace = run.traces[name]
     command = trace.target[-1].astype(float)
     found = measured_hand(trace, -1).position - kinematics.hand_pose(command).position
-    expected, turn = np.split(sag(command, kp), 2)
+    expected, turn = np.split(sag(command, run.cases[name].kp), 2)
     ways = (found, expected, found - expected, turn)
     measured, computed, apart, turned = (float(np.linalg.norm(way)) for way in ways)
     return measured, computed, apart / computed, turned
 
 
-def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
+def answers(trace: Trace, case: SolveCase) -> dict[str, np.ndarray]:
     """Return what is known of each answer, from the measured poses of the hand.
 
     Returns:
@@ -160,35 +162,32 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     }
 
 
-def many_answers(run: Experiment) -> dict[str, FloatArray]:
-    """Return what is known of the answers from many starts."""
-    return answers(run.traces["many_starts"], spec.MANY_STARTS)
+def answers_of(run: Experiment, name: str) -> dict[str, np.ndarray]:
+    """Return what is known of the answers of a run."""
+    return answers(run.traces[name], spec.QUESTIONS[name])
 
 
-def self_motion(q: FloatArray, target: Pose, step: float = 0.05) -> FloatArray:
-    """Return postures (n, 7) [rad] that keep the hand at a target, on the curve through `q` (7,).
+GOAL = Pose(spec.TARGET, spec.DOWN)
+STRIDE = 0.05  # Distance of neighbours on the curve of a self-motion [rad]
+
+
+def self_motion(q: FloatArray) -> FloatArray:
+    """Return postures (n, 7) [rad] that keep the hand at the target, on the curve through `q` (7,).
 
     Seven joints meet six conditions, so a solution is a point of a curve. From `q` the
     curve is followed along the null vector of the Jacobian in both directions, up to a
     joint limit.
-
-    Args:
-        q: a solution [rad].
-        target: of the hand.
-        step: distance of neighbours on the curve [rad].
     """
-    there, back = (one_way(q, sign * null_vector(q), target, step) for sign in (1, -1))
+    there, back = (one_way(q, sign * null_vector(q)) for sign in (1, -1))
     return np.array([*back[::-1], q, *there])
 
 
-def one_way(
-    q: FloatArray, along: FloatArray, target: Pose, step: float
-) -> list[FloatArray]:
+def one_way(q: FloatArray, along: FloatArray) -> list[FloatArray]:
     """Return the postures beyond `q` in direction `along` (7,); see `self_motion`."""
     way: list[FloatArray] = []
     while len(way) < LONGEST_CURVE:
-        q = q + step * along
-        error = kinematics.pose_error(target, kinematics.hand_pose(q))
+        q = q + STRIDE * along
+        error = kinematics.pose_error(GOAL, kinematics.hand_pose(q))
         q = q + kinematics.damped_step(kinematics.jacobian(q), error, 1e-4)
         if kinematics.limit_margin(q, *spec.ARM_LIMITS) < 0:
             break
@@ -206,12 +205,11 @@ def null_vector(q: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.svd(kinematics.jacobian(q))[2][-1])
 
 
-def families(solutions: FloatArray, target: Pose) -> list[tuple[FloatArray, list[int]]]:
+def families(solutions: FloatArray) -> list[tuple[FloatArray, list[int]]]:
     """Group solutions that a self-motion connects without moving the hand.
 
     Args:
-        solutions: (n, 7) accepted answers for one target [rad].
-        target: of the hand.
+        solutions: (n, 7) accepted answers for the target [rad].
 
     Returns:
         The curve (m, 7) of each family and the indices of its solutions, the largest
@@ -219,7 +217,7 @@ def families(solutions: FloatArray, target: Pose) -> list[tuple[FloatArray, list
     """
     left, found = list(range(len(solutions))), []
     while left:
-        curve = self_motion(solutions[left[0]], target)
+        curve = self_motion(solutions[left[0]])
         gaps = np.linalg.norm(solutions[left][:, None] - curve, axis=-1).min(axis=1)
         inside = [n for n, gap in zip(left, gaps, strict=True) if gap <= SAME_CURVE]
         found.append((curve, inside))
@@ -236,12 +234,11 @@ def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:
 
     With it are the numbers of its answers, from 0, in the order of joint 1.
     """
-    numbers = np.flatnonzero(many_answers(run)["accepted"])
+    numbers = np.flatnonzero(answers_of(run, "many_starts")["accepted"])
     q = run.traces["many_starts"].q[1 + numbers, :ARM].astype(float)
-    found = families(q, Pose(spec.TARGET, spec.DOWN))
     return [
         (curve, [int(numbers[k]) for k in sorted(inside, key=lambda k: float(q[k, 0]))])
-        for curve, inside in found
+        for curve, inside in families(q)
     ]
 
 

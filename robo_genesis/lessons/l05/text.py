@@ -77,8 +77,8 @@ def sag_table(run: Experiment) -> str:
         "not explained [%]": 1,
     }
     rows = {}
-    for name, case in spec.CASES.items():
-        found, expected, rest, turned = study.sag_lengths(run.traces[name], case.kp)
+    for name in spec.CASES:
+        found, expected, rest, turned = study.sag_lengths(run, name)
         lengths = found, expected, run.metrics[name].tracking_angle, turned
         rows[spec.LABELS[name]] = *(1000 * np.array(lengths)), 100 * rest
     return tables.number_table("run", heads, rows)
@@ -109,7 +109,7 @@ def tolerance_table(run: Experiment) -> str:
 def jacobian_table(run: Experiment) -> str:
     """Return the largest difference of other Jacobians from ours in each posture, in millionths."""
     rows = {}
-    for name, q in study.jacobian_postures(run.traces["baseline"]).items():
+    for name, q in study.jacobian_postures(run).items():
         apart = run.readings[study.JACOBIANS][name], *study.other_jacobians(q)
         rows[name.replace("_", " ")] = 1e6 * np.array(apart)
     others = ("engine [10⁻⁶]", "MuJoCo [10⁻⁶]", "difference quotients [10⁻⁶]")
@@ -119,7 +119,7 @@ def jacobian_table(run: Experiment) -> str:
 def singular_table(run: Experiment) -> str:
     """Return the singular values of the Jacobian and their product in each posture."""
     rows = {}
-    for name, q in study.jacobian_postures(run.traces["baseline"]).items():
+    for name, q in study.jacobian_postures(run).items():
         values = np.linalg.svd(kinematics.jacobian(q), compute_uv=False)
         rows[name.replace("_", " ")] = *values, values.prod()
     heads = {f"s{k}": 3 for k in range(1, 7)} | {"product": 4}
@@ -214,7 +214,7 @@ def conclusions(run: Experiment) -> str:
 def records(run: Experiment, name: str) -> list[dict[str, str]]:
     """Return what is known of each answer of a run as rows of a table."""
     case, q = spec.QUESTIONS[name], run.traces[name].q[1:, : kinematics.ARM]
-    found, (lower, upper) = study.answers(run.traces[name], case), spec.ARM_LIMITS
+    found, (lower, upper) = study.answers_of(run, name), spec.ARM_LIMITS
     nearest = np.minimum(q - lower, upper - q).argmin(axis=1)
     return [
         {
@@ -234,7 +234,7 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
 
 def chosen(run: Experiment) -> dict[str, int]:
     """Return by criterion the number of the accepted answer, from 0, that it chooses."""
-    found = study.many_answers(run)
+    found = study.answers_of(run, "many_starts")
     numbers = np.flatnonzero(found["accepted"]).tolist()
     return {
         n: best(numbers, key=found[key].__getitem__)
@@ -270,7 +270,7 @@ def choice_table(run: Experiment) -> str:
 
 def unreachable_table(run: Experiment) -> str:
     """Compare the engine's answers for the target beyond reach with the nearest posture found."""
-    found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
+    found = study.answers_of(run, "unreachable")
     order = study.weighted(found["position"], found["rotation"]).argsort()
     pairs = {
         f"engine, {words}": (found["position"][k], found["rotation"][k])
@@ -291,8 +291,8 @@ def unreachable_table(run: Experiment) -> str:
 def reach_table(run: Experiment) -> tables.Rows:
     """Return how many targets of each plane are accepted, and what their answers span."""
     for name in (*spec.PLANES, "vertical_restarted"):
-        found = study.answers(run.traces[name], spec.QUESTIONS[name])
-        yes = found["accepted"].astype(bool)
+        found = study.answers_of(run, name)
+        yes = found["accepted"]
         yield {
             "plane": name.replace("_", ", "),
             "targets": len(yes),

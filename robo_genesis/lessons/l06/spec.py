@@ -46,6 +46,7 @@ SWITCH, STEPS = 180, 360
 RESET_AFTER = 30  # Outer steps until the partial reset, while all arms are moving
 
 # Targets of which one is refused [m].
+REFUSED = 2  # The row of `MIXED` that is beyond reach
 MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
 
 FIRST = Environment(TARGETS[:1], DOWN, IK, SWITCH, steps=STEPS)
@@ -178,13 +179,15 @@ HELD = 0.05
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    mixed = {"targets": MIXED.tolist(), "settings": asdict(ONE_START)}
-    further = {"order": list(ORDER), "hand_mass": HAND_MASS, "mixed": mixed}
-    further |= {"sweep": {"factors": list(FACTORS), "loads": list(LOADS)}}
-    further |= {
-        "restarted": RESTARTED.tolist(),
-        "reset_after": RESET_AFTER,
-        "spacing": SPACING,
-        "counted": list(EXPECTED_MODEL),
-    }
-    return inputs(CASES | COPIES | PRESSED, VIEW, **further)
+    return inputs(
+        CASES | COPIES | PRESSED,
+        VIEW,
+        order=list(ORDER),
+        hand_mass=HAND_MASS,
+        mixed={"targets": MIXED.tolist(), "settings": asdict(ONE_START)},
+        sweep={"factors": list(FACTORS), "loads": list(LOADS)},
+        restarted=RESTARTED.tolist(),
+        reset_after=RESET_AFTER,
+        spacing=SPACING,
+        counted=list(EXPECTED_MODEL),
+    )

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.experiment import Readings, counts
+from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec
@@ -83,14 +83,9 @@ def residual(position: FloatArray, joints: JointMap) -> float:
         error = kinematics.pose_error(target, kinematics.hand_pose(q))
         if kinematics.accepted(q, error, *settings.tolerances):
             break
-        q = kinematics.solve(
-            target,
-            q,
-            *limits,
-            iterations=1,
-            damping=settings.damping,
-            largest=settings.largest_step,
-        )
+        step = kinematics.damped_step(kinematics.jacobian(q), error, settings.damping)
+        most = settings.largest_step
+        q = np.clip(q + np.clip(step, -most, most), *limits)
     return kinematics.distance_and_angle(target, kinematics.hand_pose(q))[0]
 
 
@@ -166,33 +161,30 @@ def compared(pairs: Sequence[tuple[Trace, Trace]]) -> list[float]:
     """Return the values of `COMPARED` for some pairs of runs."""
     differ, numbers = np.sum([entries_that_differ(*pair) for pair in pairs], axis=0)
     arm = slice(kinematics.ARM)
-    return [
-        int(numbers),
-        int(differ),
-        max(largest_differences(*pair, arm)["q"] for pair in pairs),
-    ]
+    apart = max(largest_differences(*pair, arm)["q"] for pair in pairs)
+    return [int(numbers), int(differ), apart]
+
+
+def shared(one: Trace, other: Trace, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return an array of two runs, each cut to the samples that both have."""
+    a, b = getattr(one, name), getattr(other, name)
+    n = min(len(a), len(b))
+    return a[:n], b[:n]
 
 
 def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
     """Return how many entries differ in the samples that two runs share, and how many these are."""
-    differ = compared = 0
-    for name in (field.name for field in fields(Trace) if field.name != "t"):
-        a, b = getattr(one, name), getattr(other, name)
-        n = min(len(a), len(b)) if a.ndim > 1 else len(a)
-        differ += int((a[:n] != b[:n]).sum())
-        compared += a[:n].size
-    return differ, compared
+    names = (field.name for field in fields(Trace) if field.name != "t")
+    both = [shared(one, other, name) for name in names]
+    return sum(int((a != b).sum()) for a, b in both), sum(a.size for a, _ in both)
 
 
 def largest_differences(
     one: Trace, other: Trace, joints: slice = slice(None)
 ) -> dict[str, float]:
-    """Return the largest difference of each array of `spec.SAME_RUN` in two runs.
+    """Return the largest difference of each array of `spec.SAME_RUN` in the samples of two runs.
 
-    Args:
-        one: a run.
-        other: another one; only the samples that both have are compared.
-        joints: of the nine joints, those that are compared.
+    `joints` are those of the nine that are compared.
 
     Returns:
         By array, the difference: of joints of the arm in rad, rad/s and N·m, of fingers
@@ -201,9 +193,8 @@ def largest_differences(
     """
     found = {}
     for name in spec.SAME_RUN:
-        a, b = (getattr(run, name)[:, joints].astype(float) for run in (one, other))
-        n = min(len(a), len(b))
-        found[name] = float(np.abs(a[:n] - b[:n]).max())
+        apart = np.subtract(*shared(one, other, name), dtype=np.float64)
+        found[name] = float(np.abs(apart[:, joints]).max())
     return found
 
 
@@ -221,3 +212,8 @@ def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:
         claim: [(name, worlds.get(name, f"env_{name[-1]}")) for name in names]
         for claim, names in groups.items()
     }
+
+
+def compared_runs(run: Experiment, claim: str) -> list[float]:
+    """Return the values of `COMPARED` for the pairs of a claim."""
+    return compared([(run.traces[a], run.traces[b]) for a, b in pairs()[claim]])

@@ -96,12 +96,7 @@ CLAIMED = {
 
 def equality_table(run: Experiment) -> str:
     """Return how many numbers differ, and by how much, where two runs could be equal."""
-    found = {
-        claim: study.compared(
-            [(run.traces[one], run.traces[other]) for one, other in pairs]
-        )
-        for claim, pairs in study.pairs().items()
-    }
+    found = {claim: study.compared_runs(run, claim) for claim in study.pairs()}
     measured = run.readings.get(study.EQUALITY, {})
     for claim in study.READ if measured else ():
         found[claim] = [measured[f"{claim}_{what}"] for what in study.COMPARED]
@@ -144,8 +139,7 @@ def conclusions(run: Experiment) -> str:
         [m[f"env_{k}"].moved_later for k in rows]
         for rows in (spec.LATER, {*spec.ENVS} - {*spec.LATER})
     )
-    pairs = study.pairs()["alone"]
-    *_, apart = study.compared([(run.traces[a], run.traces[b]) for a, b in pairs])
+    *_, apart = study.compared_runs(run, "alone")
     return bullets(
         [
             f"One of the four targets is beyond reach. Rows {accepted} are accepted.",

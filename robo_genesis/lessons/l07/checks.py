@@ -10,7 +10,6 @@ from robo_genesis.core.checks import (
     at_most,
     below,
     equal,
-    model_counts,
     within,
 )
 from robo_genesis.core.experiment import Experiment
@@ -21,13 +20,8 @@ from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
 from robo_genesis.sim.arm.laws import assigned_run, driven_run
 from robo_genesis.sim.bodies import table
-from robo_genesis.sim.common_checks import posture, stamps
+from robo_genesis.sim.common_checks import posture, stamps, structure
 from robo_genesis.sim.laws import apart, kept
-
-
-def structure(run: Experiment) -> Findings:
-    """The robot has the links, joints and DOFs of its model file."""
-    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def one_rung(run: Experiment) -> Findings:
@@ -53,9 +47,7 @@ def reached(run: Experiment) -> Findings:
             points = lifting.waypoints(case.place, case.size[2])
             for phase, point in zip(("settle", "hold"), points[1:], strict=True):
                 hand = measured_hand(run.traces[name], lifting.ENDS[phase]).position
-                yield at_most(
-                    f"{name}.{phase}_m", float(np.linalg.norm(hand - point)), 8e-3
-                )
+                yield at_most(f"{name}.{phase}_m", np.linalg.norm(hand - point), 8e-3)
 
 
 def hovering_is_at_rest(run: Experiment) -> Findings:

@@ -183,9 +183,7 @@ def map_follows(found: Experiment) -> Findings:
     for name, of, most in zip(
         ("m", "rad"), left, CASE.settings.tolerances, strict=True
     ):
-        yield at_most(
-            f"residual_{name}", float(of[np.repeat(reached, 2)].max()), most + 2e-6
-        )
+        yield at_most(f"residual_{name}", of[np.repeat(reached, 2)].max(), most + 2e-6)
     least, most = np.transpose(WORKSPACE)
     inside = ((CASE.places >= least) & (CASE.places <= most)).all(axis=1)
-    yield equal("workspace", int((inside & reached).sum()), int(inside.sum()))
+    yield equal("workspace", (inside & reached).sum(), inside.sum())

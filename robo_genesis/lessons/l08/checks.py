@@ -10,7 +10,6 @@ from robo_genesis.core.checks import (
     at_most,
     below,
     equal,
-    model_counts,
     noted,
     within,
 )
@@ -22,13 +21,8 @@ from robo_genesis.sim.arm.kinematics import ARM, hand_pose
 from robo_genesis.sim.arm.laws import driven_run
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.camera import film
-from robo_genesis.sim.common_checks import posture, stamps
+from robo_genesis.sim.common_checks import posture, stamps, structure
 from robo_genesis.sim.laws import apart, kept
-
-
-def structure(run: Experiment) -> Findings:
-    """The robot has the links, joints and DOFs of its model file."""
-    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def place_is_enough(run: Experiment) -> Findings:
@@ -59,10 +53,10 @@ def along_the_pads(run: Experiment) -> Findings:
     """
     error = spec.ASKEW.beliefs - spec.STARTS
     good = metrics.good(run.traces["askew"], spec.ASKEW)
-    yield equal("small_error.failed", int((~good[error[:, 0] > -3e-3]).sum()), 0)
-    yield equal("large_error.succeeded", int(good[error[:, 0] < -6e-3].sum()), 0)
-    yield above("largest_m", float(error[:, 0].max()), 10e-3)
-    yield at_most("across_m", float(np.abs(error[:, 1]).max()), 7.1e-3)
+    yield equal("small_error.failed", (~good[error[:, 0] > -3e-3]).sum(), 0)
+    yield equal("large_error.succeeded", good[error[:, 0] < -6e-3].sum(), 0)
+    yield above("largest_m", error[:, 0].max(), 10e-3)
+    yield at_most("across_m", np.abs(error[:, 1]).max(), 7.1e-3)
 
 
 def pads_are_short(run: Experiment) -> Findings:
@@ -82,8 +76,8 @@ def edge_of_the_pads(run: Experiment) -> Findings:
     places = trace.object_pos[first, np.arange(len(first)), 0]
     along = places - metrics.at_closing(trace)[:, 0]
     good = metrics.good(trace, spec.ASKEW)
-    yield equal("inside.failed", int((~good[along < 8e-3]).sum()), 0)
-    yield equal("outside.succeeded", int(good[along > 9e-3].sum()), 0)
+    yield equal("inside.failed", (~good[along < 8e-3]).sum(), 0)
+    yield equal("outside.succeeded", good[along > 9e-3].sum(), 0)
 
 
 def held_but_sliding(run: Experiment) -> Findings:
@@ -105,10 +99,8 @@ def shown_episodes(run: Experiment) -> Findings:
     """Each episode of the replay reaches the rung of its name, and finishes all phases."""
     level = metrics.reached(run.traces["askew"], spec.ASKEW)
     for name, row in spec.SHOWN.items():
-        yield equal(f"{name}.rungs", int(level[row]), spec.REACH[name])
-        yield equal(
-            f"{name}.phase", int(run.traces["askew"].phase[-1, row]), picking.DONE
-        )
+        yield equal(f"{name}.rungs", level[row], spec.REACH[name])
+        yield equal(f"{name}.phase", run.traces["askew"].phase[-1, row], picking.DONE)
 
 
 def order_does_not_matter(run: Experiment) -> Findings:
@@ -131,8 +123,8 @@ def commands_come_first(run: Experiment) -> Findings:
     finger has.
     """
     before, after = dataset.finger_motion(run)
-    yield at_most("before_m", float(before.max()), 1e-3)
-    yield above("after_m", float(after.min()), 1e-3)
+    yield at_most("before_m", before.max(), 1e-3)
+    yield above("after_m", after.min(), 1e-3)
 
 
 def pictures_show_the_states(run: Experiment) -> Findings:
@@ -146,8 +138,8 @@ def pictures_show_the_states(run: Experiment) -> Findings:
         shown = film.pictures_of(run.frames, spec.FILMS[0], len(trace.t)).astype(float)
         apart = np.abs(shown - film.shrunk(run.frames["final"])).mean(axis=(1, 2, 3))
         move = int((trace.phase[:, 0] == picking.MOVE).argmax())
-        yield at_most("end.levels", float(apart[-1]), 1.0)
-        yield above("move.levels", float(apart[move]), 1.0)
+        yield at_most("end.levels", apart[-1], 1.0)
+        yield above("move.levels", apart[move], 1.0)
 
 
 def laws_of_motion(run: Experiment) -> Findings:
@@ -188,14 +180,14 @@ def nothing_jumps(run: Experiment) -> Findings:
         trace, case = run.traces[name], run.cases[name]
         turned = np.abs(np.diff(trace.q[..., :ARM].astype(float), axis=0))
         share = turned.max(axis=(0, 2)) / (case.commands * case.stride)
-        yield below(f"{name}.share_of_the_commands", float(share.max()), CATCHES_UP)
+        yield below(f"{name}.share_of_the_commands", share.max(), CATCHES_UP)
         moved = np.linalg.norm(np.diff(trace.object_pos, axis=0), axis=2)
         free = trace.phase[1:] < picking.DESCEND
-        yield below(f"{name}.untouched_m", float(moved[free].max()), RESTS)
+        yield below(f"{name}.untouched_m", moved[free].max(), RESTS)
         reach = hand_pose(trace.q).position - trace.object_pos
         slid = np.abs(np.diff(np.linalg.norm(reach, axis=2), axis=0))
         held = (metrics.inside_move(trace) & metrics.pressed(trace))[1:]
-        yield below(f"{name}.in_the_hand_m", float(slid[held].max(initial=0)), GRIPPED)
+        yield below(f"{name}.in_the_hand_m", slid[held].max(initial=0), GRIPPED)
         episodes = np.unique(trace.q, axis=1).shape[1]
         yield equal(f"{name}.different_episodes", episodes, len(case.starts))
 

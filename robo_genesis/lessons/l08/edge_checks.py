@@ -6,7 +6,7 @@ from robo_genesis.core.checks import Findings, above, at_most, below, equal, wit
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l08 import checks, edge, metrics, rates
 from robo_genesis.sim.arm.picking import CLOSE
-from robo_genesis.sim.common_checks import stamps
+from robo_genesis.sim.common_checks import stamps, structure
 
 MEASURES = False
 
@@ -25,12 +25,12 @@ def window_of_errors(run: Experiment) -> Findings:
     early = ((trace.touches == 1) & (trace.phase < CLOSE)).any(axis=0)
     yield within("grid.success", run.metrics["grid"].resting, 48, BAND)
     core = inner & (along > 1) & (along < 7)
-    yield equal("core.failed", int((~good[core]).sum()), 0)
-    yield above("touched_early", int((good & early).sum()), 4.5)
+    yield equal("core.failed", (~good[core]).sum(), 0)
+    yield above("touched_early", (good & early).sum(), 4.5)
     far = good & (np.abs(across) > 20)
-    yield at_most("far.untouched", int((far & ~early).sum()), int((far & early).sum()))
+    yield at_most("far.untouched", (far & ~early).sum(), (far & early).sum())
     outside = inner & ((along < -9) | (along > 17))
-    yield equal("outside.succeeded", int(good[outside].sum()), 0)
+    yield equal("outside.succeeded", good[outside].sum(), 0)
 
 
 def correction_helps(run: Experiment) -> Findings:
@@ -48,7 +48,7 @@ def window_is_centred(run: Experiment) -> Findings:
     case = run.cases["corrected"]
     along = (case.beliefs - case.starts - edge.SAG)[:, 0]
     good = metrics.good(run.traces["corrected"], case)
-    yield equal("small_noise.failed", int((~good[np.abs(along) <= 7e-3]).sum()), 0)
+    yield equal("small_noise.failed", (~good[np.abs(along) <= 7e-3]).sum(), 0)
 
 
 def pairs(run: Experiment, first: int = edge.PAIRS) -> tuple[int, int, int, int]:
@@ -71,9 +71,9 @@ def clock_hides_failure(run: Experiment) -> Findings:
         len(edge.CLOCKS), -1
     )
     yield equal("timed.finished", run.metrics["timed"].finished, good.size)
-    yield equal("shortest.success", int(good[0].sum()), 0)
+    yield equal("shortest.success", good[0].sum(), 0)
     for row, words in ((-2, "longest"), (-1, "measured")):
-        yield equal(f"{words}.success", int(good[row].sum()), edge.TIMED)
+        yield equal(f"{words}.success", good[row].sum(), edge.TIMED)
 
 
 def slower_slides_farther(run: Experiment) -> Findings:
@@ -85,11 +85,9 @@ def slower_slides_farther(run: Experiment) -> Findings:
         of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
     )
     yield equal("paced.success", run.metrics["paced"].resting, slid.size)
-    yield above("slower.least_further_slide_m", float(np.diff(slid, axis=0).min()), 0)
+    yield above("slower.least_further_slide_m", np.diff(slid, axis=0).min(), 0)
     rates_of = np.median(slid / seconds, axis=1)
-    yield below(
-        "slide_per_second.spread", float(np.ptp(rates_of) / rates_of.min()), 0.1
-    )
+    yield below("slide_per_second.spread", np.ptp(rates_of) / rates_of.min(), 0.1)
 
 
 def hovering_is_a_trap(run: Experiment) -> Findings:
@@ -104,7 +102,7 @@ def hovering_is_a_trap(run: Experiment) -> Findings:
 
 
 RATES = (
-    checks.structure,
+    structure,
     stamps,
     checks.laws_of_motion,
     checks.nothing_jumps,

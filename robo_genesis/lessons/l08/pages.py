@@ -14,6 +14,7 @@ from robo_genesis.lessons.l08.metrics import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 from robo_genesis.sim.bodies.table import SceneCase
 from robo_genesis.sim.camera import film
+from robo_genesis.sim.common_checks import structure
 
 MEASURES = False
 
@@ -68,7 +69,7 @@ RATES = replace(
     parameters=edge.parameters,
     camera=False,
 )
-MISTAKES = replace(RATES, runs={}, checks=(checks.structure,))
+MISTAKES = replace(RATES, runs={}, checks=(structure,))
 
 EPISODES = Replay(
     tuple(spec.SHOWN),

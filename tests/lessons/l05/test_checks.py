@@ -9,7 +9,6 @@ from robot_runs import LINKS, answer, driven
 
 from robo_genesis.core.checks import evaluate
 from robo_genesis.lessons.l05 import checks, spec, study
-from robo_genesis.lessons.l05.laws import laws_of_motion
 from robo_genesis.lessons.l05.pages import LECTURE
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
@@ -108,7 +107,7 @@ def test_the_lecture_compares_solver_steps_and_force_limits(reaches):
     ],
 )
 def test_a_run_that_breaks_a_law_is_found(reaches, change, label):
-    found = laws_of_motion(change(reaches))
+    found = checks.laws_of_motion(change(reaches))
     assert [label in one.label for one in found if not one.passed] == [True]
 
 
@@ -128,13 +127,11 @@ def test_an_answer_that_is_not_accepted_is_not_commanded():
 
 
 def test_a_self_motion_keeps_the_hand_in_place_and_groups_solutions(reaches):
-    target = kinematics.Pose(spec.TARGET, spec.DOWN)
-    curve = study.self_motion(reaches.traces["baseline"].target[0, :7], target)
-    assert (
-        np.abs(kinematics.pose_error(target, kinematics.hand_pose(curve))).max() < 1e-3
-    )
+    curve = study.self_motion(reaches.traces["baseline"].target[0, :7])
+    error = kinematics.pose_error(study.GOAL, kinematics.hand_pose(curve))
+    assert np.abs(error).max() < 1e-3
     assert np.linalg.norm(np.diff(curve, axis=0), axis=1).max() < 0.1
     assert np.ptp(curve, axis=0).max() > 0.5
-    ((of_curve, inside),) = study.families(curve[::5], target)
+    ((of_curve, inside),) = study.families(curve[::5])
     assert len(inside) == len(curve[::5])
     assert len(of_curve) > 10

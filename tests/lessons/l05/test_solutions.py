@@ -28,12 +28,12 @@ def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(reache
     q = reaches.traces["many_starts"].q
     for row in found["rows"]:
         assert (np.diff(q[[cell["answer"] for cell in row["cells"]], 0]) >= 0).all()
-    accepted = study.many_answers(reaches)["accepted"]
+    accepted = study.answers_of(reaches, "many_starts")["accepted"]
     assert sum(len(row["cells"]) for row in found["rows"]) == accepted.sum() > 20
 
 
 def test_each_criterion_chooses_the_best_accepted_answer(reaches):
-    found, chosen = study.many_answers(reaches), text.chosen(reaches)
+    found, chosen = study.answers_of(reaches, "many_starts"), text.chosen(reaches)
     assert len(set(chosen.values())) > 1
     for name, (key, best) in text.CRITERIA.items():
         assert found[key][chosen[name]] == best(found[key][found["accepted"]])
