@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from robo_genesis.core.checks import Finding, above, below, equal, within
-from robo_genesis.core.experiment import Experiment, Readings
+from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.common_checks import usable_frame
@@ -19,7 +19,7 @@ FALLS = ("higher", "thrown", "heavier", "moon")
 
 
 READINGS = {
-    SHAPES: Readings(dict.fromkeys(spec.COUNTS, "1"), "exact", spec.COUNTS),
+    SHAPES: counts(spec.COUNTS),
     TRAYS: Readings(dict.fromkeys((PIECES, HULL), "m")),
     FURTHER: Readings(dict.fromkeys(FALLS, "m")),
 }
