@@ -7,14 +7,13 @@ digest.
 """
 
 import re
-import xml.etree.ElementTree as ElementTree
 from html import escape
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import imagesize
 from bs4 import BeautifulSoup
 from bs4.element import PreformattedString
-from PIL import Image
 
 from robo_genesis.core.palette import COLOUR, MARKS, PARTS, css_name
 
@@ -49,11 +48,6 @@ SIZE = re.compile(r'\s(?:width|height|version|role|style|class)="[^"]*"')
 
 # Matplotlib's own style sheet, which would apply to the whole page.
 LINES = "stroke-linejoin: round; stroke-linecap: butt"
-
-
-# CSS pixels in one unit of length.
-PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
-LENGTH = re.compile(rf"([\d.]+)({'|'.join(PIXELS)})")
 
 
 def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
@@ -95,23 +89,14 @@ def image_size(file: Path) -> tuple[int, int]:
     """Return an image's width and height [CSS px].
 
     Raises:
-        ValueError: an SVG states neither its size nor a view box.
+        ValueError: it states none.
     """
-    if file.suffix != ".svg":
-        with Image.open(file) as image:
-            return image.size
-    _, root = next(ElementTree.iterparse(file, events=["start"]))
-    stated = [root.get("width", ""), root.get("height", "")]
-    for lengths in (stated, root.get("viewBox", "").split()[2:]):
-        sizes = [
-            match.groups() for length in lengths if (match := LENGTH.fullmatch(length))
-        ]
-        if len(sizes) == 2:
-            width, height = (
-                round(float(number) * PIXELS[unit]) for number, unit in sizes
-            )
-            return width, height
-    raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
+    width, height = imagesize.get(file)
+    if width < 0:
+        raise ValueError(
+            f"{file.name} states no size. Give its root a width and height."
+        )
+    return round(width), round(height)
 
 
 def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
@@ -122,9 +107,8 @@ def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
         prefix: of its identifiers, which are unique on the page.
         attributes: of the element.
     """
-    drawing = DROPPED.sub("", drawing[drawing.index("<svg") :]).replace(
-        "xlink:href", "href"
-    )
+    drawing = DROPPED.sub("", drawing[drawing.index("<svg") :])
+    drawing = drawing.replace("xlink:href", "href")
     used = {*REFERENCE.findall(drawing)}
     drawing = IDENTIFIER.sub(
         lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", drawing

@@ -199,9 +199,8 @@ def picture(
     """Return a recorded view with the cross that marks a pixel."""
     file = "-".join(("picture", *key.split("/"), name))
     content = BytesIO()
-    with Image.open(
-        folder / f"{name}_rgb.png"
-    ) as frame:  # to look at: other frames have numbers
+    with Image.open(folder / f"{name}_rgb.png") as frame:
+        # To look at: other frames have numbers.
         frame.convert("RGB").save(content, "JPEG", quality=85, optimize=True)
     shown = image(directive.env, f"{file}.jpg", content.getvalue(), alt)
     return replays.stage(shown, '<span class="cross" hidden></span>', caption, file)

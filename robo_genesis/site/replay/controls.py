@@ -103,7 +103,6 @@ def panel(name: str, runs: Runs, weight: int) -> str:
             *(c.name for c in runs.channels),
             *(level.name for level in runs.levels),
         ],
-        legend=_legend(runs),
     )
 
 
@@ -143,15 +142,3 @@ def as_json(content: Any) -> str:
     return json.dumps(
         content, separators=(",", ":"), ensure_ascii=False, allow_nan=False
     )
-
-
-def _legend(runs: Runs) -> str:
-    """Return the meaning of the lines of the plots."""
-    bold = "Bold: the chosen run; each curve has the colour of the line beside its run."
-    levels = (level.legend for level in runs.levels)
-    parts = (
-        bold * (len(runs.traces) > 1),
-        *levels,
-        "Drag in a plot to move through time.",
-    )
-    return " ".join(filter(None, parts))

@@ -61,14 +61,8 @@ class ReplayDirective(PageDirective):
         """Return the replay."""
         brief, blind = (option in self.options for option in self.option_spec)
         lesson_page, *chosen = self.arguments
-        first_page = self.env.docname == self.env.config.root_doc
-        above = self.state.document.findall(nodes.Element)
-        stops = [
-            n
-            for n in above
-            if isinstance(n, question) or "replay-block" in n["classes"]
-        ]
-        if blind and not first_page and not (stops and isinstance(stops[-1], question)):
+        asked = next(self.state.document.findall(question), None)
+        if blind and asked is None and self.env.docname != self.config.root_doc:
             raise LookupError(
                 "`:blind:` needs a question above it, as `{choice}` or `{number}`."
             )

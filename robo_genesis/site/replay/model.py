@@ -8,13 +8,13 @@ above. If the view follows a link, the world moves against it. Nothing is compre
 the page would have to load a decoder.
 """
 
-import json
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeAlias
 
 import numpy as np
 import pygltflib as gltf
 import trimesh
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
 
 from robo_genesis.core.channels import Run
 from robo_genesis.core.scene import FloatArray
@@ -50,59 +50,34 @@ SHADOW, FLAT, ABOVE = (105, 105, 105), 1e-4, 1e-3
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 
 
-# Parts, each with its simplified mesh.
-Simple: TypeAlias = Sequence[tuple[Part, trimesh.Trimesh]]
-
-COMPONENTS = {
-    "float32": gltf.FLOAT,
-    "uint16": gltf.UNSIGNED_SHORT,
-    "uint32": gltf.UNSIGNED_INT,
-}
-
-
-class Binary:
-    """The binary chunk of a GLB and its accessors; equal arrays are stored once."""
+class Keys:
+    """The keys of a model's animations in its binary chunk; equal arrays are stored once."""
 
     def __init__(self, model: gltf.GLTF2) -> None:
-        self.model, self.data, self.known = (
-            model,
-            bytearray(),
-            dict[tuple[str, bytes], int](),
-        )
+        self.model, self.data = model, bytearray(model.binary_blob())
+        self.known = dict[tuple[tuple[int, ...], bytes], int]()
 
-    def add(
-        self,
-        array: np.ndarray,
-        kind: str,
-        target: int | None = None,
-        bounds: bool = False,
-    ) -> int:
-        """Store an array (n,) or (n, k) and return its accessor; float32 or uint16 or uint32.
+    def add(self, values: FloatArray, **bounds: list[float]) -> int:
+        """Store an array (n,) or (n, k) as float32, and return the number of its accessor.
 
-        glTF demands `bounds`, the smallest and largest values, of positions and of key
-        times.
+        glTF demands the `bounds` `min` and `max` of times.
         """
-        packed = array.tobytes()
-        if (kind, packed) not in self.known:
-            view = gltf.BufferView(
-                buffer=0,
-                byteOffset=len(self.data),
-                byteLength=len(packed),
-                target=target,
-            )
+        values = np.ascontiguousarray(values, dtype=np.float32)
+        packed, model = values.tobytes(), self.model
+        if (values.shape, packed) not in self.known:
+            self.known[values.shape, packed] = len(model.accessors)
             accessor = gltf.Accessor(
-                bufferView=len(self.model.bufferViews),
-                componentType=COMPONENTS[array.dtype.name],
-                count=len(array),
-                type=kind,
-                min=np.atleast_1d(array.min(axis=0)).tolist() if bounds else None,
-                max=np.atleast_1d(array.max(axis=0)).tolist() if bounds else None,
+                bufferView=len(model.bufferViews),
+                componentType=gltf.FLOAT,
+                count=len(values),
+                type=f"VEC{values.shape[1]}" if values.ndim == 2 else "SCALAR",
+                **bounds,
             )
-            self.data += packed + bytes(-len(packed) % 4)
-            self.known[kind, packed] = len(self.model.accessors)
-            self.model.bufferViews.append(view)
-            self.model.accessors.append(accessor)
-        return self.known[kind, packed]
+            model.accessors.append(accessor)
+            size = {"byteOffset": len(self.data), "byteLength": len(packed)}
+            model.bufferViews.append(gltf.BufferView(buffer=0, **size))
+            self.data += packed
+        return self.known[values.shape, packed]
 
 
 def glb(
@@ -119,72 +94,66 @@ def glb(
         traces: the record by case.
         credit: copyright of the shape, None where it needs no notice.
     """
-    model = gltf.GLTF2(
-        asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=credit)
-    )
-    binary = Binary(model)
-    model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP)]
-
-    def add(name: str, parent: int = 0, **attributes: Any) -> int:
-        """Add a node below another one and return its number."""
-        model.nodes[parent].children.append(len(model.nodes))
-        model.nodes.append(gltf.Node(name=name, **attributes))
-        return len(model.nodes) - 1
-
-    first = next(iter(traces.values()))
-    simple = [(part, simplified(part)) for part in scenery.parts]
-    for k, link in enumerate(links):
-        place = first.link_pos[0, k].astype(float).tolist()
-        turn = rotations(first.link_quat[:1, k])[0].astype(float).tolist()
-        add(link, translation=place, rotation=turn, mesh=_mesh(binary, link, simple))
-    if (still := _mesh(binary, WORLD, simple)) is not None:
-        add(STILL, mesh=still)
-    copies = add(TARGET) if scenery.target else 0
-    for link, pose in scenery.target.items():
-        matrix, mesh = pose.T.ravel().tolist(), _mesh(binary, link, simple, GHOST)
-        add(f"{TARGET}_{link}", copies, matrix=matrix, mesh=mesh)
-    ground = [0.0, 0.0, scenery.ground + ABOVE]
-    shadows = add(SHADOWS, translation=ground, scale=[1.0, 1.0, FLAT])
-    for link, node in zip(links, model.nodes[1:], strict=False):
-        mesh = _mesh(binary, link, simple, SHADOW)
-        moved = {"translation": node.translation, "rotation": node.rotation}
-        add(f"shadow_{link}", shadows, mesh=mesh, **moved)
-    followed = scenery.followed
+    first, followed = next(iter(traces.values())), scenery.followed
+    drawn = scene_of(scenery, links).export(file_type="glb", include_normals=True)
+    model = gltf.GLTF2.load_from_bytes(drawn)
+    model.asset.copyright = credit
+    for material in model.materials:
+        material.alphaCutoff = None  # which belongs to a mode that no material has
+    model.nodes[0].rotation = Z_UP_TO_Y_UP
+    numbers = {node.name: k for k, node in enumerate(model.nodes)}
     if followed is not None:
-        model.nodes[0].translation = opposite(first, followed)[0].astype(float).tolist()
+        model.nodes[0].translation = opposite(first, followed)[0].tolist()
+    moved = [(numbers[link], numbers[f"shadow_{link}"]) for link in links]
+    for k, pair in enumerate(moved):
+        for node in pair:
+            model.nodes[node].translation = first.link_pos[0, k].tolist()
+            model.nodes[node].rotation = rotations(first.link_quat[:1, k])[0].tolist()
+    keys = Keys(model)
     model.animations = [
-        _animation(binary, *run, followed, shadows + 1) for run in traces.items()
+        _animation(keys, *run, followed, moved) for run in traces.items()
     ]
-    model.scene, model.scenes = 0, [gltf.Scene(nodes=[0])]
-    model.buffers = [gltf.Buffer(byteLength=len(binary.data))]
-    model.set_binary_blob(bytes(binary.data))
+    model.buffers[0].byteLength = len(keys.data)
+    model.set_binary_blob(bytes(keys.data))
     return b"".join(model.save_to_bytes())
 
 
-def _mesh(
-    binary: Binary, link: str, shape: Simple, colour: Sequence[float] | None = None
-) -> int | None:
-    """Add a link's mesh and return its number, None where the link has no parts.
+def scene_of(scenery: Scenery, links: Sequence[str]) -> trimesh.Scene:
+    """Return what is drawn as a tree of named nodes, links and shadows not yet placed."""
+    scene = trimesh.Scene(base_frame="scene")
+    simple = [(part, simplified(part)) for part in scenery.parts]
 
-    `colour` replaces those of the parts.
-    """
-    model, primitives = binary.model, []
-    for part, mesh in (pair for pair in shape if pair[0].link == link):
-        attributes = gltf.Attributes(
-            POSITION=binary.add(
-                _float32(mesh.vertices), "VEC3", gltf.ARRAY_BUFFER, bounds=True
-            ),
-            NORMAL=binary.add(_float32(mesh.vertex_normals), "VEC3", gltf.ARRAY_BUFFER),
-        )
-        faces = np.asarray(mesh.faces).ravel()
-        small = np.uint16 if len(mesh.vertices) < 2**16 else np.uint32
-        indices = binary.add(faces.astype(small), "SCALAR", gltf.ELEMENT_ARRAY_BUFFER)
-        look = {"indices": indices, "material": _material(model, colour or part.rgb)}
-        primitives.append(gltf.Primitive(attributes=attributes, **look))
-    if not primitives:
-        return None
-    model.meshes.append(gltf.Mesh(name=link, primitives=primitives))
-    return len(model.meshes) - 1
+    def add(
+        name: str,
+        parent: str = WORLD,
+        link: str = "",
+        pose: FloatArray | None = None,
+        colour: Sequence[float] = (),
+    ) -> None:
+        """Add a node, and below it the parts of a link, in this colour or their own."""
+        scene.graph.update(name, parent, matrix=pose)
+        for part, mesh in simple:
+            if part.link == link:
+                look = TextureVisuals(material=_material(colour or part.rgb))
+                shown = trimesh.Trimesh(
+                    mesh.vertices, mesh.faces, process=False, visual=look
+                )
+                scene.add_geometry(shown, f"{name}_part", parent_node_name=name)
+
+    add(WORLD, "scene")
+    for link in links:
+        add(link, link=link)
+    add(STILL, link=WORLD)
+    if scenery.target:
+        add(TARGET)
+    for link, pose in scenery.target.items():
+        add(f"{TARGET}_{link}", TARGET, link, pose, GHOST)
+    flat = np.diag([1.0, 1.0, FLAT, 1.0])
+    flat[2, 3] = scenery.ground + ABOVE
+    add(SHADOWS, pose=flat)
+    for link in links:
+        add(f"shadow_{link}", SHADOWS, link, colour=SHADOW)
+    return scene
 
 
 def simplified(part: Part) -> trimesh.Trimesh:
@@ -198,19 +167,15 @@ def simplified(part: Part) -> trimesh.Trimesh:
     return trimesh.graph.smooth_shade(mesh, angle=CREASE)
 
 
-def _material(model: gltf.GLTF2, colour: Sequence[float]) -> int:
-    """Return the number of the material of a colour: red, green, blue 0 to 255, and opacity."""
-    name, opacity = json.dumps(colour), next(iter(colour[3:]), 1.0)
-    factor = [*linear(np.array(colour[:3]) / 255).tolist(), opacity]
-    look = gltf.PbrMetallicRoughness(
-        baseColorFactor=factor, metallicFactor=0.0, roughnessFactor=0.6
+def _material(colour: Sequence[float]) -> PBRMaterial:
+    """Return the material of a colour: red, green, blue 0 to 255, and opacity."""
+    opacity = next(iter(colour[3:]), 1.0)
+    return PBRMaterial(
+        baseColorFactor=[*linear(np.array(colour[:3]) / 255), opacity],
+        metallicFactor=0.0,
+        roughnessFactor=0.6,
+        alphaMode="BLEND" if opacity < 1 else "OPAQUE",
     )
-    material = gltf.Material(name=name, pbrMetallicRoughness=look, alphaCutoff=None)
-    if opacity < 1:
-        material.alphaMode = "BLEND"
-    if material not in model.materials:
-        model.materials.append(material)
-    return model.materials.index(material)
 
 
 def linear(srgb: FloatArray) -> FloatArray:
@@ -219,55 +184,54 @@ def linear(srgb: FloatArray) -> FloatArray:
 
 
 def _animation(
-    binary: Binary, name: str, trace: Run, followed: int | None, first_shadow: int
+    keys: Keys,
+    name: str,
+    trace: Run,
+    followed: int | None,
+    moved: Sequence[tuple[int, ...]],
 ) -> gltf.Animation:
     """Return the animation of a case: every link's position and orientation at every sample.
 
-    The nodes of the links begin at 1, and those of their shadows at `first_shadow`.
+    `moved` are the numbers of each link's nodes.
     """
     animation = gltf.Animation(name=name, channels=[], samplers=[])
-    times = binary.add(_float32(trace.t), "SCALAR", bounds=True)
-    tracks = list[tuple[tuple[int, ...], str, FloatArray, str]]()
-    for k in range(trace.link_pos.shape[1]):
-        both = k + 1, first_shadow + k
-        tracks.append((both, "translation", _float32(trace.link_pos[:, k]), "VEC3"))
-        tracks.append((both, "rotation", rotations(trace.link_quat[:, k]), "VEC4"))
-    if followed is not None:
-        tracks.append(((0,), "translation", opposite(trace, followed), "VEC3"))
-    for moved, path, values, kind in tracks:
-        for node in moved:
+    last = np.float32(trace.t[-1]).item()
+    times = keys.add(trace.t, min=[0.0], max=[last])
+
+    def move(path: str, values: FloatArray, *nodes: int) -> None:
+        """Move nodes along one path: `translation` (n, 3) [m] or `rotation` (n, 4)."""
+        sampler = len(animation.samplers)
+        for node in nodes:
             target = gltf.AnimationChannelTarget(node=node, path=path)
-            channel = gltf.AnimationChannel(
-                sampler=len(animation.samplers), target=target
-            )
+            channel = gltf.AnimationChannel(sampler=sampler, target=target)
             animation.channels.append(channel)
-        output = binary.add(values, kind)
-        sampler = gltf.AnimationSampler(
-            input=times, output=output, interpolation="LINEAR"
+        output = keys.add(values)
+        animation.samplers.append(
+            gltf.AnimationSampler(input=times, output=output, interpolation="LINEAR")
         )
-        animation.samplers.append(sampler)
+
+    for k, nodes in enumerate(moved):
+        move("translation", trace.link_pos[:, k], *nodes)
+        move("rotation", rotations(trace.link_quat[:, k]), *nodes)
+    if followed is not None:
+        move("translation", opposite(trace, followed), 0)
     return animation
 
 
 def opposite(trace: Run, link: int) -> FloatArray:
     """Return the places (n, 3) of the world that keep a link horizontally in the view's centre."""
     x, y = trace.link_pos[:, link, :2].T
-    return _float32(np.column_stack([-x, np.zeros_like(x), y]))
+    return np.column_stack([-x, np.zeros_like(x), y])
 
 
 def rotations(wxyz: FloatArray) -> FloatArray:
-    """Return unit quaternions (n, 4) as (x, y, z, w), float32, without sign flips between samples.
+    """Return unit quaternions (n, 4) as (x, y, z, w) without sign flips between samples.
 
     q and −q are one orientation. Between two samples of opposite sign, a viewer would
     interpolate a turn in the wrong direction.
     """
-    unit = wxyz.astype(float) / np.linalg.norm(
-        wxyz.astype(float), axis=1, keepdims=True
-    )
+    unit = wxyz.astype(float)
+    unit /= np.linalg.norm(unit, axis=1, keepdims=True)
     flips = np.where((unit[1:] * unit[:-1]).sum(axis=1) < 0, -1.0, 1.0)
     signs = np.cumprod([1.0, *flips])
-    return _float32((unit * signs[:, None])[:, [1, 2, 3, 0]])
-
-
-def _float32(values: FloatArray) -> FloatArray:
-    return np.ascontiguousarray(values, dtype=np.float32)
+    return (unit * signs[:, None])[:, [1, 2, 3, 0]]

@@ -156,17 +156,19 @@ def floor_of(shape: Sequence[Part]) -> list[Part]:
 
     A still part that is smaller than a tile, such as a marker, has no tiles.
     """
-    sizes = [np.ptp(part.vertices[:, :2], axis=0) for part in shape]
-    pairs = zip(shape, sizes, strict=True)
-    wide = [
-        (size.prod(), p) for p, size in pairs if p.link == WORLD and size.min() > TILE
-    ]
-    added = [] if wide else [floor(2.0)]
-    widest = max((area for area, _ in wide), default=0.0)
-    alike = [
-        part for area, part in wide if area > 0.99 * widest
-    ]  # the same table at each place
-    return [*added, *map(tiles_on, alike or added)]
+
+    def size(part: Part) -> FloatArray:
+        """Return length and width (2,) [m]."""
+        extent: FloatArray = np.ptp(part.vertices[:, :2], axis=0)
+        return extent
+
+    wide = [part for part in shape if part.link == WORLD and size(part).min() > TILE]
+    if not wide:
+        ground = floor(2.0)
+        return [ground, tiles_on(ground)]
+    widest = max(size(part).prod() for part in wide)
+    # The same table at each place of a batch has tiles.
+    return [tiles_on(part) for part in wide if size(part).prod() > 0.99 * widest]
 
 
 def tiles_on(still: Part) -> Part:

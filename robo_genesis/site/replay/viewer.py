@@ -1,11 +1,11 @@
 """The viewer of the replays' models as the site ships it: one script, its licences and a notice."""
 
-import json
 import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from pygltflib import GLTF2
 from sphinx.application import Sphinx
 
 from robo_genesis.pipeline import npm
@@ -64,11 +64,7 @@ def write_viewer(app: Sphinx, exception: Exception | None) -> None:
 def model_credits(folder: Path) -> Iterator[str]:
     """Yield a line of the notice for each model that names a copyright."""
     for file in sorted(folder.glob("*.glb")):
-        content = file.read_bytes()
-        length = int.from_bytes(
-            content[12:16], "little"
-        )  # of the first chunk, which is JSON
-        if credit := json.loads(content[20 : 20 + length])["asset"].get("copyright"):
+        if credit := GLTF2.load_binary(file).asset.copyright:
             yield f"The model {file.name}, and the same in {file.stem}.js: {credit}.\n"
 
 

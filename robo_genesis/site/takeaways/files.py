@@ -9,7 +9,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 from itertools import cycle
 from pathlib import Path
@@ -69,22 +69,8 @@ EPOCH = "315532800"  # 1980-01-01, the oldest time that a zip can hold
 BUILD = "import sys; from setuptools import build_meta; print(build_meta.build_wheel(sys.argv[1]))"
 
 
-@dataclass(frozen=True, slots=True)
-class Takeaways:
-    """The files of one lab; `arrays` are (case, its CSV, its npz)."""
-
-    student: Path
-    executed: Path
-    wheel: Path
-    constraints: Path
-    units: Path
-    arrays: tuple[tuple[str, Path, Path], ...]
-    figures: tuple[Path, ...]
-    commands: tuple[str, ...]
-
-
-def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
-    """Write everything that a reader takes from a lab.
+def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
+    """Write everything that a reader takes from a lab; return what `box.md` names.
 
     Args:
         page: the lab, whose bundle of this build was accepted.
@@ -112,9 +98,16 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> Takeaways:
     hidden = replace(writer, measured=lambda _: NOT_SHOWN)
     _write(student, student_notebook(page, origin("student notebook"), check, hidden))
     _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
-    units = Path(shutil.copy(run / "arrays.json", own))
-    arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))
-    return Takeaways(student, ran, wheel, constraints, units, arrays, figures, commands)
+    return {
+        "student": student,
+        "executed": ran,
+        "wheel": wheel,
+        "constraints": constraints,
+        "units": Path(shutil.copy(run / "arrays.json", own)),
+        "arrays": [*_arrays(run, own)],  # (case, its CSV, its npz)
+        "figures": [*_figures(page, executed, own)],
+        "commands": commands,
+    }
 
 
 def writer_of(source: Path, docname: str) -> Writer:
@@ -216,10 +209,8 @@ def _by_state(trace: TimeSeries, field: str, dims: Sequence[str]) -> list[Any]:
     rows = list(values.reshape(len(values), -1))
     if dims[0] == "state":
         return rows
-    start = (
-        getattr(trace, AT_REST[field]) if field in AT_REST else [None] * len(rows[0])
-    )
-    return [start, *rows]
+    at_rest = AT_REST.get(field)
+    return [getattr(trace, at_rest) if at_rest else [None] * len(rows[0]), *rows]
 
 
 def _labels(

@@ -251,20 +251,21 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
 
 def about_video(pictures: np.ndarray, fps: int) -> dict[str, Any]:
     """Return the feature of the pictures."""
-    names = ["height", "width", "channels"]
-    shape = list(pictures.shape[2:])
-    info = dict(zip(names, shape, strict=True)) | {
-        "fps": fps,
-        "codec": "h264",
-        "pix_fmt": PIXELS,
-        "is_depth_map": False,
-    }
-    video_info = {f"video.{name}": value for name, value in info.items()}
+    height, width, channels = pictures.shape[2:]
     return {
         "dtype": "video",
-        "shape": shape,
-        "names": names,
-        "info": video_info | {"has_audio": False},
+        "shape": [height, width, channels],
+        "names": ["height", "width", "channels"],
+        "info": {
+            "video.height": height,
+            "video.width": width,
+            "video.channels": channels,
+            "video.fps": fps,
+            "video.codec": "h264",
+            "video.pix_fmt": PIXELS,
+            "video.is_depth_map": False,
+            "has_audio": False,
+        },
     }
 
 

@@ -131,11 +131,13 @@ def _cells(
 
 def _sections(text: str) -> list[NotebookNode]:
     """Return a cell for the text before the first heading of level two, and for each section."""
-    headings = (
-        t for t in MarkdownIt().parse(text) if t.type == "heading_open" and not t.level
-    )
     starts = [
-        heading.map[0] for heading in headings if heading.map and heading.tag == "h2"
+        token.map[0]
+        for token in MarkdownIt().parse(text)
+        if token.type == "heading_open"
+        and token.tag == "h2"
+        and not token.level
+        and token.map
     ]
     lines = text.splitlines()
     parts = (
@@ -152,17 +154,14 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
     follow the introduction, and the rest is at the end.
 
     Raises:
-        ValueError: the heading of a part has no number, or no part is to be filled in
-            before the run.
+        ValueError: the heading of a part has no number.
     """
     sheet = page.path.with_name(WORK_SHEET)
     if not sheet.is_file():
         return cells
     follow: dict[int, list[NotebookNode]] = {}
-    found_before = False
     for cell in _sections(sheet.read_text("utf8")):
         heading, _, rest = cell.source.partition("\n")
-        found_before |= BEFORE in heading
         place = INTRODUCTION
         if heading.startswith("# "):
             title = f"#{heading}"
@@ -175,11 +174,6 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
             )
         follow.setdefault(place, []).append(
             new_markdown_cell(f"{title}\n{rest}".rstrip())
-        )
-    if not found_before:
-        raise ValueError(
-            f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
-            "these words."
         )
     return [part for k, cell in enumerate(cells) for part in (cell, *follow.get(k, ()))]
 
@@ -203,9 +197,9 @@ def _place(cells: Sequence[NotebookNode], heading: str, number: int) -> int:
 
 
 def _code(
-    cell: NotebookNode, writer: Writer, ran: NotebookNode | None = None
-) -> list[NotebookNode]:
-    """Return a code cell, and its caption below it where it draws a figure."""
+    cell: NotebookNode, writer: Writer, ran: NotebookNode | None
+) -> Iterator[NotebookNode]:
+    """Yield a code cell, and its caption below it where it draws a figure."""
     tags = list(cell.metadata.get("tags", []))
     hidden = {
         key: True for tag in tags for key in HIDDEN.get(tag, ()) if ran or key == SOURCE
@@ -218,11 +212,9 @@ def _code(
     if ran is not None:
         code.outputs = [*map(without_stack, ran.outputs)]
         code.execution_count = ran.execution_count
-    caption = cell.metadata.get("mystnb", {}).get("figure", {}).get("caption")
-    return [
-        code,
-        *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else []),
-    ]
+    yield code
+    if caption := cell.metadata.get("mystnb", {}).get("figure", {}).get("caption"):
+        yield new_markdown_cell(f"*{plain(caption, writer)}*")
 
 
 def _notebook(cells: list[NotebookNode]) -> NotebookNode:
