@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from robo_genesis.core.check_spec import START_TOLERANCE, TIME_TOLERANCE
+from robo_genesis.core.check_spec import READ_BACK, START_TOLERANCE, TIME_TOLERANCE
 from robo_genesis.core.checks import (
     Finding,
     Findings,
@@ -30,6 +30,14 @@ def stamps(run: Experiment) -> Findings:
         yield equal(f"{name}.steps", len(t) - 1, case.steps)
         apart = np.abs(t - np.arange(len(t)) * case.dt).max()
         yield at_most(f"{name}.time_error_s", apart, TIME_TOLERANCE)
+
+
+def read_back(run: Experiment, *names: str) -> Findings:
+    """Require of settings that the engine returns the values of the cases."""
+    for name in names:
+        for case, value in run.readings[name].items():
+            expected = getattr(run.cases[case], name)
+            yield within(f"{case}.{name}", value, expected, READ_BACK)
 
 
 def start(run: Experiment) -> Findings:

@@ -47,8 +47,3 @@ def with_mistake(lesson: str, name: str, old: str, new: str) -> Any:
     solved = solutions(lesson)
     exec(source.replace(old, new), solved)
     return solved[name]
-
-
-def rows(mistakes: dict[str, dict[str, list[str]]]) -> list[tuple[str, str, list[str]]]:
-    """Return function, part of its code, and what replaces it, of a table of mistakes."""
-    return [(name, *each) for name, of in mistakes.items() for each in of.items()]

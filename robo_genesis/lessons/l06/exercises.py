@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
-from robo_genesis.core.exercises import Written, as_test, refused
+from robo_genesis.core.exercises import Rows, Written, as_test, refused
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.sim.arm.reaching import ANSWERS
 
@@ -130,7 +130,7 @@ class Machine:
 
 # Durations of the steps of the warm-up, steps of a repeat, and their duration in each
 # repeat.
-TRIALS: dict[str, Any] = {
+TRIALS: Rows = {
     "steady": ([1, 1, 1], 10, [1] * 5),
     "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),
     "one_repeat": ([800] * 6, 5, [1]),

@@ -95,7 +95,7 @@ def fast_small_balls_sink(run: Experiment) -> Findings:
 
 
 def laws_of_motion(run: Experiment) -> Findings:
-    """The balls fall freely until one can touch a bowl, and all together never gain energy."""
+    """The balls fall freely until one can touch a bowl."""
     for name, case in run.cases.items():
         yield from kept(name, falling_balls(run.traces[name], case))
 
@@ -109,14 +109,6 @@ def falling_balls(trace: BodyTrace, case: BowlCase) -> Findings:
     motion = -GRAVITY * trace.t[free, None, None] * down
     yield from apart("free link_pos [m]", trace.link_pos[free], place, FALLEN)
     yield from apart("free link_vel [m/s]", trace.link_vel[free], motion, FALLING)
-    height = trace.link_pos[..., 2].astype(np.float64).sum(axis=1)
-    moving, turning = (
-        (np.asarray(rate, np.float64) ** 2).sum(axis=(1, 2)) / 2
-        for rate in (trace.link_vel, trace.link_ang)
-    )
-    energy = GRAVITY * height + moving + 0.4 * case.radius**2 * turning
-    gained = np.maximum(energy / energy[0] - 1, 0)
-    yield from apart("energy gained, as a share", gained, np.zeros(1), SHARE)
 
 
 CHECKS = (

@@ -35,7 +35,7 @@ def one_rung(run: Experiment) -> Findings:
         yield equal(f"{name}.fails", rungs.failed(run, name), expected)
         if expected:
             number = run.readings["fails"][name]
-            yield equal(f"{name}.number", number, spec.RUNGS.index(expected[0]) + 1)
+            yield equal(f"{name}.number", number, rungs.NUMBERS.index(made_for))
 
 
 def reached(run: Experiment) -> Findings:

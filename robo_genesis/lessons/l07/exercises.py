@@ -1,18 +1,17 @@
 """Checks of the functions that a student writes in L07's lab; see `core/exercises.py`."""
 
-from collections.abc import Sequence
 from math import inf, nan
 
 import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
-from robo_genesis.core.exercises import Written, as_test, compared
+from robo_genesis.core.exercises import Rows, Written, as_test, compared
 from robo_genesis.sim.arm.reaching import ANSWERS, ONE_START
-from robo_genesis.sim.bodies.table import Footprint, gap
+from robo_genesis.sim.bodies.table import gap
 
 MEASURES = False
 
-PAIRS: dict[str, tuple[Footprint, Footprint]] = {
+PAIRS: Rows = {
     "apart_along_x": ((0.0, 0.0, 0.2, 0.4), (0.5, 0.1, 0.1, 0.3)),
     "only_corners_near": ((0.1, 0.1, 0.1, 0.1), (0.21, 0.24, 0.1, 0.1)),
     "overlap_of_corners": ((0.0, 0.0, 0.2, 0.4), (0.18, -0.15, 0.2, 0.4)),
@@ -29,7 +28,7 @@ def footprints(margin: Written) -> Findings:
 
 
 # Positions of one coordinate [m], window, bound [m], and whether the object is at rest
-MOTIONS: dict[str, tuple[Sequence[float], int, float, bool]] = {
+MOTIONS: Rows = {
     "exactly_the_bound": ([0, 0, 0, 0.25, 0, 0.25], 4, 0.25, True),
     "both_ways": ([0, 0, 0, 0.1875, -0.1875, 0, 0], 4, 0.25, False),
     "creeps": ([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], 4, 0.25, False),
@@ -61,7 +60,7 @@ def rest(at_rest: Written) -> Findings:
 
 
 # Segmentations, number of the object, area of its outline [pixel]
-PICTURES: dict[str, tuple[list[list[int]], int, float]] = {
+PICTURES: Rows = {
     "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0),
     "absent": ([[0, 1], [2, 0]], 4, 12.5),
     "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 2.0),
@@ -82,7 +81,7 @@ def pixels(visible: Written) -> Findings:
 
 # Heights of the fingertips at two answers [m], contacts, and whether the object is
 # reachable
-TIPS: dict[str, tuple[tuple[float, float], tuple[int, ...], bool]] = {
+TIPS: Rows = {
     "all_good": ((0.136, 0.036), (0, 0, 0, 0), True),
     "at_limits": ((0.03, 0.02), (0, 0), True),
     "first_too_low": ((0.025, 0.025), (0,), False),
@@ -120,9 +119,7 @@ def reach(reachable: Written) -> Findings:
 GOOD = {"margin": (0.171, 0.005, inf), "mass": (0.0, 0.0, 0.01)}
 
 # Results by rung, and the first rung that fails
-RESULTS: dict[
-    str, tuple[dict[str, dict[str, tuple[float, float, float]]], str | None]
-] = {
+RESULTS: Rows = {
     "at_limits": (
         {"b": {"x": (2, 2, 5)}, "a": {"y": (5, 2, 5), "z": (-1, -1, -1)}},
         None,

@@ -17,6 +17,9 @@ from robo_genesis.sim.camera.views import View
 # Where each camera is.
 CAMERAS = {"world": "beside the table", "wrist": "on the hand"}
 
+# No rung, and the rungs, by the number with which a page asks for them.
+NUMBERS = (None, *spec.RUNGS)
+
 # Names of the contact points of each finger in the counts of a lift.
 FINGERS = ("closed_left", "closed_right", "held_left", "held_right")
 

@@ -182,11 +182,8 @@ def parameters(cases: dict[str, Any]) -> dict[str, Any]:
     """Return every configured input of a page with these runs as JSON values, for its key."""
     of_scene = ("TABLE", "FLOOR", "ON_HAND", "BALL_HEIGHT")
     of_lift = ("PHASES", "PAD", "HAND_TO_PAD", "ABOVE", "RISE")
-    further = {
-        n: getattr(of, n)
-        for of, ns in ((table, of_scene), (lifting, of_lift))
-        for n in ns
-    }
+    further = {name: getattr(table, name) for name in of_scene}
+    further |= {name: getattr(lifting, name) for name in of_lift}
     further |= {"settings": asdict(ONE_START)}
     wrist = {name: value for name, value in WRIST.items() if name != "GUI"}
     return inputs(

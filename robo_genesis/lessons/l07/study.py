@@ -43,12 +43,8 @@ def group(name: str, *scenes: str) -> Readings:
 def readings(*scenes: str) -> dict[str, Readings]:
     """Return the groups of readings of a page with these scenes."""
     found = {name: group(name, *scenes) for name in GROUPS}
-    others = [scene for scene in scenes if scene != "baseline"]
-    return (
-        found
-        | {"model": counts(MODEL_COUNTS)}
-        | ({"fails": counts(others)} if others else {})
-    )
+    others = {"fails": counts(scenes[1:])} if scenes[1:] else {}
+    return found | others | {"model": counts(MODEL_COUNTS)}
 
 
 def note(page: Any, group: str, scene: str, **values: float) -> None:
@@ -223,10 +219,9 @@ def record_forced(page: Any, gs: Any) -> None:
 
 
 def conclude(page: Any) -> None:
-    """Give a page the number of the rung that each scene fails, 0 for none or for several."""
+    """Give a page the number of the first rung that each scene fails, 0 for none."""
     found = page.experiment
-    failed = {name: rungs.failed(found, name) for name in rungs.scenes(found)[1:]}
     page.readings["fails"] = {
-        name: spec.RUNGS.index(rung[0]) + 1 if len(rung) == 1 else 0
-        for name, rung in failed.items()
+        name: rungs.NUMBERS.index(next(iter(rungs.failed(found, name)), None))
+        for name in rungs.scenes(found)[1:]
     }

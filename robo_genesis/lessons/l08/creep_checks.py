@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.check_spec import READ_BACK
 from robo_genesis.core.checks import (
     Findings,
     above,
@@ -20,7 +19,7 @@ from robo_genesis.lessons.l08 import creep
 from robo_genesis.sim.bodies.grippers import CONTACTS, LINKS, HeldCase
 from robo_genesis.sim.bodies.laws import UNTURNED
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
-from robo_genesis.sim.common_checks import stamps
+from robo_genesis.sim.common_checks import read_back, stamps
 from robo_genesis.sim.laws import apart, kept
 from robo_genesis.sim.throughput import KEPT
 
@@ -40,11 +39,7 @@ SPEED, SPIN = 6e-6, 2.5e-4  # Of a steady motion [m/s] and [rad/s]
 
 def settings(run: Experiment) -> Findings:
     """Friction and time constant read back are those of the cases; each box has 8 contacts."""
-    for name in ("friction", "time_constant"):
-        for case, value in run.readings[name].items():
-            yield within(
-                f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK
-            )
+    yield from read_back(run, "friction", "time_constant")
     for case, value in run.readings["contacts"].items():
         yield equal(f"{case}.contacts", value, CONTACTS)
 
@@ -70,7 +65,7 @@ def creeps_as_computed(run: Experiment) -> Findings:
     """
     for name, (_, expected) in formulas(run).items():
         found = run.metrics[name].creep
-        yield within(f"{name}.creep_m_s", found, expected, SHARE * expected + STILL)
+        yield nearly(f"{name}.creep_m_s", found, expected, SHARE, STILL)
 
 
 def sinks_as_computed(run: Experiment) -> Findings:
@@ -79,7 +74,7 @@ def sinks_as_computed(run: Experiment) -> Findings:
     """
     for name, (depth, _) in formulas(run).items():
         found = run.metrics[name].depth
-        yield within(f"{name}.depth_m", found, depth, SHARE * depth + DEPTH)
+        yield nearly(f"{name}.depth_m", found, depth, SHARE, DEPTH)
 
 
 def formulas(run: Experiment) -> dict[str, tuple[float, float]]:
@@ -165,8 +160,7 @@ def engines_agree(run: Experiment) -> Findings:
     for name in creep.CASES:
         if not name.startswith("pyramid_1"):
             one, other = (run.metrics[of].creep for of in (name, f"mujoco_{name}"))
-            room = SHARE * one + 10 * STILL
-            yield within(f"mujoco_{name}.creep_m_s", other, one, room)
+            yield nearly(f"mujoco_{name}.creep_m_s", other, one, SHARE, 10 * STILL)
     share = share_of(run, "mujoco_pyramid_100_mu_2", "pyramid_100_mu_2")
     yield above("mujoco_pyramid_100_mu_2.share", share, 4)
 

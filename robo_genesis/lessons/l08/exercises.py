@@ -7,7 +7,14 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
-from robo_genesis.core.exercises import Written, as_test, compared, refused, same_array
+from robo_genesis.core.exercises import (
+    Rows,
+    Written,
+    as_test,
+    compared,
+    refused,
+    same_array,
+)
 from robo_genesis.lessons.l08 import metrics, rates
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
@@ -34,7 +41,7 @@ AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
 
 # Whether a phase of the arm ends and one of the fingers, and by array and joint what is
 # added to an arm at its goal with still fingers
-STATES: dict[str, tuple[bool, bool, dict[tuple[str, int], float]]] = {
+STATES: Rows = {
     "at_its_goal": (True, True, {}),
     "nan": (False, True, {("q", 2): nan}),
     "near": (True, True, {("q", k): 0.9 * AT * (-1) ** k for k in range(ARM)}),
@@ -76,7 +83,7 @@ LATE, END, RIM = slice(5, None), slice(9, None), (0.55, 0.22, 0.05)
 
 # Array, index and value of each fault of an episode, and how many rungs the episode
 # passes
-EPISODES: dict[str, tuple[Any, ...]] = {
+EPISODES: Rows = {
     "success": (7,),
     "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
     "done_at_first": ("phase", 0, 8, 0),
