@@ -134,9 +134,9 @@ def sizes(options: Namespace) -> int:
     from robo_genesis.pipeline.pages.book import find_pages
     from robo_genesis.site.course.sizes import report
 
-    lines, problems = report(find_pages(options.book))
-    print(*lines, *problems, sep="\n")
-    return 1 if problems else 0
+    problems = report(find_pages(options.book))
+    print(*problems, sep="\n")
+    return int(bool(problems))
 
 
 def folders(options: Namespace) -> dict[str, Any]:

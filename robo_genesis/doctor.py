@@ -3,12 +3,9 @@
     python -m robo_genesis.doctor                a table for the terminal
     python -m robo_genesis.doctor --json         the same facts for a bug report
     python -m robo_genesis.doctor --like BUNDLE  and what differs from the machine of a recorded run
-    python -m robo_genesis.doctor --report FILE  the table of a saved report, without any step
-    python -m robo_genesis.doctor --report FILE --like BUNDLE    and what differs from its machine
 
-A bundle is a folder, or an archive as the ledger of the site offers it. A report is a
-file that `--json` wrote, on this machine or another. The steps run in a process of
-their own. If the system ends it, the step that it ran is broken.
+A bundle is a folder, or an archive as the ledger of the site offers it. The steps run
+in a process of their own. If the system ends it, the step that it ran is broken.
 Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 
@@ -42,11 +39,9 @@ from robo_genesis.core.text import ended, printable
 
 # Characters of a row, which fits 80 columns, and before what was found.
 WIDTH, INDENT = 72, 28
-REPORT_FORMAT = 4
 # Begins a report among the other output of the process that runs the steps.
 MARK = "\x1e"
 STEPS_PROCESS = "from robo_genesis import doctor; doctor.send_reports()"
-MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
 
 # What a manifest and a report say about a machine.
 FACTS = ("engine", "quadrants", "torch", "python", "system", "backend", "device")
@@ -87,7 +82,6 @@ def report_of(steps: Sequence[Mapping[str, str]], engine: Any = None) -> dict[st
         engine: the started one, None before.
     """
     return {
-        "format": REPORT_FORMAT,
         "ok": all(step["state"] == "ok" for step in steps),
         "broken": next(
             (step["step"] for step in steps if step["state"] == "broken"), None
@@ -200,36 +194,14 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     return dict(zip(FACTS, found, strict=True))
 
 
-def read_report(file: str) -> dict[str, Any]:
-    """Return a saved report.
-
-    Raises:
-        ValueError: the file is not a report of this format.
-    """
-    try:
-        report = json.loads(Path(file).read_text("utf8"))
-        if report["format"] == REPORT_FORMAT:
-            return report
-        problem = f"its format is {report['format']}, expected {REPORT_FORMAT}"
-    except (OSError, ValueError, LookupError, TypeError) as error:
-        problem = f"{type(error).__name__}: {error}"
-    raise ValueError(
-        f"{file!r} cannot be read as a report, which --json writes: {problem}; "
-        f"make a new one with {MAKE_REPORT}"
-    )
-
-
-def differences(
-    here: Mapping[str, str], recorded: Mapping[str, str], head: str = "this machine"
-) -> list[str]:
+def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> list[str]:
     """Return a line for each fact: equal, or both values, in columns of equal width.
 
     Args:
-        here: the facts of this machine, or of a saved report.
+        here: the facts of this machine.
         recorded: the facts of the machine that recorded a bundle.
-        head: the head of the column of `here`.
     """
-    rows = [("", "recorded", head)]
+    rows = [("", "recorded", "this machine")]
     for name, value in recorded.items():
         found = here.get(name, "unknown: the engine did not start")
         rows.append(
@@ -254,32 +226,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
+    one = parser.add_mutually_exclusive_group()
+    one.add_argument(
         "--json", action="store_true", help="a report for a bug, on stdout"
     )
-    parser.add_argument(
-        "--like", metavar="BUNDLE", help="compare with the machine of this run"
-    )
-    parser.add_argument(
-        "--report", metavar="FILE", help="show this report, run no step"
-    )
+    one.add_argument("--like", metavar="BUNDLE", help="compare with this run's machine")
     options = parser.parse_args(arguments)
-    if options.json and {options.like, options.report} != {None}:
-        parser.error(
-            "--json is alone: compare its output later, with --report FILE --like BUNDLE"
-        )
     try:
         recorded = None if options.like is None else recorded_machine(options.like)
-        saved = None if options.report is None else read_report(options.report)
     except ImportError as error:
         parser.error(f"{error}. {project.import_advice()}")
     except (ValueError, zipfile.BadZipFile) as error:
         parser.error(printable(str(error)))
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    if not saved:
-        print("The first start of the engine takes minutes.", file=sys.stderr)
+    print("The first start of the engine takes minutes.", file=sys.stderr)
     written = ""
-    for report in [saved] if saved else reports():
+    for report in reports():
         if not options.json:
             text = table(report["steps"])
             print(text[len(written) :], end="", flush=True)
@@ -287,8 +249,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.json:
         print(shareable(json.dumps(report, indent=2)))
     if recorded is not None:
-        head = "report" if saved else "this machine"
-        print("", *differences(report["machine"], recorded, head), sep="\n")
+        print("", *differences(report["machine"], recorded), sep="\n")
     return int(any(step["state"] != "ok" for step in report["steps"]))
 
 

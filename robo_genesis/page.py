@@ -162,9 +162,7 @@ class LessonPage:
         Raises:
             ShownError: function, arguments or result are not of this kind.
         """
-        self._show(shown.name_of(function), arguments)
-
-    def _show(self, name: str, arguments: Sequence[Any] = ()) -> None:
+        name = shown.name_of(function)
         metadata = shown.metadata(name, arguments)
         display(
             shown.mime_data(name, self.experiment, arguments),
@@ -220,7 +218,7 @@ class LessonPage:
             CheckFailed: naming every check that failed, with what it found.
         """
         experiment = self.experiment
-        self._show(shown.CHECKS)
+        self.show(tables.checks_of_run)
         renderer = cameras.read_renderer(scene) if self.render else None
         folder = self._recorder.write(experiment, renderer, self._shape)
         files = sum(path.is_file() for path in folder.rglob("*"))
@@ -249,8 +247,13 @@ def curves(
         quantity: what is drawn upwards, with its unit.
         axis: what is drawn to the right, with its unit.
     """
-    figure = plotting.figure(2.9)
-    plotting.failure(figure.subplots(), drawn, quantity).set_xlabel(axis)
+    figure, ax = plotting.axes(2.9)
+    for (label, (x, y)), mark in zip(
+        drawn.items(), ("other", "baseline"), strict=False
+    ):
+        ax.plot(x, y, label=label, **plotting.look(mark))
+    ax.margins(x=0.01)
+    plotting.finish(ax, "", quantity, "best").set_xlabel(axis)
     return figure
 
 

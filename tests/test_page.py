@@ -13,7 +13,7 @@ from lessons.exercise_cells import solutions
 
 import robo_genesis as rg
 from robo_genesis import page as pages
-from robo_genesis.core import plotting, project, shown
+from robo_genesis.core import plotting, project, shown, tables
 from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.exercises import FunctionFailed
 from robo_genesis.lessons.l02 import exercises, plots, spec, text
@@ -203,7 +203,10 @@ def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(
     measure(page)
     page._written |= dict.fromkeys(page._written, 1)
     page.finish(None)
-    assert displayed[-1][1] == {"function": shown.CHECKS, "arguments": []}
+    assert displayed[-1][1] == {
+        "function": shown.name_of(tables.checks_of_run),
+        "arguments": [],
+    }
     assert "**FAILED**" not in displayed[-1][0]["text/markdown"]
     lines = capsys.readouterr().out.splitlines()
     assert lines[-1] == "L02 CHECK: PASSED"

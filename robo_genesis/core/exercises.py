@@ -1,7 +1,6 @@
 """Functions that students write: tests of what they return, and the check that demands them."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from functools import wraps
 from traceback import extract_tb
 from typing import Any, Concatenate, ParamSpec
@@ -36,8 +35,7 @@ def functions(run: Experiment) -> Iterator[Finding]:
 
 def with_functions(page: MeasuringPage, *names: str) -> MeasuringPage:
     """Return a page on which a student writes these functions; its check requires them all."""
-    readings = {**page.readings, FUNCTIONS: counts(names)}
-    return replace(page, readings=readings, checks=(*page.checks, functions))
+    return page.with_more(readings={FUNCTIONS: counts(names)}, checks=[functions])
 
 
 class FunctionFailed(CheckFailed):

@@ -133,7 +133,7 @@ class MeasuringPage:
 
     def with_more(
         self,
-        parameters: Callable[[], dict[str, Any]],
+        parameters: Callable[[], dict[str, Any]] = dict,
         runs: Mapping[str, Run] = MappingProxyType({}),
         readings: Mapping[str, Readings] = MappingProxyType({}),
         checks: Sequence[Callable[["Experiment"], Iterable[Finding]]] = (),

@@ -117,25 +117,6 @@ def beside(folder: Path, suffix: str) -> Path:
     return folder.with_name(f".{folder.name}{suffix}")
 
 
-def require_writable(folder: Path) -> None:
-    """Raise ProjectError, before a long run, if nothing could be written into a folder."""
-    parent = next(path for path in (folder, *folder.parents) if path.exists())
-    if not parent.is_dir() or not os.access(parent, os.W_OK):
-        raise ProjectError(
-            f"{folder} cannot be used: {parent} is not a folder that you may write. "
-            "Name another with TO=folder, or give write access."
-        )
-
-
-def require_replaceable(folder: Path, mark: str) -> None:
-    """Raise ProjectError if a place is taken by a link, or by something without the file `mark`."""
-    if folder.is_symlink() or (folder.exists() and not (folder / mark).is_file()):
-        raise ProjectError(
-            f"{folder} is not replaced: it has no {mark}, or is a link. Move it away, or name "
-            "another folder with TO=folder."
-        )
-
-
 def put(source: Path, folder: Path) -> None:
     """Copy a folder to a place, whole or not at all; an older one there is replaced.
 

@@ -150,14 +150,6 @@ def channel(
     )
 
 
-def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], quantity: str) -> Axes:
-    """Draw a quantity, named with its unit, of a failure: one curve or two, the mistake first."""
-    for number, (label, (t, q)) in enumerate(curves.items()):
-        ax.plot(t, q, label=label, **look(("other", "baseline")[number]))
-    ax.margins(x=0.01)
-    return finish(ax, "", quantity, "best")
-
-
 def stacked(pictures: Mapping[str, np.ndarray]) -> Figure:
     """Show camera frames one below the other, each with its name on a ground of its own."""
     plate = {"facecolor": "black", "alpha": 0.7, "linewidth": 0}

@@ -6,8 +6,8 @@ import sys
 import pytest
 from tiny_book import old_bundle
 
-from robo_genesis.core.files import require_replaceable, settle_below
-from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.core.files import settle_below
+from robo_genesis.core.project import ROOT
 
 DIES = """
 import os, sys
@@ -48,19 +48,3 @@ def test_a_kill_at_any_rename_leaves_the_old_or_the_new_bundle(
     assert [path.name for path in old.parents[1].iterdir()] == ["cuda"]
     assert old.read_text() == stands
     assert (old.parent / "of the old one.txt").exists() == (stands == "old")
-
-
-@pytest.mark.parametrize("link", [False, True])
-def test_what_is_no_bundle_is_never_replaced(tmp_path, link):
-    mine, lesson = tmp_path / "mine", tmp_path / "kept" / "l04"
-    lesson.mkdir(parents=True)
-    mine.mkdir()
-    (mine / ("manifest.json" if link else "my own.txt")).touch()
-    if link:
-        (lesson / "cuda").symlink_to(mine)
-    else:
-        mine.rename(lesson / "cuda")
-    with pytest.raises(
-        ProjectError, match=r"has no manifest\.json, or is a link\. .* TO=folder"
-    ):
-        require_replaceable(lesson / "cuda", "manifest.json")

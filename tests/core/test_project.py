@@ -14,26 +14,24 @@ def checkout(folder: Path, *dependencies: str) -> Path:
     return folder
 
 
-DECLARED = PYPROJECT.format
 NO_PIN = 'Valid is exactly one dependency "genesis-world==X"'
 
 
 @pytest.mark.parametrize(
-    ("text", "reason"),
+    "declared",
     [
-        (DECLARED('"numpy"'), NO_PIN),
-        (DECLARED('"genesis-world>=1.3"'), NO_PIN),
-        (DECLARED('"genesis-world==1.*"'), NO_PIN),
-        (DECLARED('"genesis-world=1.3"'), NO_PIN),
-        ("[project", "cannot be read: "),
-        ("[project]\n", "cannot be read: "),
+        '"numpy"',
+        '"genesis-world>=1.3"',
+        '"genesis-world==1.*"',
+        '"genesis-world=1.3"',
+        '"genesis-world==1.3", "genesis-world==1.4"',
     ],
 )
-def test_the_pin_is_one_exact_version(tmp_path, text, reason):
+def test_the_pin_is_one_exact_version(tmp_path, declared):
     root = checkout(tmp_path, "numpy>=2", "genesis-world==9.8.7")
     assert project.engine_pin(root) == "9.8.7"
-    (root / "pyproject.toml").write_text(text)
-    with pytest.raises(project.ProjectError, match=rf"(?s)pyproject\.toml.*{reason}"):
+    (root / "pyproject.toml").write_text(PYPROJECT.format(declared))
+    with pytest.raises(project.ProjectError, match=NO_PIN):
         project.engine_pin(root)
 
 

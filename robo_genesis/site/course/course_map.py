@@ -7,7 +7,6 @@
 | {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
 
-import re
 from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
@@ -16,9 +15,9 @@ import yaml
 from docutils import nodes
 from pydantic import TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
-from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
+from sphinx.util.docutils import ReferenceRole
 
 from robo_genesis.core.markup import filled
 from robo_genesis.core.text import listed
@@ -29,9 +28,6 @@ from robo_genesis.site.evidence.plain_nodes import late
 from robo_genesis.site.pages import PageDirective, PageRole
 
 FILE = "course_map.yml"
-
-# A link to a lesson's page: its words, the lesson and the page.
-LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True, config={"extra": "forbid"})
@@ -54,23 +50,13 @@ def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        ValueError: the file is not a list of lessons, or a lesson needs one that does
-            not come before it.
+        ValueError: the file is not a list of lessons.
     """
     try:
         rows = yaml.safe_load((book / FILE).read_text("utf8"))
-        lessons = TypeAdapter(list[Lesson]).validate_python(rows)
+        return TypeAdapter(list[Lesson]).validate_python(rows)
     except (yaml.YAMLError, ValidationError) as error:
         raise ValueError(f"{FILE}: {error}") from error
-    for place, lesson in enumerate(lessons):
-        known = [earlier.id for earlier in lessons[:place]]
-        unknown = [need for need in lesson.needs or () if need not in known]
-        if unknown:
-            raise ValueError(
-                f"{FILE}: {lesson.id} needs {', '.join(unknown)}; before it come "
-                f"{', '.join(known) or 'none'}."
-            )
-    return lessons
 
 
 class MapDirective(PageDirective):
@@ -104,45 +90,27 @@ class Featured(MapDirective):
         return self.parse_content_to_nodes() if self.arguments[0] in published else []
 
 
-class LessonLink(PageRole):
+class LessonLink(PageRole, ReferenceRole):
     """Link to a page of a lesson; without that lesson, the words alone remain."""
 
     def shown(self) -> list[nodes.Node]:
         """Return the link or the words."""
-        found = LINK.fullmatch(self.text)
-        if found is None:
-            raise ValueError(
-                f"{self.text!r} is not a link; write `some words <l04/lecture>`."
-            )
-        words, lesson, page = found.groups()
+        lesson, _, page = self.target.partition("/")
         pages = lesson_pages(self.env.found_docs, lesson)
         if not pages:
-            return [nodes.Text(words)]
+            return [nodes.Text(self.title)]
         if page not in pages:
             raise LookupError(
                 f"{lesson} has no page {page!r}; choices: {', '.join(pages)}."
             )
-        return [page_link(self.env.docname, pages[page], words)]
+        place = self.env.app.builder.get_relative_uri(self.env.docname, pages[page])
+        return [nodes.reference("", self.title, internal=True, refuri=place)]
 
 
 def lesson_pages(docnames: Iterable[str], lesson: str) -> dict[str, str]:
     """Return the pages of a lesson by name, from the folder `lessons/l04-…` of a book."""
     paths = [Path(name) for name in sorted(docnames)]
     return {p.name: str(p) for p in paths if p.match(f"lessons/{lesson}-*/*")}
-
-
-def page_link(source: str, target: str, words: str) -> nodes.Node:
-    """Return a link from one page to another."""
-    return addnodes.pending_xref(
-        "",
-        nodes.inline("", words, classes=["std", "std-doc"]),
-        reftype="doc",
-        refdomain="std",
-        refdoc=source,
-        refexplicit=True,
-        reftarget=f"/{target}",
-        refwarn=True,
-    )
 
 
 class CourseMap(MapDirective):

@@ -12,7 +12,6 @@ from nbformat.v4 import new_markdown_cell, new_notebook
 
 from robo_genesis.pipeline.pages.book import LAB, WORK_SHEET, Page, read_notebook
 from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
-from robo_genesis.site.text.excerpts import excerpt, without_docstrings
 
 WORDS_A_MINUTE = (
     150  # A slow pace, for technical prose; code, tables and formulas are not counted
@@ -33,22 +32,17 @@ STUB = "raise NotImplementedError"
 # Tags of cells whose code is not visible.
 HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
 
-# Most characters in a line of an excerpt that the column shows without scrolling
-COLUMN = 80
-
 # What is counted on a page, in words.
 MEASURES = {
     "words": "words of prose",
     "cells": "visible code cells",
     "longest": "lines in its longest visible cell",
-    "plots": "plots",
     "minutes": "minutes to read and to work",
-    "widest": "characters in its widest line of code",
 }
 
 # The largest numbers by kind of page: the first word of its name.
 LIMITS = {
-    "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 50},
+    "lecture": {"words": 3300, "cells": 12, "longest": 15, "minutes": 50},
     "lab": {"minutes": 80},
     "mistakes": {"words": 2000},
     "deeper": {"words": 2000},
@@ -57,10 +51,6 @@ LIMITS = {
 SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
 # The entry of a term, in a role whose text differs: not visible.
 ENTRY = re.compile(r"(?<=\w)<[^<>]+>(?=`)")
-INCLUDE = re.compile(
-    r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL
-)
-PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
 
 # The beginning of a fold that a reader opens after an own answer.
@@ -131,19 +121,15 @@ def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
 
     Args:
         notebook: the page's source.
-        file: of the page; its excerpts are relative to its folder.
+        file: of the page.
     """
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
-    code = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     visible = visible_code(notebook)
-    widths = [0, *(len(line) for one in visible for line in one.splitlines())]
     return {
         "words": sum(map(count_words, texts)),
         "cells": len(visible),
         "longest": max(map(_lines, visible), default=0),
-        "plots": sum(map(bool, map(PLOT.search, code))),
         "minutes": _minutes(notebook, file).total,
-        "widest": max(sum((excerpt_widths(t, file.parent) for t in texts), widths)),
     }
 
 
@@ -163,41 +149,27 @@ def count_words(text: str) -> int:
     return words
 
 
-def excerpt_widths(text: str, folder: Path) -> list[int]:
-    """Return the widths of all lines of the excerpts of the package, as the page shows them."""
-    shown = (
-        without_docstrings(excerpt(folder, *include))
-        for include in INCLUDE.findall(text)
-    )
-    return [len(line) for code in shown for line in code.splitlines()]
-
-
 def excess(found: Mapping[str, int], kind: str) -> list[str]:
     """Return a phrase for each number of a page that is over the limit for its kind."""
-    limits = {**LIMITS.get(kind, {}), "widest": COLUMN}
     return [
         f"{number:,} {MEASURES[name]} (at most {limit:,})"
-        for name, limit in limits.items()
+        for name, limit in LIMITS.get(kind, {}).items()
         if (number := found[name]) > limit
     ]
 
 
-def report(pages: Iterable[Page]) -> tuple[list[str], list[str]]:
-    """Return a line for each page, and what to do about each page that is too large.
+def report(pages: Iterable[Page]) -> list[str]:
+    """Return what to do about each page that is too large.
 
     Args:
         pages: the executed pages of the book.
     """
-    lines, problems = [], []
+    problems = []
     for page in pages:
-        found = size(page.notebook, page.path)
-        numbers = ", ".join(
-            f"{found[name]:,} {what}" for name, what in MEASURES.items()
-        )
-        lines.append(f"{page.docname}: {numbers}")
-        if over := excess(found, page.path.stem.partition("-")[0]):
+        kind = page.path.stem.partition("-")[0]
+        if over := excess(size(page.notebook, page.path), kind):
             problems.append(
                 f"{page.docname} is over its size: {'; '.join(over)}. Shorten it, or move a part "
                 "to a deeper page."
             )
-    return lines, problems
+    return problems

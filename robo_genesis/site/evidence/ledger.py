@@ -1,11 +1,10 @@
 """The ledger: every run, figure, measured table and printed text, with digests and downloads.
 
 A page writes ```` ```{ledger} runs ```` and ```` ```{ledger} items ````. Both are
-filled in after all pages are read.
+filled in after all pages are read; the files to download are written then.
 """
 
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -38,25 +37,32 @@ class Ledger(PageDirective):
 
 def run_list(app: Sphinx, docname: str) -> str:
     """Return each run's facts and its bundle, or why it is missing and what creates it."""
-    return _filled(
-        "ledger_runs.html",
-        docname,
-        runs=all_runs(Path(app.srcdir)).values(),
-        archive=ledger_data.archive,
-        archive_name=ledger_data.archive_name,
-        sha256=ledger_data.sha256,
-    )
+    runs, archives = all_runs(Path(app.srcdir)).values(), {}
+    for run in runs:
+        if run.manifest is not None:
+            name, content = (
+                ledger_data.archive_name(run),
+                ledger_data.archive(run.folder),
+            )
+            archives[run.key] = name, ledger_data.sha256(content)
+            write_whole(Path(app.outdir) / DOWNLOADS / name, content)
+    return _filled("ledger_runs.html", docname, runs=runs, archives=archives)
 
 
 def item_list(app: Sphinx, docname: str) -> str:
     """Return the table of all items on the pages, in the order of the pages."""
     book, env = Path(app.srcdir), app.env
-    runs = all_runs(book)
-    items = chain.from_iterable(env.metadata[name][ITEMS] for name in page_files(book))
+    runs, rows = all_runs(book), []
+    for item in (
+        item for name in page_files(book) for item in env.metadata[name][ITEMS]
+    ):
+        rows.append((item, [runs[key] for key in item.runs]))
+        if item.data is not None:
+            write_whole(Path(app.outdir) / DOWNLOADS / item.file, item.data)
     return _filled(
         "ledger_items.html",
         docname,
-        items=[(item, [runs[key] for key in item.runs]) for item in items],
+        items=rows,
         pages=measured_pages(book),
         images=env.images,
         link=partial(app.builder.get_relative_uri, docname),
@@ -70,24 +76,6 @@ def _filled(template: str, docname: str, **values: Any) -> str:
     return filled(place, badge=badge, up=up, downloads=downloads, **values)
 
 
-def write_downloads(app: Sphinx, exception: Exception | None) -> None:
-    """Write the tables, texts and bundles that the ledger links to."""
-    if exception is not None or ledger_data.LEDGER not in app.env.found_docs:
-        return
-    folder = Path(app.outdir) / DOWNLOADS
-    for item in chain.from_iterable(
-        page.get(ITEMS, ()) for page in app.env.metadata.values()
-    ):
-        if item.data is not None:
-            write_whole(folder / item.file, item.data)
-    for run in all_runs(Path(app.srcdir)).values():
-        if run.manifest is not None:
-            write_whole(
-                folder / ledger_data.archive_name(run), ledger_data.archive(run.folder)
-            )
-
-
 def setup(app: Sphinx) -> None:
-    """Register the directive and the writing of downloads."""
+    """Register the directive."""
     app.add_directive("ledger", Ledger)
-    app.connect("build-finished", write_downloads)

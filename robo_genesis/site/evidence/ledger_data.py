@@ -5,7 +5,6 @@ import hashlib
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 from robo_genesis.pipeline.html.archive import write_zip
@@ -20,7 +19,6 @@ MEASURED, PRINTED = "Measured", "Printed by this run"
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
-    "unbound": "Printed by its cell. The page has no bundle.",
 }
 
 
@@ -92,7 +90,6 @@ def archive_name(run: PageRun) -> str:
     return f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
 
 
-@lru_cache(maxsize=128)
 def archive(folder: Path) -> bytes:
     """Return a bundle as a zip whose bytes depend only on the names and contents of its files.
 

@@ -11,8 +11,6 @@ from robo_genesis.site.evidence.runs import BACKEND
 INPUTS = "inputs"
 
 
-NO_BUNDLE = ("",)
-
 # What MyST-NB calls the parts of a page that are the output of a cell.
 MADE_BY_CELL = {"cell_code", "mime_bundle"}
 
@@ -27,8 +25,10 @@ def above(
             yield node
 
 
-def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
-    """Return the keys of the runs that made a node.
+def origin(
+    node: nodes.Node, page: str | None
+) -> tuple[tuple[str, ...] | None, nodes.Element | None]:
+    """Return the keys of the runs that made a node, and the cell whose output it is.
 
     The nodes of a cell's output are recognized by attributes that MyST-NB sets, never
     by a class, which a page could set.
@@ -38,30 +38,17 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
         page: `lesson/page` of that page, None where it declares no bundle.
 
     Returns:
-        () where a cell shows chosen values, None where neither a cell nor a bundle made
-        the node, `NO_BUNDLE` where a cell made it and the page declares no bundle.
+        Keys: () where a cell shows chosen values, None where neither a cell nor a bundle
+        made the node. The cell: None for a node that no cell made, or that was read from
+        a bundle.
     """
+    cell = None
     for element in above(node):
         if "evidence_runs" in element:
-            return tuple(element["evidence_runs"])
-    cell = cell_of(node)
-    if cell is None:
-        return None
-    if INPUTS in cell.get("cell_metadata", {}).get("tags", []):
-        return ()
-    return (f"{page}/{BACKEND}",) if page else NO_BUNDLE
-
-
-def cell_of(node: nodes.Node) -> nodes.Element | None:
-    """Return the cell whose output a node is.
-
-    Returns:
-        None for a node that no cell made, or that was read from a bundle.
-    """
-    found = None
-    for element in above(node):
-        if "evidence_runs" in element:
-            return None
+            return tuple(element["evidence_runs"]), None
         if element.get("nb_element") in MADE_BY_CELL:
-            found = element
-    return found
+            cell = element
+    if cell is None:
+        return None, None
+    chosen = INPUTS in cell.get("cell_metadata", {}).get("tags", [])
+    return () if chosen else (f"{page}/{BACKEND}",), cell

@@ -13,7 +13,7 @@ from collections.abc import Sequence, Set
 from dataclasses import replace
 from itertools import chain, count
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -26,7 +26,7 @@ from robo_genesis.site.evidence.ledger_data import (
     PRINTED,
     Item,
 )
-from robo_genesis.site.evidence.origin import INPUTS, NO_BUNDLE, above, cell_of, origin
+from robo_genesis.site.evidence.origin import INPUTS, above, origin
 from robo_genesis.site.evidence.runs import all_runs, measured_pages
 from robo_genesis.site.frame.executed import RECOMPUTED
 
@@ -34,20 +34,12 @@ LOG = "the engine's log"
 TITLE = 80  # Longest title in the ledger, in characters
 ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
 
-# The origin of an item; see `origin`.
-Keys: TypeAlias = tuple[str, ...] | None
-
-# The kind of an item that belongs to no run, by its origin.
-WITHOUT_RUN: dict[Keys, str] = {
-    None: "illustration",
-    (): "settings",
-    NO_BUNDLE: "unbound",
-}
+# The kind of an item that belongs to no run, by the keys of its origin.
+WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {None: "illustration", (): "settings"}
 
 UNBOUND = (
-    "a cell shows a {}, but the page declares no bundle. Give its front matter "
-    "`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values "
-    f"`{INPUTS}`."
+    "a cell shows an output, but the page declares no bundle. Give its front matter "
+    f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
 )
 
 logger = logging.getLogger(__name__)
@@ -66,25 +58,23 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     )
     for node in list(doctree.findall(nodes.Element)):
         texts = printed_texts(node, recomputed)
-        is_table, is_picture = (
-            isinstance(node, nodes.table),
-            isinstance(node, nodes.image),
-        )
         last = texts[-1] if texts else node
-        cell, keys = cell_of(last), origin(last, page)
-        if not (texts or is_picture or (is_table and keys is not None)):
+        keys, cell = origin(last, page)
+        is_picture = isinstance(node, nodes.image)
+        is_table = isinstance(node, nodes.table) and keys is not None
+        if not (texts or is_picture or is_table):
             continue
-        if not texts and keys == NO_BUNDLE:
-            logger.warning(
-                UNBOUND.format("table" if is_table else "picture"), location=env.docname
-            )
+        if cell is not None and keys and page is None:
+            logger.warning(UNBOUND, location=env.docname)
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
-        item = describe(holder, node, env, keys, texts)
-        if item.runs and cell is not None and cell.get("cell_index") not in recomputed:
+        item = describe(holder, node, env, texts)
+        if cell is not None and cell.get("cell_index") not in recomputed:
             item = replace(item, kind="printed")
+        kind = WITHOUT_RUN.get(keys, item.kind)
+        item = replace(item, kind=kind, runs=keys or ())
         items.append(item)
-        line = ledger_data.provenance(item.kind, [known[key] for key in item.runs])
+        line = ledger_data.provenance(kind, [known[key] for key in item.runs])
         address = None if ledger is None else f"{ledger}#{item.row}"
         add_line(last if texts else holder, line, address)
     env.metadata[env.docname][ITEMS] = items
@@ -103,69 +93,60 @@ def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Elemen
 
 
 def describe(
-    holder: nodes.Element,
-    node: nodes.Element,
-    env: Any,
-    keys: Keys,
-    texts: Sequence[nodes.Element],
+    holder: nodes.Element, node: nodes.Element, env: Any, texts: Sequence[nodes.Element]
 ) -> Item:
-    """Return the ledger's item of a table, picture or texts, and give `holder` an anchor."""
-    docname, is_picture = env.docname, isinstance(node, nodes.image)
-    section = next(above(holder, nodes.section), None)
-    heading = (
-        section.next_node(nodes.title).astext() if section is not None else docname
-    )
-    if not holder["ids"]:
-        _name(
-            holder,
-            "printed" if texts else "picture" if is_picture else "table",
-            section,
-        )
-    anchor = holder["ids"][0]
-    file = f"{docname}-{anchor}".replace("/", "-")
-    if texts:  # of a result in several forms, the first is Markdown
-        bundles = (
-            part[0] if part.get("nb_element") == "mime_bundle" else part
-            for part in texts
-        )
-        text = "\n".join(part.astext() for part in bundles)
-        kind, data, file = "printed", text.encode(), f"{file}.txt"
-        lines = (
-            line for line in text.splitlines() if line[:1] not in "[ "
-        )  # not of a log
-        title = f"{heading}: {[LOG, *lines][-1]}"
+    """Return the item of a table, picture or texts as of no run, and give `holder` an anchor."""
+    section = next(above(holder, nodes.section))
+    heading = section.next_node(nodes.title).astext()
+    if texts:
+        word, suffix, title, data = "printed", ".txt", *_text(texts)
         holder["classes"].append("printed")
-    elif is_picture:
+    elif isinstance(node, nodes.image):
         caption, path = holder.next_node(nodes.caption), Path(env.srcdir, node["uri"])
-        title = (
-            caption.astext() if caption is not None else str(node.get("alt", anchor))
-        )
-        kind = node.get("kind") or ledger_data.picture_kind(path)
-        data, file = path.read_bytes(), node["uri"]
+        word, suffix, data = "picture", path.suffix, path.read_bytes()
+        title = node.get("alt", "") if caption is None else caption.astext()
     else:
         rows = [
             [e.astext() for e in row.findall(nodes.entry)]
             for row in node.findall(nodes.row)
         ]
-        kind, data, file = "table", ledger_data.csv_bytes(rows), f"{file}.csv"
-        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
-    kind, runs = WITHOUT_RUN.get(keys, kind), () if keys in WITHOUT_RUN else keys or ()
-    digest, kept = ledger_data.sha256(data), None if is_picture else data
+        word, suffix, data = "table", ".csv", ledger_data.csv_bytes(rows)
+        title = ", ".join(filter(None, rows[0]))
+    anchor, kind, kept = _anchor(holder, f"{word}-{section['ids'][0]}"), word, data
+    file = f"{env.docname}-{anchor}{suffix}".replace("/", "-")
+    if word == "picture":
+        kind, kept = node.get("kind") or ledger_data.picture_kind(path), None
+        file = node["uri"]
+    else:
+        title = f"{heading}: {title}"
     title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
     title = textwrap.shorten(title, TITLE, placeholder=" …")
-    return Item(kind, title, docname, anchor, runs, digest, file, kept)
+    digest = ledger_data.sha256(data)
+    return Item(kind, title, env.docname, anchor, (), digest, file, kept)
 
 
-def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
-    """Derive an anchor from the section's: it stays the same when other sections change."""
-    base = f"{word}-{section['ids'][0]}" if section is not None else word
-    names, used = (
-        chain([base], (f"{base}-{number}" for number in count(2))),
-        holder.document.ids,
+def _text(texts: Sequence[nodes.Element]) -> tuple[str, bytes]:
+    """Return the last line that is not of a log, and the content of printed texts."""
+    # Of a result in several forms, the first is Markdown.
+    parts = (
+        part[0] if part.get("nb_element") == "mime_bundle" else part for part in texts
     )
-    name = next(name for name in names if name not in used)
-    used[name] = holder
-    holder["ids"].append(name)
+    text = "\n".join(part.astext() for part in parts)
+    lines = (line for line in text.splitlines() if line[:1] not in "[ ")
+    return [LOG, *lines][-1], text.encode()
+
+
+def _anchor(holder: nodes.Element, base: str) -> str:
+    """Return an anchor, by default from the section's: other sections do not change it."""
+    if not holder["ids"]:
+        names, used = (
+            chain([base], (f"{base}-{n}" for n in count(2))),
+            holder.document.ids,
+        )
+        name = next(name for name in names if name not in used)
+        used[name] = holder
+        holder["ids"].append(name)
+    return holder["ids"][0]
 
 
 def add_line(holder: nodes.Element, text: str, address: str | None) -> None:

@@ -42,7 +42,13 @@ SOURCES = (
     "print('a number of no function')",
     "page.finish(scene)",
 )
-SHOWN = ((), (TABLE, HEIGHT), (POSTURE,), (), (shown.CHECKS,))
+SHOWN = (
+    (),
+    (TABLE, HEIGHT),
+    (POSTURE,),
+    (),
+    ("robo_genesis.core.tables.checks_of_run",),
+)
 
 
 @pytest.fixture(scope="module")

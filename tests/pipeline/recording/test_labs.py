@@ -155,7 +155,6 @@ FOUND += [StepResult("torch", "warning", "c")]
             {"lesson": "l05"},
             r"^LESSON='l05' is not valid\. Lessons with a lab: l04; unset, all\.",
         ),
-        ({"to": Path("file", "below")}, r"file is not a folder .* TO=folder"),
         ({"root": Path()}, r"Installed is genesis-world \S+, the course needs 0\.0\.1"),
         ({"probe": finds("cuda", *FOUND)}, r"^Broken: devices, kernel\. The lines"),
     ],

@@ -71,7 +71,8 @@ def test_the_comparison_names_both_runs_and_all_else_one(
     facts = {"docname": "page", "metadata": defaultdict(dict), "found_docs": ()}
     env = SimpleNamespace(srcdir=tmp_path / "book", **facts)
     document = new_document("page")
-    document += Panel(tmp_path / "book").panel(both_runs[1])
+    panel = Panel(tmp_path / "book").panel(both_runs[1])
+    document += nodes.section("", nodes.title("", "Page"), panel, ids=["page"])
     for image in document.findall(nodes.image):
         image["uri"] = image["uri"].removeprefix("/")
     provenance.read_page(SimpleNamespace(env=env), document)

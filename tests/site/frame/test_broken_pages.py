@@ -17,9 +17,7 @@ TEXT = {
     "{py:func}`module`": "reference target not found: module",
     "{term}`gain`": "term not in glossary: 'gain'",
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
-    "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
     "```{course-map}\n```": "the book has no page gone",
-    "```{cell-times}\n```": "timed has no cell with code",
     "```{replay} l02/lecture\n:blind:\n```": "`:blind:` needs a question above it",
 }
 
@@ -27,7 +25,7 @@ IMPORTS = """\
 from IPython.display import Markdown
 table = Markdown("| read |\\n| --- |\\n| 7 |")"""
 INPUTS = ":tags: [inputs]\n"
-OTHERS = {"free": ["a cell shows a table, but the page declares no bundle"]}
+OTHERS = {"free": ["a cell shows an output, but the page declares no bundle"]}
 """What is said of the other pages."""
 
 
@@ -41,7 +39,6 @@ def report(tmp_path_factory):
         "text": "# Text\n\n" + paragraphs(*TEXT),
         "lessons/l02-two/lecture": "# Two\n\nText.\n",
         "free": notebook(imports, cell("table", INPUTS), cell("table")),
-        "timed": notebook(cell("")),
     }
     book = make_book(folder, **pages)
     published = {"id": "L01", "title": "One", "page": "gone", "outcomes": ["go"]}
