@@ -74,7 +74,7 @@ lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l09)
 	@$(COURSE) lesson "$(NEW)"
 
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
-	@$(COURSE) serve $(call options,PORT)
+	@"$(PYTHON)" -m http.server --bind 127.0.0.1 --directory book/_build/html $(PORT)
 
 live: $(ENVIRONMENT) ## show the book on localhost while it is written (PORT=8000)
 	@$(COURSE) live $(call options,PORT RENDER SOLUTIONS)

@@ -86,26 +86,6 @@ def lesson(options: Namespace) -> Sequence[str]:
     return add_lesson(ROOT, options.new)
 
 
-def serve(options: Namespace) -> int:
-    """Serve the built site on localhost."""
-    from functools import partial
-    from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
-
-    html = options.book / PUBLISHED / "html"
-    if not (html / "index.html").is_file():
-        raise ProjectError(f"No site in {html}. `make book` builds it.")
-    handler = partial(SimpleHTTPRequestHandler, directory=html)
-    try:
-        server = ThreadingHTTPServer(("127.0.0.1", options.port), handler)
-    except OSError as error:
-        raise ProjectError(
-            f"Port {options.port}: {error.strerror}. Choose a free one: PORT=8001."
-        ) from error
-    print(f"http://localhost:{server.server_port}/ serves {html}; Ctrl-C ends it.")
-    server.serve_forever()
-    return 0
-
-
 def live(options: Namespace) -> int:
     """Show the book on localhost while it is written."""
     from robo_genesis.pipeline.html.render import live as run_live
@@ -169,7 +149,6 @@ SITE: dict[str, dict[str, Any]] = {
     "--site-url": {"default": "", "help": "address of the published site"},
     "--solutions": {**SWITCH, "default": "1", "help": "0: leave them out"},
 }
-PORT = {"type": int, "default": 8000, "help": "of localhost; 0: a free one"}
 LESSON = {"default": "", "help": "l04, for example; by default all"}
 
 # Command → the verb of its result, and its options.
@@ -205,8 +184,18 @@ COMMANDS: dict[Callable[..., Any], tuple[str, dict[str, dict[str, Any]]]] = {
         },
     ),
     lesson: ("added", {"new": {"help": "name of the lesson, such as l09"}}),
-    serve: ("served", {"--book": FOLDERS["--book"], "--port": PORT}),
-    live: ("shown", FOLDERS | SITE | {"--port": PORT}),
+    live: (
+        "shown",
+        FOLDERS
+        | SITE
+        | {
+            "--port": {
+                "type": int,
+                "default": 8000,
+                "help": "of localhost; 0: a free one",
+            }
+        },
+    ),
     lock: ("written", {"--upgrade": {"default": "", "help": "packages to upgrade"}}),
     repin: ("changed", {"genesis": {"help": "version of the engine"}}),
     sizes: ("compared", {"--book": FOLDERS["--book"]}),

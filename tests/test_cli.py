@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import socket
 import subprocess
 from pathlib import Path
 
@@ -98,13 +97,3 @@ def test_a_release_needs_camera_frames(monkeypatch, capsys):
     monkeypatch.setattr(release, "build", pytest.fail)
     assert cli.main(["book", "--release=1", "--render=0"]) == 1
     assert "leave RENDER=0 out" in capsys.readouterr().err
-
-
-def test_a_port_in_use_is_refused(tmp_path, capsys):
-    (tmp_path / "_build/html").mkdir(parents=True)
-    (tmp_path / "_build/html/index.html").touch()
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-        assert cli.main(["serve", f"--book={tmp_path}", f"--port={port}"]) == 1
-    assert f"Port {port}: Address already in use" in capsys.readouterr().err
-    assert cli.main(["serve", f"--book={tmp_path / 'none'}"]) == 1

@@ -13,7 +13,7 @@ from lessons.exercise_cells import solutions
 
 import robo_genesis as rg
 from robo_genesis import page as pages
-from robo_genesis.core import plotting, project, shown, tables
+from robo_genesis.core import project, shown, tables
 from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.exercises import FunctionFailed
 from robo_genesis.lessons.l02 import exercises, plots, spec, text
@@ -169,32 +169,6 @@ def test_only_functions_that_return_a_table_or_figure_are_shown(page, name, mess
     measure(page)
     with pytest.raises(shown.ShownError, match=message):
         shown.mime_data(name, page.experiment, [{}])
-
-
-@pytest.mark.parametrize(
-    "colour", [{}, {"color": "red"}, {"color": "C7", "alpha": 0.5}]
-)
-def test_a_figure_has_the_palette_s_colours_and_no_others(
-    page, displayed, monkeypatch, colour
-):
-    measure(page)
-
-    def height(run):
-        drawn, ax = plotting.axes(2.0)
-        for draw in (ax.plot, ax.bar, ax.scatter, ax.fill_between) * 3:
-            draw([1, 2], [3, 4], **colour)
-        return drawn
-
-    height.__module__, height.__qualname__ = plots.__name__, "height"
-    monkeypatch.setattr(plots, "height", height)
-    if colour.get("color") == "red":
-        with pytest.raises(
-            shown.ShownError, match=r"l02.plots.height draws in #ff0000. A page dr"
-        ):
-            page.show(height)
-    else:
-        page.show(height)
-        assert list(displayed[0][0]) == ["image/svg+xml"]
 
 
 def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(

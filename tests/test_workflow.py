@@ -9,7 +9,6 @@ import pytest
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.pipeline.html.archive import SUMS
 from robo_genesis.pipeline.pages.book import find_pages
 
 FOLDER = ROOT / ".github"
@@ -39,19 +38,6 @@ def made(job: str) -> list[str]:
     return [t for one in JOBS[job]["steps"] for t in MAKE.findall(one.get("run", ""))]
 
 
-def making(job: str, target: str) -> dict[str, Any]:
-    (found,) = [
-        one for one in JOBS[job]["steps"] if target in MAKE.findall(one.get("run", ""))
-    ]
-    return found
-
-
-def inputs(job: str, uses: str) -> dict[str, Any]:
-    """Return the inputs of the last step that uses an action."""
-    steps = JOBS[job]["steps"]
-    return [one for one in steps if one.get("uses", "").startswith(uses)][-1]["with"]
-
-
 def test_every_target_that_a_step_makes_or_a_document_names_is_one():
     assert {
         name for one in STEPS for name in MAKE.findall(one.get("run", ""))
@@ -67,18 +53,12 @@ def test_every_target_that_a_step_makes_or_a_document_names_is_one():
             )
 
 
-def test_what_is_deployed_is_what_one_job_linted_tested_and_built_as_a_release():
+def test_what_is_published_was_linted_and_tested_and_is_a_release():
     assert made("book.build") == ["lint", "test", "test-all", "book"]
-    for job in ("book.build", "release.book"):
-        given = making(job, "book")["env"]
-        assert (given["RELEASE"], given["SOLUTIONS"]) == ("1", "${{ vars.SOLUTIONS }}")
-    sent = inputs("book.build", "actions/upload-artifact")
-    taken = inputs("book.deploy", "actions/download-artifact")
-    assert (sent["path"], sent["name"]) == ("book/_build/html", taken["name"])
-    assert inputs("book.deploy", "actions/upload-pages")["path"] == taken["path"]
-    sums = inputs("book.deploy", "actions/attest@")["subject-checksums"]
-    assert sums == f"{taken['path']}/{SUMS}"
     assert JOBS["book.deploy"]["needs"] == "build"
+    for job in ("book.build", "release.book"):
+        (given,) = [one["env"] for one in JOBS[job]["steps"] if "make book" in str(one)]
+        assert (given["RELEASE"], given["SOLUTIONS"]) == ("1", "${{ vars.SOLUTIONS }}")
 
 
 def test_jobs_can_write_only_what_they_must():
@@ -93,14 +73,6 @@ def test_jobs_can_write_only_what_they_must():
         for one in job["steps"]:
             if one.get("uses", "").startswith("actions/checkout"):
                 assert one["with"]["persist-credentials"] == "false"
-
-
-def test_only_a_person_starts_a_recording_which_is_verified_before_it_is_proposed():
-    assert list(FLOWS["record"]["on"]) == ["workflow_dispatch"]
-    own = [name for name, job in JOBS.items() if "self-hosted" in job["runs-on"]]
-    assert own == ["record.record"]
-    assert made("record.compare") == ["verify", "compare"]
-    assert JOBS["record.propose"]["needs"] == "compare"
 
 
 @pytest.mark.parametrize("path", [SETUP, *(FOLDER / "workflows").glob("*.yml")])

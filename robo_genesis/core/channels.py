@@ -110,14 +110,10 @@ class Runs:
     levels: Sequence[Level] = ()
 
     def __post_init__(self) -> None:
-        grids = {case: (trace.steps, trace.dt) for case, trace in self.traces.items()}
         if any(not np.array_equal(trace.t, self.t) for trace in self.traces.values()):
-            found = ", ".join(
-                f"{case} {n} × {dt:g} s" for case, (n, dt) in grids.items()
-            )
             raise ValueError(
-                f"The runs have other times: {found}; pictures and replays take one grid. Record "
-                "the cases with one outer step and one length, and vary the substeps."
+                "The runs have other times; pictures and replays take one grid. Record the cases "
+                "with one outer step and one length, and vary the substeps."
             )
 
     @property

@@ -3,14 +3,13 @@
 import math
 import operator
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.text import six_digits
-from robo_genesis.core.trace import TimeSeries
 
 HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"
 
@@ -110,14 +109,6 @@ def compare(
 def allowed(a: Any, b: Any, atol: Any, rtol: Any) -> Any:
     """Return atol + rtol · the larger magnitude, the allowed difference of numbers or arrays."""
     return atol + rtol * np.maximum(np.abs(a), np.abs(b))
-
-
-def same_arrays(one: TimeSeries, other: TimeSeries, *names: str) -> bool:
-    """Return whether two runs of one kind have the same arrays to the last bit; all, or some."""
-    compared = names or [field.name for field in fields(one)]
-    return type(one) is type(other) and all(
-        np.array_equal(getattr(one, name), getattr(other, name)) for name in compared
-    )
 
 
 def agree(recorded: Any, computed: Any) -> bool:

@@ -1,5 +1,6 @@
 """The declaration of a page that measures, and the experiment that one run of it is."""
 
+import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
@@ -58,11 +59,7 @@ def case_inputs(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 def json_value(value: Any) -> Any:
     """Return arrays, numbers of NumPy and tuples as Python's lists and numbers, others as given."""
-    if isinstance(value, dict):
-        return {key: json_value(each) for key, each in value.items()}
-    if isinstance(value, tuple):
-        return [json_value(each) for each in value]
-    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+    return json.loads(json.dumps(value, default=lambda array: array.tolist()))
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,10 +50,6 @@ class TimeSeries:
                 )
             values.setflags(write=False)
             object.__setattr__(self, name, values)
-        if self.t[0] != 0.0:
-            raise TraceError(
-                f"t starts at {self.t[0]} s, expected 0: the state before the first step."
-            )
         expected = np.arange(len(self.t)) * self.t[1]
         if self.t[1] <= 0 or not np.allclose(self.t, expected, rtol=0, atol=1e-9):
             k = int(np.argmax(np.abs(self.t - expected)))

@@ -57,41 +57,26 @@ def run_repin(
         raise project.ProjectError(
             f"Name another version than the pin, {old}: make repin GENESIS=1.2.3."
         )
-    before = texts(root)
     shared = ("derived", project.COMPILED, "npm", project.STORE)
     with worktree(root, cache / "repin" / "work", cache, shared) as work:
         report = Trial(cache, old, new, work, Progress(say)).run()
-        if texts(root) != before:
-            raise project.ProjectError(
-                f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
-                "Commit or stash that change, then run make repin again."
-            )
-        write(root, texts(work))
+        write(root, old, new, (work / LOCK).read_bytes())
     return [
         f"Pinned: {ENGINE} {old} → {new}, in {' and '.join(FILES)}. Nothing is committed.",
         f"Report: {report}",
         'Review both; describe the changes in CHANGELOG.md under "Evidence changed". The next '
         "make book installs the new lock (with PYTHON=…, install it there first).",
+        "All recorded bundles are stale now.",
         f"git restore {' '.join(FILES)} restores the old pin.",
     ]
 
 
-def set_pin(root: Path, old: str, new: str) -> None:
-    """Write another engine version into the one line that pins it."""
+def write(root: Path, old: str, new: str, lock: bytes) -> None:
+    """Write another engine version into the one line that pins it, and the lock."""
     path = root / FILES[0]
-    text = path.read_text("utf8")
-    path.write_text(text.replace(f"{ENGINE}=={old}", f"{ENGINE}=={new}"), "utf8")
-
-
-def texts(root: Path) -> dict[str, bytes]:
-    """Return the files of the pin by name."""
-    return {name: (root / name).read_bytes() for name in FILES}
-
-
-def write(root: Path, files: dict[str, bytes]) -> None:
-    """Write the files of the pin."""
-    for name, content in files.items():
-        write_whole(root / name, content)
+    text = path.read_text("utf8").replace(f"{ENGINE}=={old}", f"{ENGINE}=={new}")
+    write_whole(path, text.encode())
+    write_whole(root / LOCK, lock)
 
 
 @dataclass(slots=True)
@@ -112,16 +97,17 @@ class Trial:
 
     def run(self) -> Path:
         """Resolve, build with the old and the new version, report, test; return the report."""
-        set_pin(self.work, self.old, self.new)
+        lock = self.work / LOCK
+        write(self.work, self.old, self.new, lock.read_bytes())
         self.progress("resolve", f"{ENGINE} {self.new}")
         write_lock(self.work)
-        new = texts(self.work)
+        new_lock = lock.read_bytes()
         git(self.work, "checkout", "--", *FILES)
         self.command("book", f"with {self.old}", f"PYTHON={sys.executable}")
         old_site = self.work / ".cache" / "old-site"
         self.site.rename(old_site)
         self.before = refresh.read_build(self.work, self.old, old_site)
-        write(self.work, new)
+        write(self.work, self.old, self.new, new_lock)
         self.command(
             ".venv/.installed", "the new lock", f"BASE_PYTHON={sys.executable}"
         )

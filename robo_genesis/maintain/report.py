@@ -16,11 +16,6 @@ from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import SEVERITY, worst
-from robo_genesis.pipeline.bundles.status import (
-    Status,
-    recorded_folders,
-    recorded_status,
-)
 from robo_genesis.pipeline.pages.book import code_digest, find_pages
 from robo_genesis.pipeline.pages.page_folder import (
     OUTPUTS,
@@ -62,14 +57,12 @@ NOTHING = "Nothing was found here, or the trial failed before."
 class EngineBuild:
     """What one engine version made of a checkout.
 
-    `bundles` is lesson/page/backend → folder of each page that was executed, `recorded`
-    lesson/backend → state of each recorded bundle under the pin. `site` is the folder
-    of the HTML, which a refused build lacks.
+    `bundles` is lesson/page/backend → folder of each page that was executed. `site` is
+    the folder of the HTML, which a refused build lacks.
     """
 
     version: str
     bundles: dict[str, Path]
-    recorded: dict[str, Status]
     site: Path
 
 
@@ -77,17 +70,16 @@ class EngineBuild:
 class Refresh:
     """The comparison of two builds of one checkout, each with its engine version.
 
-    `missing` is lesson/page/backend → why its bundles were not compared; `recorded` is
-    lesson/backend → state under both pins; `changed` holds (page, old, new) of each
-    changed sentence, see `changed_sentences`. `failed` says what failed, what to do,
-    and the last lines of the log; what was not reached is empty then. `pages` is the
-    name of each page that is not accepted → `failed` or `refused`, and why.
+    `missing` is lesson/page/backend → why its bundles were not compared; `changed` holds
+    (page, old, new) of each changed sentence, see `changed_sentences`. `failed` says what
+    failed, what to do, and the last lines of the log; what was not reached is empty
+    then. `pages` is the name of each page that is not accepted → `failed` or `refused`,
+    and why.
     """
 
     versions: Pair
     comparisons: tuple[BundleComparison, ...] = ()
     missing: dict[str, str] = field(default_factory=dict)
-    recorded: dict[str, tuple[Status, Status]] = field(default_factory=dict)
     changed: tuple[tuple[str, str, str], ...] = ()
     failed: tuple[str, ...] = ()
     pages: Mapping[str, Pair] = field(default_factory=dict)
@@ -97,12 +89,6 @@ class Refresh:
         """The worst state of a page; a page that one build lacks cannot be compared."""
         lacking = [SEVERITY[-1]] if self.missing or self.failed else []
         return worst([comparison.state for comparison in self.comparisons] + lacking)
-
-    @property
-    def stale(self) -> list[str]:
-        """Recorded bundles that the new pin makes stale."""
-        both = self.recorded.items()
-        return [name for name, (was, now) in both if now.state == "stale" != was.state]
 
 
 def read_build(
@@ -128,7 +114,7 @@ def read_build(
                 if bundle and current:
                     bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
                     break
-    return EngineBuild(version, bundles, recorded(root), site)
+    return EngineBuild(version, bundles, site)
 
 
 def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
@@ -147,18 +133,10 @@ def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
         versions,
         tuple(comparisons),
         missing,
-        {name: (old.recorded[name], new.recorded[name]) for name in old.recorded},
         tuple(changed_sentences(old.site, new.site, versions))
         if new.site.is_dir()
         else (),
     )
-
-
-def recorded(root: Path) -> dict[str, Status]:
-    """Return lesson/backend → state of every recorded bundle under a checkout's own pin."""
-    book = root / "book"
-    keys = [folder.parts[-2:] for folder in recorded_folders(book)]
-    return {"/".join(key): recorded_status(book, *key, root=root) for key in keys}
 
 
 def changed_sentences(
@@ -213,10 +191,7 @@ def sentences(page: Path) -> Iterator[str]:
 def summary(refresh: Refresh) -> str:
     """Return the result in one line."""
     result = refresh.failed[0] if refresh.failed else refresh.state
-    return (
-        f"{result}; changed sentences: {len(refresh.changed)}, recorded bundles that became "
-        f"stale: {len(refresh.stale)}"
-    )
+    return f"{result}; changed sentences: {len(refresh.changed)}"
 
 
 def document(refresh: Refresh) -> Document:
@@ -245,10 +220,6 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
         rows.append((name, one.state, report.verdict(one)))
     rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]
     yield Part("Pages", rows, NOTHING)
-    states = [("bundle", "before", "after", "reason")]
-    for name, (was, now) in refresh.recorded.items():
-        states.append((name, was.state, now.state, now.reason))
-    yield Part("Recorded bundles", states, NOTHING)
     for one in refresh.comparisons:
         table = report.changes(one)
         if one.remarks or len(table) > 1:

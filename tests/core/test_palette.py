@@ -3,7 +3,7 @@
 import pytest
 from contrast import GROUNDS, contrast
 
-from robo_genesis.core.palette import MARKS, PARTS, marks_of
+from robo_genesis.core.palette import MARKS, PARTS, marks_of, outside_the_palette
 
 TEXT, GRAPHICS = (
     4.5,
@@ -58,3 +58,10 @@ def test_more_cases_than_marks_are_refused():
         ValueError, match=r"a, b, c, d, e are 5 cases; the palette has 4 marks"
     ):
         marks_of("abcde", {})
+
+
+def test_a_drawing_has_no_colour_that_a_theme_does_not_know():
+    known = f'<path style="fill: {MARKS["first"].light}; stroke: none"/>'
+    other = '<path fill="#ff0000"/><path style="stroke: red"/>'
+    assert outside_the_palette(known + other) == ["#ff0000", "red"]
+    assert outside_the_palette(f"{other}<image/>") == []

@@ -1,5 +1,6 @@
 """Scenes with the robot in the real engine."""
 
+from dataclasses import astuple
 from types import SimpleNamespace
 
 from robo_genesis.core.scene import DT, SUBSTEPS
@@ -20,3 +21,8 @@ def robot_in_scene(gs, envs=0, substeps=SUBSTEPS, **options):
     return SimpleNamespace(
         scene=scene, robot=robot, joints=resolve_joints(robot, JOINT_NAMES)
     )
+
+
+def arrays(trace):
+    """The bytes of each array of a run."""
+    return [values.tobytes() for values in astuple(trace)]

@@ -131,18 +131,6 @@ def test_changes_are_refused_before_anything_runs(root):
         run(root, NEW)
 
 
-def test_a_pin_that_is_edited_meanwhile_is_kept(root):
-    mine = PROJECT.format(OLD) + "# mine\n"
-
-    def edit_during_the_tests(line: str) -> None:
-        if "] test " in line:
-            (root / "pyproject.toml").write_text(mine)
-
-    with pytest.raises(ProjectError, match=r"pyproject\.toml .* changed while"):
-        run(root, NEW, edit_during_the_tests)
-    assert pin_of(root) == (mine, LOCK.format(OLD))
-
-
 def test_a_command_gets_no_variable_that_was_meant_for_the_outer_make(
     tmp_path, monkeypatch
 ):

@@ -98,22 +98,17 @@ class Status:
         )
 
 
-def recorded_status(
-    book: Path, lesson: str, backend: str, *, root: Path = project.ROOT
-) -> Status:
+def recorded_status(book: Path, lesson: str, backend: str) -> Status:
     """Return the state of the recorded bundle of a lab on a backend; see `bundle_status`.
 
     Args:
         book: the folder of the pages.
         lesson: of the lab.
         backend: names the folder of the bundle.
-        root: the checkout, for pin, lock and modules.
     """
-    absent = (
-        f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
-    )
+    absent = f"No run on this backend is recorded for Genesis {project.engine_pin()}."
     folder = book / "evidence" / lesson / backend
-    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root)
+    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book)
 
 
 def bundle_status(

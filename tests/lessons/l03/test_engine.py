@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from lessons.engine_scenes import arrays
 
-from robo_genesis.core.comparison import same_arrays
 from robo_genesis.lessons.l03 import spec
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.bodies import contacts
@@ -18,7 +18,7 @@ def world(real_engine):
 
 def test_a_second_run_of_one_scene_is_the_same_to_the_last_bit(world):
     first, again = (contacts.run_world(world)["baseline"] for _ in range(2))
-    assert same_arrays(first, again)
+    assert arrays(first) == arrays(again)
 
 
 def test_the_drawn_table_is_the_engine_s(world):

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.engine_scenes import robot_in_scene
+from lessons.engine_scenes import arrays, robot_in_scene
 
-from robo_genesis.core.comparison import same_arrays
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.sim.arm.batch import run_batch
 from robo_genesis.sim.arm.franka import LINK_PARENTS
@@ -24,7 +23,7 @@ def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
     for _ in range(10):
         lab.scene.step()
     for name in ("G2", "G1"):
-        assert same_arrays(run(spec.CASES[name]), first[name]), name
+        assert arrays(run(spec.CASES[name])) == arrays(first[name]), name
 
 
 def test_the_parents_of_links_are_those_of_the_engine(lab):
@@ -37,7 +36,7 @@ def test_a_batch_repeats_and_refuses_cases_that_do_not_fit(lab):
     scene = robot_in_scene(lab.gs, 3, batch_dofs_info=True, enable_self_collision=False)
     batch = vars(scene).values()
     first, again = (run_batch(*batch, few) for _ in "ab")
-    assert all(same_arrays(first[name], again[name]) for name in few)
+    assert all(arrays(first[name]) == arrays(again[name]) for name in few)
     with pytest.raises(CaseError, match="Build it with n_envs=2"):
         run_batch(*batch, {"G1": spec.G1, "G2": spec.G2})
     with pytest.raises(CaseError, match="cases of equal length"):

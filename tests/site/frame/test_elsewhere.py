@@ -4,7 +4,6 @@ The address is below a server's root: it decides links, sitemap, cards and the 4
 """
 
 import re
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -38,15 +37,6 @@ def html(tmp_path_factory):
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
         patch.setenv("SOLUTIONS", "0")
         return rendered(tmp_path_factory.mktemp("elsewhere"))
-
-
-def test_a_render_leaves_no_process(html):
-    book = f"{html.parent.parent / 'book'}\0".encode()
-    commands = []
-    for path in Path("/proc").glob("[0-9]*/cmdline"):
-        with suppress(OSError):  # it has ended
-            commands.append(path.read_bytes())
-    assert [command for command in commands if book in command] == []
 
 
 def test_each_page_names_its_own_address_and_the_sitemap_lists_pages_alone(html):
