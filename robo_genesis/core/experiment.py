@@ -29,11 +29,9 @@ class Run:
     kind: type[TimeSeries] | None = None
 
 
-def runs_of(
-    cases: Mapping[str, Any], measured: bool = True, note: str = ""
-) -> dict[str, Run]:
-    """Return a run of each case, by default an ordinary one with metrics."""
-    return {name: Run(case, measured, note) for name, case in cases.items()}
+def runs_of(cases: Mapping[str, Any], *about: Any, **more: Any) -> dict[str, Run]:
+    """Return a `Run` of each case, by default an ordinary one with metrics."""
+    return {name: Run(case, *about, **more) for name, case in cases.items()}
 
 
 def inputs(

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.rcsetup import cycler
 
 from robo_genesis.core.channels import Channel, Level
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import MARKS, PARTS, marks_of
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, Trace
@@ -192,11 +193,10 @@ def ends(
     return drawn
 
 
-def robot_ends(
-    frames: Mapping[str, np.ndarray], trace: Trace, parents: Sequence[int]
-) -> Figure:
-    """Show both ends of a run of a robot, without frames its link origins as `schematic` does."""
-    return ends(frames, 5, lambda ax: schematic(ax, trace, parents))
+def robot_ends(run: Experiment, parents: Sequence[int]) -> Figure:
+    """Show both ends of a page's first run, without a camera its links as `schematic` does."""
+    trace = run.traces[next(iter(run.cases))]
+    return ends(run.frames, 5, lambda ax: schematic(ax, trace, parents))
 
 
 def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:

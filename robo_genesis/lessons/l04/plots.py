@@ -45,7 +45,7 @@ ENGINE_STYLES = {
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
-    return plotting.robot_ends(run.frames, run.traces["baseline"], LINK_PARENTS)
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def assigned(run: Experiment) -> Figure:

@@ -19,7 +19,7 @@ AROUND = 45  # Half the width of the shown part of the picture around the marker
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
-    return plotting.robot_ends(run.frames, run.traces["baseline"], LINK_PARENTS)
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def distance(run: Experiment) -> Figure:

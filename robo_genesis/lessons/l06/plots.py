@@ -21,7 +21,7 @@ MEASURES = False
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the link origins of environment 0."""
-    return plotting.robot_ends(run.frames, run.traces["env_0"], LINK_PARENTS)
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def to_target(run: Experiment, name: str, world: Environment) -> FloatArray:

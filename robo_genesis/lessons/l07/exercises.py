@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
 from robo_genesis.core.exercises import Rows, Written, as_test, compared
-from robo_genesis.sim.arm.reaching import ANSWERS, ONE_START
+from robo_genesis.sim.arm.reaching import ONE_START, RESIDUALS
 from robo_genesis.sim.bodies.table import gap
 
 MEASURES = False
@@ -97,12 +97,11 @@ def reach(reachable: Written) -> Findings:
     """Check `reachable(residuals, tips, touches, tolerances, clearances)` on two answers."""
     limits, least = ONE_START.tolerances, np.array([0.03, 0.02])
     zero, still = np.zeros((2, 6)), np.zeros(4, dtype=int)
-    for name, (joint, residual, expected) in ANSWERS.items():
-        if joint == (8, 0.1):  # the others have another fault
-            for row in (0, 1):
-                residuals = np.where([[row == 0], [row == 1]], residual, 0.0)
-                found = reachable(residuals, least, still, limits, least)
-                yield equal(f"{name}.answer_{row}", found, expected)
+    for name, (residual, expected) in RESIDUALS.items():
+        for row in (0, 1):
+            residuals = np.where([[row == 0], [row == 1]], residual, 0.0)
+            found = reachable(residuals, least, still, limits, least)
+            yield equal(f"{name}.answer_{row}", found, expected)
     for name, (heights, touches, expected) in TIPS.items():
         given = zero, np.array(heights), np.array(touches)
         yield equal(name, reachable(*given, limits, least), expected)

@@ -26,7 +26,7 @@ FRICTIONS = {
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the link origins of scene A."""
-    return plotting.robot_ends(run.frames, run.traces["baseline"], LINK_PARENTS)
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def views(run: Experiment) -> Figure:

@@ -27,9 +27,6 @@ EXPECTED_MODEL = franka.MODEL_COUNTS
 # Settings of the solver, and the orientation of the hand.
 ONE_START, DOWN = reaching.ONE_START, reaching.DOWN
 
-KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
-KP[7:], KV[7:] = 480.0, 20.0  # Fingers that close on 50 mm press with 12 N
-
 # Outer steps of a scene at rest, and of a lift.
 RESTING, LIFTING = 60, lifting.ENDS["hold"]
 
@@ -37,8 +34,8 @@ GOOD = SceneCase(
     shape="cylinder",
     size=(0.05, 0.05, 0.07),
     place=(0.5, -0.05, 0.0),
-    kp=KP,
-    kv=KV,
+    kp=lifting.KP,
+    kv=lifting.KV,
     steps=RESTING,
 )
 

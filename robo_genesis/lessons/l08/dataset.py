@@ -15,11 +15,14 @@ TASK = "Pick up the cylinder and place it in the bowl."
 
 PLACE = tuple(f"object_{of}" for of in ("x", "y", "z", "qw", "qx", "qy", "qz"))
 
+# By name the values, and the names of their last axis.
+Columns = dict[str, tuple[np.ndarray, tuple[str, ...] | None]]
+
 # Columns that a robot outside a simulator does not have.
 PRIVILEGED = ("observation.environment_state", "finger_force", "phase")
 
 
-def columns(run: Experiment) -> dict[str, tuple[np.ndarray, tuple[str, ...] | None]]:
+def columns(run: Experiment) -> Columns:
     """Return by name the values (episodes, rows, …), and the names of their last axis.
 
     Row k has sample k, and the last command before sample k + 1.
@@ -28,7 +31,7 @@ def columns(run: Experiment) -> dict[str, tuple[np.ndarray, tuple[str, ...] | No
     good = metrics.reached(trace, case) == len(metrics.RUNGS)
     last = (np.arange(trace.steps) == trace.steps - 1)[:, None]
     pose = np.concatenate([trace.object_pos, trace.object_quat], axis=2)
-    by_time: dict[str, tuple[np.ndarray, tuple[str, ...] | None]] = {
+    by_time: Columns = {
         "observation.state": (trace.q[:-1], joints),
         "observation.environment_state": (pose[:-1], PLACE),
         "action": (trace.target, joints),

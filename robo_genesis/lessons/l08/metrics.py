@@ -45,11 +45,15 @@ def pressed(trace: Episodes) -> np.ndarray:
     return np.asarray((trace.force > PRESSES).all(axis=2))
 
 
+def risen(trace: Episodes) -> FloatArray:
+    """Return how far the object is above its start (n+1, e) [m]."""
+    return trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
+
+
 def rungs(trace: Episodes, case: PickCase) -> dict[str, np.ndarray]:
     """Return by rung which episodes (e,) pass it, whatever the others say."""
     both = pressed(trace)
     carry = (trace.phase == MOVE) | (trace.phase == LOWER)
-    rise = trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
     at_move = (trace.phase >= MOVE).argmax(axis=0)
     last = trace.object_pos[-round(WINDOW / trace.dt) - 1 :]
     moved = np.linalg.norm(last[-1] - last, axis=2)
@@ -57,7 +61,7 @@ def rungs(trace: Episodes, case: PickCase) -> dict[str, np.ndarray]:
     return {
         "planned": trace.phase[0] < DONE,
         "held": (both & (trace.phase == LIFT)).any(axis=0),
-        "lifted": rise[at_move, np.arange(len(at_move))] >= RAISED,
+        "lifted": risen(trace)[at_move, np.arange(len(at_move))] >= RAISED,
         "carried": carry.any(axis=0) & (both | ~carry).all(axis=0),
         "released": (trace.phase[-1] == DONE) & (trace.touches[-1] == 0),
         "contained": inside & (lowest(trace, case)[-1] < bowl.HEIGHT - BELOW),
@@ -123,13 +127,12 @@ class EpisodesMetrics(CaseMetrics):
 def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
     """Count episodes of one batch."""
     level, passed = reached(trace, case), rungs(trace, case)
-    rise = trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
     over = off_axis(trace, case)[-1] < CENTRED
     hanging = (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)
     values = [
         *((level > k).sum() for k in range(len(RUNGS))),
         (trace.phase[-1] == DONE).sum(),
-        (rise.max(axis=0) >= RAISED).sum(),
+        (risen(trace).max(axis=0) >= RAISED).sum(),
         passed["contained"].sum(),
         over.sum(),
         (over & hanging).sum(),
@@ -140,15 +143,18 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
     return EpisodesMetrics(*map(float, values))
 
 
+def hand_above(trace: Episodes) -> FloatArray:
+    """Return how far the hand is above the object (n+1, e) [m]."""
+    return hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
+
+
 def slides(trace: Episodes) -> tuple[FloatArray, FloatArray]:
     """Return how long each object is held, from lift to lower (e,) [s], and how far it
     slides down in the fingers meanwhile (e,) [m].
     """
-    held, rows = (
-        (trace.phase >= LIFT) & (trace.phase <= LOWER),
-        np.arange(trace.phase.shape[1]),
-    )
-    above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
+    held = (trace.phase >= LIFT) & (trace.phase <= LOWER)
+    rows = np.arange(held.shape[1])
+    above = hand_above(trace)
     first, last = held.argmax(axis=0), len(held) - 1 - held[::-1].argmax(axis=0)
     return trace.t[last] - trace.t[first], above[last, rows] - above[first, rows]
 
@@ -173,8 +179,7 @@ def grip(trace: Episodes, held: np.ndarray) -> tuple[float, float]:
     not.
     """
     inner = inside_move(trace) & held
-    above = hand_pose(trace.q).position[..., 2] - trace.object_pos[..., 2]
-    speed = np.gradient(above, trace.dt, axis=0)
+    speed = np.gradient(hand_above(trace), trace.dt, axis=0)
     return float(np.median(trace.force[inner])), float(np.median(speed[inner]))
 
 

@@ -12,23 +12,17 @@ from robo_genesis.lessons.l08.creep import HeldMetrics
 from robo_genesis.lessons.l08.creep_checks import CREEP
 from robo_genesis.lessons.l08.metrics import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
-from robo_genesis.sim.bodies.table import SceneCase
 from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import structure
 
 MEASURES = False
 
 
-def one_of_each(cases: dict[str, SceneCase]) -> dict[str, Run]:
-    """Return runs of single episodes."""
-    return {name: Run(case, False, ONE, Trace) for name, case in cases.items()}
-
-
 COPY = "repeats the episodes of another run of this page, and has no metrics"
-ONE = "one episode of a batch, at all its steps"
+SINGLE = (False, "one episode of a batch, at all its steps", Trace)
 
 LECTURE = MeasuringPage(
-    runs=one_of_each(spec.EPISODES)
+    runs=runs_of(spec.EPISODES, *SINGLE)
     | runs_of(spec.CASES)
     | runs_of(spec.COPIES, measured=False, note=COPY),
     kind=Episodes,
@@ -49,7 +43,7 @@ SHEETS = [
 LAB = with_functions(
     replace(
         LECTURE,
-        runs=one_of_each(spec.LAB_EPISODE)
+        runs=runs_of(spec.LAB_EPISODE, *SINGLE)
         | {"exact": Run(spec.EXACT, kind=Demonstrations)},
         checks=(*checks.CHECKS, *checks.LAB),
         parameters=spec.lab_parameters,

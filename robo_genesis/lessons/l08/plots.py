@@ -18,8 +18,7 @@ MEASURES = False
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the link origins of an episode."""
-    episode = next(name for name in spec.ROWS if name in run.cases)
-    return plotting.robot_ends(run.frames, run.traces[episode], LINK_PARENTS)
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def phases(run: Experiment) -> Figure:
@@ -68,10 +67,7 @@ def slide(run: Experiment) -> Figure:
     trace, row = run.traces["askew"], spec.SHOWN["placed"]
     held = (picking.LIFT, picking.MOVE, picking.LOWER)
     inside = np.flatnonzero(np.isin(trace.phase[:, row], held))
-    above = (
-        hand_pose(trace.q[inside, row]).position[:, 2]
-        - trace.object_pos[inside, row, 2]
-    )
+    above = metrics.hand_above(trace)[inside, row]
     ax.plot(trace.t[inside], 1000 * (above - above[0]), **look("baseline"))
     ax.set(xlabel="time [s]", ylabel="slid down [mm]")
     ax.set_title("Slide of the object in the closed fingers")

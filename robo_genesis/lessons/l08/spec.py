@@ -14,7 +14,7 @@ from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, FloatArray, read_only
 from robo_genesis.lessons.l08 import creep
-from robo_genesis.sim.arm import franka, reaching
+from robo_genesis.sim.arm import franka, lifting, reaching
 from robo_genesis.sim.arm.picking import PickCase
 from robo_genesis.sim.bodies.table import SceneCase
 
@@ -23,9 +23,6 @@ MEASURES = False
 MINIMUM_HARDWARE = "cpu"
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
-
-KP, KV = franka.KP_BASELINE.copy(), franka.KV_BASELINE.copy()
-KP[7:], KV[7:] = 480.0, 20.0  # As in L07: fingers that close on 50 mm press with 12 N
 
 # Rows and columns of the map of starts.
 CELLS = 16
@@ -68,8 +65,8 @@ ASKEW = PickCase(
     shape="cylinder",
     size=(0.05, 0.05, 0.07),
     place=(0.5, -0.05, 0.0),
-    kp=KP,
-    kv=KV,
+    kp=lifting.KP,
+    kv=lifting.KV,
     starts=STARTS,
     beliefs=turned(STARTS, 4.0),
     settings=reaching.ONE_START,
@@ -111,8 +108,8 @@ def one(row: int, of: PickCase = ASKEW) -> SceneCase:
         size=of.size,
         place=(*of.starts[row].tolist(), 0.0),
         ball_radius=0.0,
-        kp=KP,
-        kv=KV,
+        kp=of.kp,
+        kv=of.kv,
         steps=control.steps,
         dt=control.dt,
         substeps=control.substeps,

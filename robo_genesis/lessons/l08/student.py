@@ -30,15 +30,13 @@ def missing(function: Written, *given: Any) -> bool:
 
 def waypoints(grasp_pose: Written, case: PickCase) -> list[FloatArray]:
     """Return the waypoints of a case by a student's function, as `PickCase.waypoints`."""
-    bowls = np.tile([*case.bowl_at, 0.0], (len(case.beliefs), 1))
-    places = (
-        np.insert(case.beliefs, 2, 0.0, axis=1),
-        bowls,
-        np.add(bowls, (0, 0, case.drop)),
-    )
-    at, over, down = (
-        np.array([grasp_pose(p, case.size[2]) for p in of]) for of in places
-    )
+
+    def asked(place: FloatArray, z: float) -> FloatArray:
+        places = np.broadcast_to(place, case.beliefs.shape)
+        return np.array([grasp_pose(np.append(at, z), case.size[2]) for at in places])
+
+    at, over = asked(case.beliefs, 0.0), asked(case.bowl_at, 0.0)
+    down = asked(case.bowl_at, case.drop)
     rise = np.array([0, 0, case.rise])
     return [at[:, 0], at[:, 1], at[:, 1] + rise, over[:, 1] + rise, down[:, 1]]
 

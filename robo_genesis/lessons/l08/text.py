@@ -1,7 +1,5 @@
 """Tables of L08, each a function of the experiment."""
 
-from itertools import pairwise
-
 import numpy as np
 
 from robo_genesis.core import tables
@@ -89,19 +87,30 @@ def pair_table(run: Experiment) -> tables.Rows:
         }
 
 
+# Ranges of the noise, between −8, −4, 0, 4 and 8 mm.
+NOISE = (
+    "below −8",
+    "from −8 to −4",
+    "from −4 to 0",
+    "from 0 to 4",
+    "from 4 to 8",
+    "from 8 on",
+)
+
+
 @tables.as_table
 def side_table(run: Experiment) -> tables.Rows:
     """Return successes by the error along the pads, before any correction."""
     along = 1000 * (run.cases["plain"].beliefs - run.cases["plain"].starts)[:, 0]
-    edges = np.array([-np.inf, -8, -4, 0, 4, 8, np.inf])
-    for low, high in pairwise(edges):
-        own = (along >= low) & (along < high)
-        words = f"from {low:g} to {high:g}".replace("from -inf to", "below")
-        yield {"noise [mm]": words.replace(" to inf", " on").replace("-", "−")} | {
-            spec.LABELS[
-                n
-            ]: f"{metrics.good(run.traces[n], run.cases[n])[own].sum()} of {own.sum()}"
-            for n in ("plain", "corrected")
+    part = np.digitize(along, (-8, -4, 0, 4, 8))
+    good = {
+        n: metrics.good(run.traces[n], run.cases[n]) for n in ("plain", "corrected")
+    }
+    for k, words in enumerate(NOISE):
+        own = part == k
+        yield {"noise [mm]": words} | {
+            spec.LABELS[name]: f"{of[own].sum()} of {own.sum()}"
+            for name, of in good.items()
         }
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
+from robo_genesis.sim.arm.franka import KP_BASELINE, KV_BASELINE, per_joint
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM, DOWN
 
@@ -34,6 +35,10 @@ PAD, HAND_TO_PAD = 0.025, 0.1034
 
 # Heights of the pregrasp above the grasp, and of the lift [m].
 ABOVE, RISE = 0.10, 0.05
+
+# Gains of the robot, with which fingers that close on 50 mm press with 12 N.
+KP = per_joint(*KP_BASELINE[:7], 480, 480)
+KV = per_joint(*KV_BASELINE[:7], 20, 20)
 
 FINGERS = {"left": "left_finger", "right": "right_finger"}
 

@@ -37,27 +37,34 @@ SAME_POSE = (5e-6, 5e-6)
 # rad].
 SAME_RESIDUAL = 1e-6
 
-# For exercises: a joint and its position, the residual, and whether `IK` lets it be
-# commanded.
-ANSWERS: dict[str, tuple[tuple[int, float], tuple[float, ...], bool]] = {
-    "exact": ((8, 0.1), (0.0,) * 6, True),
-    "within_both": ((8, 0.1), (3e-4, 0, 0, 0, 4e-3, 0), True),
-    "at_both_limits": ((8, 0.1), (5e-4, 0, 0, 0, 0, 5e-3), True),
-    "too_far": ((8, 0.1), (6e-4, 0, 0, 0, 0, 0), False),
-    "too_far_backwards": ((8, 0.1), (0, 0, -2.0, 0, 0, 0), False),
-    "too_far_along_the_diagonal": ((8, 0.1), (4e-4, 4e-4, 0, 0, 0, 0), False),
-    "turned_too_far": ((8, 0.1), (0, 0, 0, 0, -6e-3, 0), False),
-    "turned_too_far_about_two_axes": ((8, 0.1), (0, 0, 0, 4e-3, 4e-3, 0), False),
-    "too_far_along_y": ((8, 0.1), (0, 6e-4, 0, 0, 0, 0), False),
-    "turned_too_far_about_x": ((8, 0.1), (0, 0, 0, 6e-3, 0, 0), False),
-    "turned_too_far_about_z": ((8, 0.1), (0, 0, 0, 0, 0, 6e-3), False),
-    "opposite_errors": ((8, 0.1), (0.2, -0.2, 0, 0.2, -0.2, 0), False),
-    "first_joint_not_a_number": ((0, math.nan), (0.0,) * 6, False),
-    "middle_joint_not_a_number": ((4, math.nan), (0.0,) * 6, False),
-    "middle_joint_infinite": ((5, math.inf), (0.0,) * 6, False),
-    "last_joint_infinite": ((8, -math.inf), (0.0,) * 6, False),
-    "rotation_not_a_number": ((8, 0.1), (0, 0, 0, 0, math.nan, 0), False),
-    "residual_not_a_number": ((8, 0.1), (math.nan, 0, 0, 0, 0, 0), False),
-    "height_is_no_angle": ((8, 0.1), (0, 0, 4e-4, 0, 0, 4.99e-3), True),
-    "small": ((8, 0.1), (1e-6,) * 6, True),
+# For exercises: residuals, and whether `IK` lets such an answer be commanded.
+RESIDUALS: dict[str, tuple[tuple[float, ...], bool]] = {
+    "exact": ((0.0,) * 6, True),
+    "within_both": ((3e-4, 0, 0, 0, 4e-3, 0), True),
+    "at_both_limits": ((5e-4, 0, 0, 0, 0, 5e-3), True),
+    "too_far": ((6e-4, 0, 0, 0, 0, 0), False),
+    "too_far_backwards": ((0, 0, -2.0, 0, 0, 0), False),
+    "too_far_along_the_diagonal": ((4e-4, 4e-4, 0, 0, 0, 0), False),
+    "turned_too_far": ((0, 0, 0, 0, -6e-3, 0), False),
+    "turned_too_far_about_two_axes": ((0, 0, 0, 4e-3, 4e-3, 0), False),
+    "too_far_along_y": ((0, 6e-4, 0, 0, 0, 0), False),
+    "turned_too_far_about_x": ((0, 0, 0, 6e-3, 0, 0), False),
+    "turned_too_far_about_z": ((0, 0, 0, 0, 0, 6e-3), False),
+    "opposite_errors": ((0.2, -0.2, 0, 0.2, -0.2, 0), False),
+    "rotation_not_a_number": ((0, 0, 0, 0, math.nan, 0), False),
+    "residual_not_a_number": ((math.nan, 0, 0, 0, 0, 0), False),
+    "height_is_no_angle": ((0, 0, 4e-4, 0, 0, 4.99e-3), True),
+    "small": ((1e-6,) * 6, True),
 }
+
+# A joint and its position, with which no answer may be commanded.
+NOT_FINITE = {
+    "first_joint_not_a_number": (0, math.nan),
+    "middle_joint_not_a_number": (4, math.nan),
+    "middle_joint_infinite": (5, math.inf),
+    "last_joint_infinite": (8, -math.inf),
+}
+
+# Both together: a joint and its position, the residual, and the verdict.
+ANSWERS = {name: ((8, 0.1), *row) for name, row in RESIDUALS.items()}
+ANSWERS |= {name: (joint, (0.0,) * 6, False) for name, joint in NOT_FINITE.items()}

@@ -153,7 +153,6 @@ def test_commands_that_are_shifted_by_one_row_are_found(lab, rows):
         ({}, None),
         ({"q": shift((30, 0, 3), 0.25)}, "commands"),
         ({"object_pos": shift((slice(3, None), 0, 0), 2e-4)}, "untouched"),
-        ({"object_pos": shift((70, 0, 1), 0.06)}, "hand"),
         ({"q": lambda q: np.repeat(q[:, :1], 64, axis=1)}, "different"),
     ],
 )
