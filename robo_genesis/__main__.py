@@ -59,10 +59,10 @@ def verify(options: Namespace) -> int:
 def evidence(options: Namespace) -> int:
     """Record all labs on this machine, or one."""
     from robo_genesis.pipeline.recording.labs import Recording, record
+    from robo_genesis.pipeline.stages import Build
 
-    return record(
-        Recording(options.lesson, options.backend, options.to, **folders(options))
-    )
+    build = Build(**folders(options), jobs=1, command="make evidence")
+    return record(Recording(options.lesson, options.backend, options.to, build))
 
 
 def evidence_rocm(options: Namespace) -> int:

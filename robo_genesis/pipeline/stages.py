@@ -72,10 +72,10 @@ def run_build(build: Build) -> list[str]:
     with build_lock(build.cache):
         target, progress = build.to or build.book, Progress(build.say)
         inputs = up_to_date.inputs_digest(build.root, build.book)  # before any is read
-        engine, pages, into = _prepare(build)
+        engine, pages, into = prepare(build)
         npm.packages()
-        about = [*described(build.book), f"Engine: {project.ENGINE} {engine}"]
-        results, manifests = _execute(build, pages, into, progress)
+        about = [*described(), f"Engine: {project.ENGINE} {engine}"]
+        results, manifests = execute(build, pages, into, progress)
         _require_evidence(build, results, progress)
         progress("render", "all pages")
         folder = build.cache / project.KEPT
@@ -112,24 +112,30 @@ def execute_one(name: str, build: Build) -> list[str]:
         ProjectError: the checkout is not fit for it, or a build runs here.
     """
     with build_lock(build.cache):
-        engine, pages, into = _prepare(build)
+        engine, pages, into = prepare(build)
         chosen = [p for p in pages if name in (p.docname, f"{p.lesson}/{p.page}")]
         if not chosen:
             valid = ", ".join(page.docname for page in pages) or "none"
             raise BuildError(
                 f"PAGE={name!r} is not valid. Executed pages of this book: {valid}."
             )
-        [result], _ = _execute(build, chosen, into, Progress(build.say))
+        [result], _ = execute(build, chosen, into, Progress(build.say))
     return [
         f"Executed page: {result.folder}",
         f"Engine: {project.ENGINE} {engine}",
     ]
 
 
-def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
-    """Return the engine's version, the book's pages, and their places in the store.
+def prepare(
+    build: Build, store: str = project.STORE
+) -> tuple[str, list[Page], dict[str, Path]]:
+    """Return the engine's version, the book's pages, and their places in a store.
 
     What a killed build left is repaired first.
+
+    Args:
+        build: where book and caches are.
+        store: a folder of the caches.
     """
     require_history(build.root)
     settle_below(build.book / "evidence")
@@ -138,10 +144,10 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
     project.remove_stale_kernel_lock(build.cache)
     engine = project.require_pinned_engine(build.root)
     pages = find_pages(build.book)
-    return engine, pages, places(pages, build.cache / project.STORE, build.root)
+    return engine, pages, places(pages, build.cache / store, build.root)
 
 
-def _execute(
+def execute(
     build: Build, pages: Sequence[Page], into: Mapping[str, Path], progress: Progress
 ) -> tuple[list[PageResult], dict[str, Any]]:
     """Execute pages, and verify the bundle of each soon after its end.

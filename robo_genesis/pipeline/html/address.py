@@ -3,10 +3,7 @@
 import os
 import re
 from collections.abc import Mapping
-from pathlib import Path
 from urllib.parse import urlsplit
-
-import yaml
 
 from robo_genesis.core.project import ProjectError, solutions_shown
 
@@ -39,23 +36,10 @@ def site_root(environment: Mapping[str, str] = os.environ) -> str:
     return urlsplit(site_address(environment) or "/").path
 
 
-def described(book: Path) -> list[str]:
-    """Return the lines that say which site of a book is built.
-
-    Args:
-        book: the folder of the pages and their configuration.
-    """
+def described() -> list[str]:
+    """Return the lines that say which site is built."""
     address = (
         site_address() or f"none. {SITE_URL}=https://example.org/course/ gives one."
     )
-    if solutions_shown():
-        return ["Solutions: shown. SOLUTIONS=0 leaves them out.", f"Address: {address}"]
-    config = yaml.safe_load((book / "_config.yml").read_text("utf8"))["sphinx"][
-        "config"
-    ]
-    lines = ["Solutions: left out.", f"Address: {address}"]
-    if repository := config.get("course_repository"):
-        lines.append(
-            f"Pages link to {repository}: whoever may read it finds the solutions there."
-        )
-    return lines
+    shown = "shown. SOLUTIONS=0 leaves them out." if solutions_shown() else "left out."
+    return [f"Solutions: {shown}", f"Address: {address}"]

@@ -1,6 +1,5 @@
 """Execute the pages' code cells in clean kernels, in parallel, and keep them in the store."""
 
-import os
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf
@@ -164,20 +163,17 @@ class Schedule:
         self.events.put((run, result))
 
 
-def kernel_environment(
-    root: Path, cache: Path, command: str, **settings: str
-) -> dict[str, str]:
+def kernel_environment(root: Path, cache: Path, command: str) -> dict[str, str]:
     """Return the variables that every kernel of a command gets.
 
     Args:
         root: the checkout.
         cache: the folder of the caches.
         command: the command that bundles name.
-        settings: variables that replace those of this process.
     """
     return {
         **project.engine_cache_environment(root, cache),
-        **project.environment_contract({**os.environ, **settings}),
+        **project.environment_contract(),
         project.COMMAND: command,
     }
 
