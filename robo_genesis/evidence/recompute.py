@@ -1,11 +1,54 @@
-"""What is recomputed from the arrays of a bundle: laws, metrics and checks."""
+"""What a bundle says by itself: one backend, its own key, and metrics and checks of its arrays."""
 
 from pathlib import Path
 
 from robo_genesis.core.checks import FAILED
-from robo_genesis.evidence.bundle import MANIFEST, METRICS, Manifest, read_metrics
+from robo_genesis.evidence.bundle import (
+    MANIFEST,
+    METRICS,
+    Manifest,
+    evidence_key,
+    read_metrics,
+)
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
+from robo_genesis.sim.backends import contradictions
+
+RELABEL = "Name the folder after the backend that computed."
+TORCH = (
+    "Use a Torch build for this backend, unset GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, and run the "
+    "page again."
+)
+REINSTALL = (
+    "A file of the installed engine differs from the published package. Install it again: "
+    "pip install --force-reinstall -r requirements.lock."
+)
+
+
+def check_backend(folder: Path, manifest: Manifest) -> None:
+    """Require one backend, the requested one, on which engine, compiler and Torch agree.
+
+    The backend names the folder. The files of the engine are those of its wheels. The
+    key is that of the bundle's own fields.
+
+    Raises:
+        BundleRefused: `backend`, `torch`, `engine-files` or `key`.
+    """
+    backend = manifest.backend
+    for what, found, expected, remedy in (
+        ("backend.actual", backend.actual, folder.name, RELABEL),
+        ("actual_at_end", backend.actual_at_end, backend.actual, AGAIN),
+    ):
+        expect("backend", MANIFEST, what, found, expected, remedy)
+    if backend.requested == "cpu":
+        what = "actual where cpu was requested"
+        expect("backend", MANIFEST, what, backend.actual, "cpu")
+    match = manifest.engine.files_match_wheel
+    expect("engine-files", MANIFEST, "engine.files_match_wheel", match, True, REINSTALL)
+    key = evidence_key(manifest.model_dump())
+    expect("key", MANIFEST, "evidence_key", manifest.evidence_key, key)
+    for what, found, expected in contradictions(backend):
+        expect("torch", MANIFEST, what, found, expected, TORCH)
 
 
 def recompute(folder: Path, manifest: Manifest) -> None:

@@ -1,5 +1,6 @@
 """Refusals of a bundle: a stable code, and a message with found, expected and what to do."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from robo_genesis.core.text import printable, quoted
@@ -11,11 +12,13 @@ class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepte
     """A bundle is not valid evidence. `code` is stable; the message says what to do.
 
     The message may quote the bundle: its control characters and line breaks are
-        escaped.
+    escaped. `differing` has path, recorded and current value of what made it stale.
     """
 
-    def __init__(self, code: str, message: str) -> None:
-        self.code, self.message = code, printable(message)
+    def __init__(
+        self, code: str, message: str, differing: Sequence[tuple[str, Any, Any]] = ()
+    ) -> None:
+        self.code, self.message, self.differing = code, printable(message), differing
         super().__init__(f"{code}: {self.message}")
 
 
@@ -38,7 +41,7 @@ def expect(
         remedy: what to do.
     """
     if found != expected:
-        here, there = quoted(found), quoted(expected)
+        here, there = map(quoted, (found, expected))
         message = f"{file}: {what} is {here}, expected {there}. {remedy}"
         raise BundleRefused(code, message)
 
@@ -60,4 +63,5 @@ def expect_equal(code: str, file: str, what: str, found: Any, expected: Any) -> 
     from robo_genesis.core.comparison import agree, differences
 
     for path, here, there in differences(found, expected, agree):
-        expect(code, file, what.format(path), repr(here), repr(there))
+        difference = f"{what.format(path)} is {here!r}, expected {there!r}"
+        raise BundleRefused(code, f"{file}: {difference}. {AGAIN}")

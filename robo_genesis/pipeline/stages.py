@@ -11,7 +11,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle, settle_below
-from robo_genesis.core.git import require_history, unclean
+from robo_genesis.core.git import require_history
 from robo_genesis.pipeline import npm, up_to_date
 from robo_genesis.pipeline.bundles.page_bundles import verify_results
 from robo_genesis.pipeline.bundles.status import refused_records
@@ -172,12 +172,13 @@ def execute(
         manifests.update(accepted)
         refusals.extend(refused)
 
+    environment = kernel_environment(build.root, build.cache, build.command)
     results = execute_pages(
         pages,
         into,
         jobs=build.jobs,
         timeout=build.timeout,
-        environment=kernel_environment(build.root, build.cache, build.command),
+        environment=environment,
         logs=build.cache / project.LOGS,
         report=Lines(partial(progress, "execute")),
         accept=accept,
@@ -201,9 +202,9 @@ def _require_evidence(
     if refused := refused_records(build.book):
         raise BuildError("\n".join(refused))
     if build.release:
-        if problems := unclean(build.root) + missing_for_release(build.book, labs):
+        if problems := missing_for_release(build.book, labs):
             raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
-        progress("release", "clean tree, current evidence")
+        progress("release", "current evidence")
 
 
 def _check(html: Path, progress: Progress) -> None:

@@ -95,7 +95,6 @@ def test_a_build_without_work_repeats_the_last_lines_and_loads_no_heavy_package(
 
 
 def test_a_release_requires_evidence(built, monkeypatch):
-    monkeypatch.setattr("robo_genesis.pipeline.stages.unclean", lambda root: [])
     reasons = ["l04 requires evidence"]
     monkeypatch.setattr(
         "robo_genesis.pipeline.stages.missing_for_release", lambda *given: reasons
@@ -131,19 +130,12 @@ def test_a_release_requires_evidence(built, monkeypatch):
             BuildError,
             "third p",
         ),
-        (
-            LAB,
-            {"release": True},
-            BuildError,
-            r"RELEASE=1 cannot be met\.\n.* 1 changed file",
-        ),
     ],
     ids=[
         "bundle",
         "another contract",
         "output",
         "site",
-        "changed tree",
     ],
 )
 def test_a_refused_build_leaves_the_old_site(
@@ -151,11 +143,6 @@ def test_a_refused_build_leaves_the_old_site(
 ):
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
-    stages = "robo_genesis.pipeline.stages"
-    monkeypatch.setattr(
-        f"{stages}.unclean", lambda root: ["The tree has 1 changed file"]
-    )
-    monkeypatch.setattr(f"{stages}.missing_for_release", lambda *given: [])
     marker = old_site(make_book(tmp_path, lab=page))
     with pytest.raises(error, match=said):
         build(tmp_path, **settings)

@@ -4,18 +4,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.checks import FAILED
 from robo_genesis.core.comparison import HELD, outcome
 from robo_genesis.evidence.bundle import (
     Manifest,
     by_full_name,
-    read_manifest,
     read_metrics,
 )
 from robo_genesis.evidence.compare import claims_of
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
-from robo_genesis.pipeline.pages.guards import contradicted
+from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.sim.backends import BACKENDS
 
 # The page whose bundles are recorded on accelerators and kept in the repository.
@@ -46,7 +43,7 @@ RECORDED_WITH = "it was recorded with {name} {{}}; this site uses {{}}"
 CHANGES = {
     "engine.version": RECORDED_WITH.format(name="Genesis"),
     "engine.quadrants_version": RECORDED_WITH.format(name="Quadrants"),
-    "source.page": "the {page}'s code changed since",
+    "source.page": "the page's code changed since",
     "source.modules": "the course's code changed since",
     "parameters": "the parameters changed since",
     "seed": "the seed changed since",
@@ -143,15 +140,11 @@ def bundle_status(
             folder, lesson=lesson, page=page, root=root, book=book, once=once
         )
     except BundleRefused as refusal:
-        code, reason = refusal.code, str(refusal)
-        summary = SUMMARIES.get(code, UNREADABLE)
+        code, summary = refusal.code, SUMMARIES.get(refusal.code, UNREADABLE)
         if code == "stale":
-            summary = why_stale(read_manifest(folder), book, root)
-        elif code == FAILED:
-            refused = read_manifest(folder)
-            reason += contradicted(book, f"{refused.lesson}/{refused.page}", reason)
+            summary = why_stale(refusal)
         state = STATE_OF_CODE.get(code, "refused")
-        return Status(state, backend, reason, None, code, summary)
+        return Status(state, backend, str(refusal), None, code, summary)
     lines = not_shown(folder, manifest)
     if not lines:
         return Status("verified", backend, "", manifest)
@@ -172,22 +165,14 @@ def not_shown(folder: Path, manifest: Manifest) -> list[str]:
     return lines
 
 
-def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
-    """Return, for a reader of the site, what changed since a stale bundle was recorded.
-
-    Args:
-        manifest: of a bundle that was refused as stale.
-        book: the folder of the pages.
-        root: the checkout, for pin, lock and modules.
-    """
-    differing, texts = changed(manifest, root, book), []
-    for start, words in CHANGES.items():
-        for path, here, there in differing:
-            if path.startswith(start):
-                texts.append(words.format(here, there, page=manifest.page))
-                break
-    text = "; ".join(texts) or "it answers an older question"
-    return f"{text[0].upper()}{text[1:]}."
+def why_stale(refusal: BundleRefused) -> str:
+    """Return, for a reader of the site, what changed since a stale bundle was recorded."""
+    texts = {}
+    for path, here, there in refusal.differing:
+        for start in filter(path.startswith, CHANGES):
+            texts.setdefault(start, CHANGES[start].format(here, there))
+    text = "; ".join(texts[start] for start in CHANGES if start in texts)
+    return f"{text[0].upper()}{text[1:]}." if text else "It answers an older question."
 
 
 def recorded_folders(book: Path) -> list[Path]:

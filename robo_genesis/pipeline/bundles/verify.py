@@ -15,24 +15,14 @@ from robo_genesis.core.scene import SEED
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import MANIFEST, Manifest
-from robo_genesis.evidence.recompute import recompute
+from robo_genesis.evidence.recompute import check_backend, recompute
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages.book import code_digest, find_pages
 from robo_genesis.pipeline.pages.sources import measuring_modules
 from robo_genesis.sim import session
-from robo_genesis.sim.backends import contradictions
 
 MOVE = "Put the bundle into the folder of its own lesson."
-RELABEL = "Name the folder after the backend that computed."
-TORCH = (
-    "Use a Torch build for this backend, unset GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, and run the "
-    "page again."
-)
-REINSTALL = (
-    "A file of the installed engine differs from the published package. Install it again: "
-    "pip install --force-reinstall -r requirements.lock."
-)
 
 
 def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
@@ -48,11 +38,9 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
         BundleRefused: `lesson`, the book has no such page.
     """
     digest, imports = page_code(lesson, page, book)
+    source = {"page": digest, "modules": measuring_modules(lesson, imports, root)}
+    parameters = json.loads(json.dumps(find_page(lesson, page).parameters()))
     locked = project.locked_versions((root / "requirements.lock").read_text("utf8"))
-    if "quadrants" not in locked:
-        raise project.ProjectError(
-            "requirements.lock lacks quadrants. Run `make lock`."
-        )
     return {
         "schema_version": bundle.SCHEMA_VERSION,
         "lesson": lesson,
@@ -63,11 +51,8 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
             "precision": session.PRECISION,
         },
         "seed": SEED,
-        "parameters": json.loads(json.dumps(find_page(lesson, page).parameters())),
-        "source": {
-            "page": digest,
-            "modules": measuring_modules(lesson, imports, root),
-        },
+        "parameters": parameters,
+        "source": source,
     }
 
 
@@ -109,43 +94,19 @@ def check_current(manifest: Manifest, root: Path, book: Path) -> None:
     """Require that a bundle has the evidence key of the checkout.
 
     Raises:
-        BundleRefused: `key` if the key is not that of the bundle's own fields; `stale`,
-            with everything that differs; `lesson`.
+        BundleRefused: `stale`, with everything that differs; `lesson`.
     """
-    key = bundle.evidence_key(manifest.model_dump())
-    expect("key", MANIFEST, "evidence_key", manifest.evidence_key, key)
-    named = "; ".join(
-        f"{path} is {quoted(here)}, expected {quoted(there)}"
-        for path, here, there in changed(manifest, root, book)
-    )
-    if named:
+    if differing := changed(manifest, root, book):
+        named = "; ".join(
+            f"{path} is {quoted(here)}, expected {quoted(there)}"
+            for path, here, there in differing
+        )
         raise BundleRefused(
             "stale",
             f"{MANIFEST}: {named}. The bundle answers an older question. "
             f"Record it again: `make evidence LESSON={manifest.lesson}`.",
+            differing,
         )
-
-
-def check_backend(folder: Path, manifest: Manifest) -> None:
-    """Require one backend, the requested one, on which engine, compiler and Torch agree.
-
-    The backend names the folder. The files of the engine are those of its wheels.
-
-    Raises:
-        BundleRefused: `backend`, `torch` or `engine-files`.
-    """
-    backend = manifest.backend
-    expect("backend", MANIFEST, "backend.actual", backend.actual, folder.name, RELABEL)
-    again = "The backend changed during the run. Run the page again."
-    at_end = backend.actual_at_end
-    expect("backend", MANIFEST, "actual_at_end", at_end, backend.actual, again)
-    if backend.requested == "cpu":
-        what = "actual where cpu was requested"
-        expect("backend", MANIFEST, what, backend.actual, "cpu")
-    for what, found, expected in contradictions(backend):
-        expect("torch", MANIFEST, what, found, expected, TORCH)
-    match = manifest.engine.files_match_wheel
-    expect("engine-files", MANIFEST, "engine.files_match_wheel", match, True, REINSTALL)
 
 
 def verify_bundle(

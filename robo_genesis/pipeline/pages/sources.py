@@ -114,11 +114,9 @@ class Tree:
 
 def lesson_modules(lesson: str, root: Path) -> list[str]:
     """Return the modules below the folder of a lesson."""
-    files = sorted(files_below(root / PACKAGE / "lessons" / lesson, left_out=NO_SOURCE))
-    names = (
-        path.relative_to(root).with_suffix("") for path in files if path.suffix == ".py"
-    )
-    return [".".join(name.parts) for name in names]
+    files = sorted((root / PACKAGE / "lessons" / lesson).rglob("*.py"))
+    names = (path.relative_to(root).with_suffix("").parts for path in files)
+    return [".".join(name) for name in names if all(map(str.isidentifier, name))]
 
 
 def measuring_modules(

@@ -39,7 +39,7 @@ STATES = [
     ("missing", None, shutil.rmtree, ""),
     ("stale", "stale", older_compiler, OLD_COMPILER),
     ("stale", "stale", older_engine, OLD_ENGINE),
-    ("stale", "stale", SPOILED["no page digest"][1], "The lab's code changed since."),
+    ("stale", "stale", SPOILED["no page digest"][1], "The page's code changed since."),
     (
         "stale",
         "stale",
