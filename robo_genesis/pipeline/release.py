@@ -97,7 +97,7 @@ def build(options: Namespace) -> int:
     return 0
 
 
-def missing_for_release(book: Path, labs: Mapping[str, Path | None]) -> list[str]:
+def missing_for_release(book: Path, labs: Mapping[str, Path]) -> list[str]:
     """Return why the evidence of a book is not that of a release, nothing if it is.
 
     A lesson requires the evidence of its minimum hardware: this build's if that is the
@@ -106,8 +106,7 @@ def missing_for_release(book: Path, labs: Mapping[str, Path | None]) -> list[str
 
     Args:
         book: the folder of the pages.
-        labs: the folder of the lab's bundle of this build, by lesson of the book; None
-            for a lesson without a lab.
+        labs: the folder of the lab's bundle of this build, by lesson of the book.
     """
     lines = [
         line for lesson, at in labs.items() for line in _required(book, lesson, at)
@@ -122,11 +121,8 @@ def missing_for_release(book: Path, labs: Mapping[str, Path | None]) -> list[str
     return lines
 
 
-def _required(book: Path, lesson: str, folder: Path | None) -> Iterator[str]:
+def _required(book: Path, lesson: str, folder: Path) -> Iterator[str]:
     """Yield why a lesson lacks the evidence of its minimum hardware."""
-    if folder is None:
-        yield f"{lesson} has no lab in the table of contents, so nothing of it is measured."
-        return
     status = bundle_status(folder, lesson, "lab", book=book)
     hardware = find_lesson(lesson).spec.MINIMUM_HARDWARE
     if hardware != status.backend:

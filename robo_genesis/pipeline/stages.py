@@ -12,13 +12,14 @@ from typing import Any
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle, settle_below
 from robo_genesis.core.git import require_history
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline import npm, up_to_date
-from robo_genesis.pipeline.bundles.page_bundles import verify_results
-from robo_genesis.pipeline.bundles.status import refused_records
+from robo_genesis.pipeline.bundles.page_bundles import verify_result
+from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, refused_records
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
 from robo_genesis.pipeline.html.address import described, site_address, site_root
-from robo_genesis.pipeline.html.checks import Site, run_checks
+from robo_genesis.pipeline.html.checks import run_checks
 from robo_genesis.pipeline.html.publish import publish
 from robo_genesis.pipeline.html.render import LOG, render
 from robo_genesis.pipeline.pages.book import Page, find_pages
@@ -168,9 +169,13 @@ def execute(
     refusals: list[str] = []
 
     def accept(result: PageResult) -> None:
-        accepted, refused = verify_results(verify, [result], progress)
-        manifests.update(accepted)
-        refusals.extend(refused)
+        name = result.page.docname
+        try:
+            if result.bundle:
+                manifests[name] = verify_result(verify, result, progress)
+        except BundleRefused as error:
+            progress("verify", name, f"refused: {error}")
+            refusals.append(f"{name}: the bundle {result.bundle} is refused: {error}")
 
     environment = kernel_environment(build.root, build.cache, build.command)
     results = execute_pages(
@@ -194,11 +199,11 @@ def _require_evidence(
     build: Build, results: Sequence[PageResult], progress: Progress
 ) -> None:
     """Raise BuildError if a recorded bundle is refused, or if a release lacks one."""
-    measuring = [result for result in results if result.page.declares_bundle]
-    labs: dict[str, Path | None] = dict.fromkeys(
-        str(result.page.lesson) for result in measuring
-    )
-    labs |= {str(r.page.lesson): r.bundle for r in measuring if r.page.page == "lab"}
+    labs = {
+        str(result.page.lesson): result.bundle
+        for result in results
+        if result.page.page == RECORDED_PAGE
+    }
     if refused := refused_records(build.book):
         raise BuildError("\n".join(refused))
     if build.release:
@@ -213,15 +218,12 @@ def _check(html: Path, progress: Progress) -> None:
     Raises:
         BuildError: it has problems.
     """
-    checks = run_checks(Site(html, site_root()))
-    for check in checks:
-        found = f"{len(check.problems)} problems" if check.problems else "passed"
-        progress("check", f"{check.name} ({check.count})", found)
-    problems = [f"{check.name}: {line}" for check in checks for line in check.problems]
-    if problems:
-        raise BuildError(
-            "\n".join([f"The site has {len(problems)} problems.", *problems])
-        )
+    checks = run_checks(html, site_root())
+    for name, problems in checks.items():
+        progress("check", name, f"{len(problems)} problems")
+    lines = [f"{name}: {line}" for name, found in checks.items() for line in found]
+    if lines:
+        raise BuildError("\n".join([f"The site has {len(lines)} problems.", *lines]))
 
 
 def _summary(
@@ -230,20 +232,15 @@ def _summary(
     manifests: Mapping[str, Any],
     executed: int,
 ) -> list[str]:
-    """Return the facts that a build ends with, one line for each lab."""
-    lines = [*about]
-    for page in (result.page for result in results if result.page.page == "lab"):
-        facts = manifests[page.docname]
-        renderer = facts.render.renderer or "SKIP: no camera frames"
-        lines.append(
-            f"Lesson {page.lesson}: engine {facts.engine.version}, backend requested "
-            f"{facts.backend.requested}, actual {facts.backend.actual}, "
-            f"render {facts.render.mode} ({renderer})"
-        )
-    lines.append(f"Pages: {executed} executed, {len(results) - executed} reused.")
+    """Return the facts that a build ends with."""
+    renderers = {facts.render.renderer for facts in manifests.values()} - {None}
     measured = sum(len(manifest.checks) for manifest in manifests.values())
-    lines.append(f"Checks passed: {measured} on what was measured, all on the site.")
-    return lines
+    return [
+        *about,
+        f"Renderer: {', '.join(sorted(renderers)) or 'SKIP, no camera frames'}",
+        f"Pages: {executed} executed, {len(results) - executed} reused.",
+        f"Checks passed: {measured} on what was measured, all on the site.",
+    ]
 
 
 def build_lock(cache: Path) -> AbstractContextManager[None]:

@@ -1,6 +1,6 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from robo_genesis.core.files import derived_value
@@ -17,58 +17,37 @@ from robo_genesis.pipeline.pages.store import Verify
 from robo_genesis.pipeline.pages.values import prints
 
 
-def verify_results(
-    verify: Verify,
-    results: Iterable[PageResult],
-    progress: Progress,
-    stage: str = "verify",
-) -> tuple[dict[str, Any], list[str]]:
-    """Verify the bundles of pages, and compare what the pages show with them.
+def verify_result(verify: Verify, result: PageResult, progress: Progress) -> Any:
+    """Verify the bundle of a page, compare what the page shows with it; return its manifest.
 
     A refused page of the store loses its record, so that it is executed again. One that was
     executed now is verified once more by the next build, because the rule may be wrong.
 
     Args:
         verify: verifies one bundle.
-        results: of pages that did not fail.
-        progress: prints a line for each bundle.
-        stage: the stage that the lines name.
+        result: of a page that left a bundle.
+        progress: prints a line.
 
-    Returns:
-        The accepted manifests by page name, and a line for each refused bundle.
+    Raises:
+        BundleRefused: by `verify`; `backend` and `frames`, see `require_contract`; `shown`.
     """
-    contract = environment_contract()
-    manifests: dict[str, Any] = {}
-    refused: list[str] = []
-    for result in results:
-        if result.bundle is None:
-            continue
-        try:
-            manifest = verify(result.bundle)
-            require_contract(manifest, contract)
-            compared = outputs_compared(result, manifest)
-            manifests[result.page.docname] = manifest
-            progress(
-                stage, result.page.docname, f"accepted, {compared} outputs compared"
-            )
-        except BundleRefused as error:
-            progress(stage, result.page.docname, f"refused: {error}")
-            line = (
-                f"{result.page.docname}: the bundle {result.bundle} is refused: {error}"
-            )
-            if result.status == "reused":
-                (result.folder / RECORD).unlink()
-                line += " The next build executes the page again."
-            refused.append(line)
-    return manifests, refused
+    try:
+        manifest = verify(result.bundle)
+        require_contract(manifest, environment_contract())
+        compared = outputs_compared(result, manifest)
+    except BundleRefused:
+        if result.status == "reused":
+            (result.folder / RECORD).unlink()
+        raise
+    progress("verify", result.page.docname, f"accepted, {compared} outputs compared")
+    return manifest
 
 
 def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     """Compare the outputs of a page with its bundle, and return their number.
 
     A page is compared once: the result is kept for the record of its files with their
-        digests, for
-    the values that its cells name, and for the code that compares.
+        digests, for the values that its cells name, and for the code that compares.
 
     Raises:
         BundleRefused: `shown`.

@@ -2,11 +2,11 @@
 
 import os
 import re
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from html.parser import HTMLParser
 from pathlib import Path, PurePosixPath
-from urllib.parse import unquote, urldefrag, urlsplit
+from urllib.parse import unquote, urlsplit
 
 from robo_genesis.core.project import ROOT
 
@@ -16,6 +16,7 @@ from robo_genesis.core.project import ROOT
 POLICY_NAME = "Content-Security-Policy"
 POLICY = "default-src 'self' file: data: blob: 'unsafe-inline' 'unsafe-eval'"
 
+CHECKS = ("links", "anchors", "alt texts", "third parties", "leftovers")
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # Links of these kinds name a page for readers or crawlers; no browser loads it.
 NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "search"}
@@ -28,15 +29,6 @@ QUOTING = ("pre", "code", "script", "style")
 LEFTOVERS = re.compile(
     r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size "
 )
-
-
-@dataclass(frozen=True, slots=True)
-class SiteCheck:
-    """One check: how many things it examined, and a line for each problem."""
-
-    name: str
-    count: int
-    problems: tuple[str, ...]
 
 
 class PageReader(HTMLParser):
@@ -95,89 +87,8 @@ def urls(name: str, attributes: dict[str, str]) -> list[str]:
     return [value] if value else []
 
 
-class Site:
-    """The pages of a built site by path, as they were read.
-
-    `base` is the path that the folder will have on its server, with a slash at both
-    ends.
-    """
-
-    def __init__(self, html: Path, base: str = "/") -> None:
-        self.root, self.base = html.resolve(), base
-        self.pages = {
-            path: PageReader(path.read_text("utf8"))
-            for path in sorted(self.root.rglob("*.html"))
-        }
-
-    def name(self, path: Path) -> str:
-        """Return a file's name for messages."""
-        return path.relative_to(self.root).as_posix()
-
-
-def _broken_links(site: Site, path: Path, page: PageReader) -> Iterator[str]:
-    for address in page.addresses:
-        parts = urlsplit(address)
-        if not (parts.scheme or parts.netloc) and (why := _broken(site, path, address)):
-            yield f"{address!r} {why}"
-
-
-def _broken(site: Site, page: Path, address: str) -> str | None:
-    """Return why an address inside the site names no file, as a site on disk needs."""
-    address, fragment = urldefrag(address)
-    place = unquote(urlsplit(address).path)
-    if place.startswith("/") and not place.startswith(site.base):
-        return f"leads out of {site.base}, the path of the site."
-    folder = site.root if place.startswith("/") else page.parent
-    target = page
-    if place:
-        target = Path(os.path.normpath(folder / place.removeprefix(site.base)))
-    if not (target.is_relative_to(site.root) and target.is_file()):
-        return "leads to no file of the site."
-    known = site.pages.get(target)
-    if fragment in ("", "top") or known is None or unquote(fragment) in known.anchors:
-        return None
-    return f"names no element of {site.name(target)}."
-
-
-def _repeated_anchors(site: Site, path: Path, page: PageReader) -> Iterator[str]:
-    seen: set[str] = set()
-    for anchor in page.anchors:
-        if anchor in seen:
-            yield f"two elements have the id {anchor!r}."
-        seen.add(anchor)
-
-
-def _bad_alt_texts(site: Site, path: Path, page: PageReader) -> Iterator[str]:
-    for text, source in page.alt_texts:
-        stem = PurePosixPath(urlsplit(source).path).stem
-        if not text.strip() or FILE_NAME.match(text) or text == stem:
-            yield f"{source} has the alt text {text!r}."
-
-
-def _foreign(site: Site, path: Path, page: PageReader) -> Iterator[str]:
-    if POLICY not in page.policies:
-        yield f"has no {POLICY_NAME} {POLICY!r}."
-    yield from filter(ELSEWHERE.match, page.loaded)
-
-
-def _leftovers(site: Site, path: Path, page: PageReader) -> Iterator[str]:
-    for text in page.texts:
-        if LEFTOVERS.search(text):
-            yield repr(text.strip()[:80])
-
-
-# By its name, what a check examines on a page, and what finds the problems.
-CHECKS: dict[str, tuple[str, Callable[[Site, Path, PageReader], Iterator[str]]]] = {
-    "links": ("addresses", _broken_links),
-    "anchors": ("anchors", _repeated_anchors),
-    "alt texts": ("alt_texts", _bad_alt_texts),
-    "third parties": ("loaded", _foreign),
-    "leftovers": ("texts", _leftovers),
-}
-
-
-def run_checks(site: Site) -> list[SiteCheck]:
-    """Run all checks on a site.
+def run_checks(html: Path, base: str) -> dict[str, list[str]]:
+    """Run all checks on a site, and return a line for each problem by the name of the check.
 
     | check | requirement |
     |---|---|
@@ -187,21 +98,68 @@ def run_checks(site: Site) -> list[SiteCheck]:
     | third parties | nothing is loaded from another host; readers may follow links |
     | leftovers | no page shows unprocessed markup |
     | private paths | no published file names the builder's home or checkout |
+
+    Args:
+        html: the folder of the site.
+        base: the path that it will have on its server, with a slash at both ends.
     """
-    checks = [private_paths(site.root.parent)]
-    for name, (examined, find) in CHECKS.items():
-        problems = [
-            f"{site.name(path)}: {problem}"
-            for path, page in site.pages.items()
-            for problem in dict.fromkeys(find(site, path, page))
+    root = html.resolve()
+    pages = {path: PageReader(path.read_text("utf8")) for path in root.rglob("*.html")}
+    found: dict[str, list[str]] = {name: [] for name in CHECKS}
+    for path, page in sorted(pages.items()):
+        problems = [*page_problems(page)]
+        problems += [
+            ("links", f"{address!r} {why}")
+            for address in page.addresses
+            if (why := _broken(address, path, pages, root, base))
         ]
-        count = sum(len(getattr(page, examined)) for page in site.pages.values())
-        checks.append(SiteCheck(name, count, tuple(problems)))
-    return checks
+        for name, problem in dict.fromkeys(problems):
+            found[name].append(f"{path.relative_to(root)}: {problem}")
+    found["private paths"] = [*private_paths(root.parent)]
+    return found
 
 
-def private_paths(published: Path) -> SiteCheck:
-    """Check that no published file names the home folder or the checkout of the builder.
+def page_problems(page: PageReader) -> Iterator[tuple[str, str]]:
+    """Yield (check, problem) of each problem of a page but its links."""
+    for anchor, count in Counter(page.anchors).items():
+        if count > 1:
+            yield "anchors", f"two elements have the id {anchor!r}."
+    for text, source in page.alt_texts:
+        stem = PurePosixPath(urlsplit(source).path).stem
+        if not text.strip() or FILE_NAME.match(text) or text == stem:
+            yield "alt texts", f"{source} has the alt text {text!r}."
+    if POLICY not in page.policies:
+        yield "third parties", f"has no {POLICY_NAME} {POLICY!r}."
+    for address in filter(ELSEWHERE.match, page.loaded):
+        yield "third parties", address
+    for text in filter(LEFTOVERS.search, page.texts):
+        yield "leftovers", repr(text.strip()[:80])
+
+
+def _broken(
+    address: str, page: Path, pages: Mapping[Path, PageReader], root: Path, base: str
+) -> str | None:
+    """Return why an address inside the site names no file, as a site on disk needs."""
+    parts = urlsplit(address)
+    if parts.scheme or parts.netloc:
+        return None
+    place, fragment = unquote(parts.path), unquote(parts.fragment)
+    if place.startswith("/") and not place.startswith(base):
+        return f"leads out of {base}, the path of the site."
+    folder = root if place.startswith("/") else page.parent
+    target = page
+    if place:
+        target = Path(os.path.normpath(folder / place.removeprefix(base)))
+    if not (target.is_relative_to(root) and target.is_file()):
+        return "leads to no file of the site."
+    known = pages.get(target)
+    if fragment in ("", "top") or known is None or fragment in known.anchors:
+        return None
+    return f"names no element of {target.relative_to(root)}."
+
+
+def private_paths(published: Path) -> Iterator[str]:
+    """Yield each published file that names the home folder or the checkout of the builder.
 
     Args:
         published: the folder of the site and its bundles.
@@ -209,10 +167,6 @@ def private_paths(published: Path) -> SiteCheck:
     private = re.compile(
         rb"(?<![\w./-])(?:%s)/" % b"|".join(re.escape(os.fsencode(p)) for p in PRIVATE)
     )
-    files = [path for path in published.rglob("*") if path.is_file()]
-    problems = [
-        f"{path.relative_to(published).as_posix()}: names {match[0].decode()}"
-        for path in files
-        if (match := private.search(path.read_bytes()))
-    ]
-    return SiteCheck("private paths", len(files), tuple(problems))
+    for path in published.rglob("*"):
+        if path.is_file() and (match := private.search(path.read_bytes())):
+            yield f"{path.relative_to(published)}: names {match[0].decode()}"

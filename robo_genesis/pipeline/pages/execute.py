@@ -53,8 +53,6 @@ def execute_pages(
     Returns:
         One result for each page, in the order of `pages`.
 
-    Raises:
-        OSError: the store cannot be used.
     """
     report = report or Lines()
     results = _stored(pages, places, report)
@@ -66,11 +64,7 @@ def execute_pages(
             if page.docname in results:
                 continue
             place = places[page.docname]
-            place.parent.mkdir(parents=True, exist_ok=True)  # fails before any run
-            log, last = (
-                folder / f"{place.parent.name}.log",
-                last_record(place.parents[1], page),
-            )
+            log, last = folder / f"{place.parent.name}.log", last_record(place.parent)
             given = (page, place, Path(scratch), log, timeout, environment or {}, last)
             waiting.append(PageRun(*given))
         first = _first(waiting, environment or {})

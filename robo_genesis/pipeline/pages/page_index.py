@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterable, Sequence
-from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Self
 
@@ -78,23 +77,20 @@ def with_last_outputs(
 ) -> list[NotebookNode]:
     """Return code cells with the outputs of a run of other cells.
 
-    A cell gets the outputs of the cell with equal source. Changed cells get the outputs
-    of those in their places, if there are as many. Others get none.
+    A cell gets the outputs of the cell with equal source. If there are as many cells, a
+    changed one gets those of the cell in its place. Others get none.
 
     Args:
         cells: of the page now.
         ran: the cells of the run.
     """
-    found = [
-        NotebookNode(cell | {"outputs": [], "execution_count": None}) for cell in cells
-    ]
-    before, now = ([cell.source for cell in some] for some in (ran, cells))
-    for _, begin, end, at, to in SequenceMatcher(
-        None, before, now, False
-    ).get_opcodes():
-        if end - begin == to - at:
-            for cell, old in zip(found[at:to], ran[begin:end], strict=True):
-                cell.outputs, cell.execution_count = old.outputs, old.execution_count
+    by_source = {cell.source: cell for cell in ran}
+    none = NotebookNode(outputs=[], execution_count=None)
+    found = []
+    for number, cell in enumerate(cells):
+        there = ran[number] if len(ran) == len(cells) else none
+        old = by_source.get(cell.source, there)
+        found.append(NotebookNode(cell | {name: old[name] for name in none}))
     return found
 
 

@@ -47,13 +47,9 @@ def start(run: "PageRun") -> str:
 
 
 def state(run: "PageRun") -> str:
-    """Return cell, elapsed time and estimated remaining time of a run."""
+    """Return cell and elapsed time of a run."""
     cells = len(run.page.code.sources)
     cell = f"cell {run.cell} of {cells}" if run.cell else "kernel starts"
     cell += " waits" if run.waits else ""
     elapsed = time.monotonic() - run.begin
-    left = run.last.seconds - elapsed if run.last else 0.0
-    rest = (
-        f", ~{left:.0f} s left" if left > 0 else ", longer than last time" * (left < 0)
-    )
-    return f"{cell}, {elapsed:.0f} s{rest}"
+    return f"{cell}, {elapsed:.0f} s"

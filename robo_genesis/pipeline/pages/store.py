@@ -63,16 +63,16 @@ def stored_result(page: Page, place: Path) -> PageResult | None:
     return PageResult(page, "reused", place)
 
 
-def folders(store: Path, page: Page) -> list[Path]:
-    """Return the folders that the store has of a page, the newest first."""
-    every = _folder(store, page).glob("[!.]*/")
+def folders(executions: Path) -> list[Path]:
+    """Return the folders of a page's executions, the newest first."""
+    every = executions.glob("[!.]*/")
     return sorted(every, key=lambda path: path.stat().st_mtime, reverse=True)
 
 
-def last_record(store: Path, page: Page) -> Record | None:
+def last_record(executions: Path) -> Record | None:
     """Return the record of the last stored execution of a page, None if there was none."""
     with suppress(PageRefused, IndexError):
-        return read_record(folders(store, page)[0])
+        return read_record(folders(executions)[0])
     return None
 
 
@@ -89,7 +89,7 @@ def forget(store: Path, pages: Iterable[Page], into: Mapping[str, Path]) -> None
     for page in pages:
         place = into[page.docname]
         place.touch()
-        others = [path for path in folders(store, page) if path != place]
+        others = [path for path in folders(place.parent) if path != place]
         kept |= {place.parent, place, *others[: KEPT - 1]}
     for path in [*store.glob("*/"), *store.glob("*/*/")]:
         if path not in kept and path.exists():
