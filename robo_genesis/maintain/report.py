@@ -23,7 +23,7 @@ from robo_genesis.pipeline.pages.page_folder import (
     find_bundle,
     read_record,
 )
-from robo_genesis.pipeline.pages.store import folders
+from robo_genesis.pipeline.pages.store import executions, folders
 
 Pair = tuple[str, str]
 
@@ -106,7 +106,7 @@ def read_build(
     for page in find_pages(book):
         if page.docname in failed:
             continue
-        for folder in folders(root / ".cache" / STORE, page):
+        for folder in folders(executions(root / ".cache" / STORE, page)):
             with suppress(PageRefused):  # it is not of a build of today
                 record = read_record(folder)
                 bundle = find_bundle(folder / OUTPUTS)

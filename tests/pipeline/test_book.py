@@ -75,7 +75,7 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
         "Solutions: shown. SOLUTIONS=0 leaves them out.",
         "Address: none. SITE_URL=https://example.org/course/ gives one.",
         f"Engine: genesis-world {built.last[3].split()[-1]}",
-        "Lesson l04: engine 1.2.3, backend requested cpu, actual cpu, render camera (llvmpipe)",
+        "Renderer: llvmpipe",
         "Pages: 2 executed, 0 reused.",
         "Checks passed: 2 on what was measured, all on the site.",
     ]

@@ -39,12 +39,13 @@ def places(
     """
     store, tree = store.absolute(), Tree(root)
     return {
-        page.docname: _folder(store, page) / page_fingerprint(page, tree, environment)
+        page.docname: executions(store, page)
+        / page_fingerprint(page, tree, environment)
         for page in pages
     }
 
 
-def _folder(store: Path, page: Page) -> Path:
+def executions(store: Path, page: Page) -> Path:
     """Return the folder of all executions of a page."""
     return store / page.docname.replace("/", "--")
 
@@ -63,16 +64,16 @@ def stored_result(page: Page, place: Path) -> PageResult | None:
     return PageResult(page, "reused", place)
 
 
-def folders(executions: Path) -> list[Path]:
+def folders(place: Path) -> list[Path]:
     """Return the folders of a page's executions, the newest first."""
-    every = executions.glob("[!.]*/")
+    every = place.glob("[!.]*/")
     return sorted(every, key=lambda path: path.stat().st_mtime, reverse=True)
 
 
-def last_record(executions: Path) -> Record | None:
+def last_record(place: Path) -> Record | None:
     """Return the record of the last stored execution of a page, None if there was none."""
     with suppress(PageRefused, IndexError):
-        return read_record(folders(executions)[0])
+        return read_record(folders(place)[0])
     return None
 
 

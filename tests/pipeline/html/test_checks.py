@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from robo_genesis.core.project import ROOT
-from robo_genesis.pipeline.html.checks import POLICY, Site, run_checks
+from robo_genesis.pipeline.html.checks import POLICY, run_checks
 
 HEAD = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
 PAGE = "<!DOCTYPE html><html><head>{head}</head><body id='top-of-page'>{body}</body>"
@@ -32,23 +32,12 @@ def make_site(folder: Path, body: str = GOOD, head: str = HEAD) -> Path:
     return html
 
 
-def problems(html: Path, base: str = "/") -> dict[str, tuple[str, ...]]:
-    checks = run_checks(Site(html, base))
-    return {check.name: check.problems for check in checks if check.problems}
+def problems(html: Path, base: str = "/") -> dict[str, list[str]]:
+    return {check: lines for check, lines in run_checks(html, base).items() if lines}
 
 
-def test_a_good_site_passes_and_everything_was_looked_at(tmp_path):
-    checks = {check.name: check for check in run_checks(Site(make_site(tmp_path)))}
-    assert not any(check.problems for check in checks.values())
-    counts = {name: check.count for name, check in checks.items()}
-    assert counts.pop("leftovers") > 3
-    assert counts == {
-        "links": 8,
-        "anchors": 5,
-        "alt texts": 1,
-        "third parties": 1,
-        "private paths": 4,
-    }
+def test_a_good_site_passes(tmp_path):
+    assert problems(make_site(tmp_path)) == {}
 
 
 @pytest.mark.parametrize(
@@ -97,5 +86,5 @@ def test_addresses_from_the_root_begin_with_the_path_of_the_site(
     tmp_path, href, reason
 ):
     html = make_site(tmp_path, body=f'<a href="{href}">a page</a>')
-    expected = {"links": (f"index.html: {href!r} {reason}",)} if reason else {}
+    expected = {"links": [f"index.html: {href!r} {reason}"]} if reason else {}
     assert problems(html, "/course/") == expected

@@ -298,56 +298,39 @@ def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
         assert said[:6] == order
 
 
-def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
-    make_book(tmp_path, page=notebook(cell("1")))
-    (tmp_path / "store").mkdir()
-    (tmp_path / "store" / "page").symlink_to("no folder/page")
-    said = []
-    with pytest.raises(OSError, match=str(tmp_path / "store" / "page")):
-        execute(tmp_path, report=Lines(lambda *words: said.append(words)))
-    assert said == []
-
-
-def test_new_pages_with_many_cells_start_first_then_the_longest(tmp_path):
+def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest(
+    tmp_path,
+):
     cells = {"b": 1, "c": 1, "d": 9, "e": 2}
     books = {name: notebook(*[cell("1")] * n) for name, n in cells.items()}
     make_book(tmp_path, **books, f=notebook(*[cell("1", ":tags: [alone]\n")] * 9))
     last = {"c": SimpleNamespace(seconds=30.0), "d": SimpleNamespace(seconds=2.0)}
     runs = [
-        PageRun(page, tmp_path, tmp_path, tmp_path, 1, {}, last.get(page.docname))
+        PageRun(page, tmp_path, tmp_path, tmp_path / n, 1, {}, last.get(n))
         for page in find_pages(tmp_path / "book")
+        for n in [page.docname]
     ]
     order = [run.page.docname for run in in_order(runs)]
     assert order == ["e", "b", "c", "d", "f"]
+    runs[2].log.touch()  # newer than any stored run: it failed
+    order = [run.page.docname for run in in_order(runs)]
+    assert order == ["d", "e", "b", "c", "f"]
 
 
-@pytest.mark.parametrize(
-    ("cell", "seconds", "last", "said"),
-    [
-        (0, 2, 20.5, "kernel starts, 2 s, ~18 s left"),
-        (1, 90, 20.5, "cell 1 of 3, 90 s, longer than last time"),
-        (2, 12, None, "cell 2 of 3, 12 s"),
-    ],
-)
-def test_the_rest_of_a_page_is_estimated_from_its_last_run(
-    monkeypatch, cell, seconds, last, said
-):
-    monkeypatch.setattr(progress.time, "monotonic", lambda: 100.0 + seconds)
-    code = SimpleNamespace(sources=["", "", ""])
-    run = SimpleNamespace(
-        page=SimpleNamespace(docname="lab", code=code),
-        cell=cell,
-        waits=False,
-        begin=100.0,
-        last=last and SimpleNamespace(seconds=last),
-    )
-    assert progress.state(run) == said
+def test_how_far_the_running_pages_are_is_said_now_and_then(monkeypatch):
+    monkeypatch.setattr(progress.time, "monotonic", lambda: 190.0)
+    page = SimpleNamespace(docname="lab", code=SimpleNamespace(sources=[""] * 3))
+    runs = [
+        SimpleNamespace(page=page, cell=cell, waits=cell == 1, begin=100.0)
+        for cell in (0, 1)
+    ]
     lines: list[str] = []
-    report = Lines(lambda what, event: lines.append(what), every=0.0)
-    report.show([run])
-    report.show([])
-    Lines(lambda what, event: lines.append(what), every=1e6).show([run])
-    assert lines == [f"1 running: lab: {said}"]
+    for every in (0.0, 1e6):
+        report = Lines(lambda what, event: lines.append(what), every)
+        report.show(runs)
+        report.show([])
+    both = "lab: kernel starts, 90 s; lab: cell 1 of 3 waits, 90 s"
+    assert lines == [f"2 running: {both}"]
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):
