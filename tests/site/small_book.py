@@ -64,7 +64,8 @@ def as_executed(page: Page, place: Path, seconds: list[float]) -> PageResult:
 
 def executed(pages: list[Page], folder: Path) -> list[PageResult]:
     """Execute pages, and return their results."""
-    results = execute_pages(pages, places(pages, folder / "store"))
+    into = places(pages, folder / "store")
+    results = execute_pages(pages, into, logs=folder / "logs")
     assert {result.status for result in results} == {"executed"}
     return results
 

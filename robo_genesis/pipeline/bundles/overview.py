@@ -2,8 +2,7 @@
 
 One line for each bundle that is recorded in the book and for each of the last build:
 lesson, backend, state, reason. For one folder, also what a refusal means for somebody
-who recorded it at home, and how its numbers differ from the last build's run on the CPU
-of the same page.
+who recorded it at home.
 """
 
 from collections.abc import Iterator
@@ -12,12 +11,9 @@ from pathlib import Path
 
 from robo_genesis.core.project import BOOK, PUBLISHED
 from robo_genesis.core.text import printable
-from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import read_manifest
-from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.status import (
-    RECORDED_PAGE,
     Status,
     bundle_status,
     recorded_folders,
@@ -87,11 +83,6 @@ def all_bundles(book: Path) -> Iterator[tuple[str, Status]]:
         yield f"{lesson} built", bundle_status(folder, lesson, "lab")
 
 
-def built(book: Path, lesson: str) -> Path:
-    """Return the folder of the last build's bundle of a lab, which may be missing."""
-    return book / PUBLISHED / "evidence" / lesson / "cpu"
-
-
 def one_bundle(folder: Path, book: Path) -> tuple[Status, list[str]]:
     """Return the status of one bundle, and lines for the person who recorded it."""
     status, lines, run = bundle_status(folder, book=book), [], None
@@ -102,20 +93,7 @@ def one_bundle(folder: Path, book: Path) -> tuple[Status, list[str]]:
         if run and status.code == "stale" and run.source.page is None:
             text = RUN_BY_HAND.format(lesson=run.lesson)
         lines = [f"What this means: {text}"]
-    if run and run.page == RECORDED_PAGE:
-        reference = built(book, run.lesson)
-        if reference.is_dir() and folder.resolve() != reference.resolve():
-            lines += compared(reference, folder)
     return status, lines
-
-
-def compared(reference: Path, folder: Path) -> list[str]:
-    """Return lines that compare a bundle of a lab with this build's run on the CPU."""
-    try:
-        text = report.summary(compare(reference, folder)).splitlines()
-    except BundleRefused as refusal:
-        return [f"It cannot be compared with this build's run on the CPU: {refusal}"]
-    return ["Compared with this build's run on the CPU (build → yours):", *text]
 
 
 def line(place: str, status: Status) -> str:

@@ -13,7 +13,6 @@ from robo_genesis.pipeline.pages import progress
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.page_folder import RECORD, PageRefused
 from robo_genesis.pipeline.pages.page_run import PageRun
-from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import Failure, PageResult
 from robo_genesis.pipeline.pages.store import last_record, stored_result
 
@@ -25,8 +24,8 @@ def execute_pages(
     jobs: int = 1,
     timeout: int = TIMEOUT,
     environment: Mapping[str, str] | None = None,
-    logs: Path | None = None,
-    report: Lines | None = None,
+    logs: Path,
+    say: progress.Say = lambda what, event: None,
     accept: Callable[[PageResult], object] = lambda result: None,
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
@@ -44,9 +43,8 @@ def execute_pages(
         timeout: seconds for one cell; a page's front matter may set another.
         environment: variables for the kernels.
         logs: the folder that keeps, for each page, a file with all that its last run
-            wrote. By default it is not kept.
-        report: gets each event, and shows how far the running pages are; by default
-            nothing is shown.
+            wrote.
+        say: prints each event, and now and then how far the running pages are.
         accept: called once for each page that did not fail, after the next page
             started.
 
@@ -54,21 +52,19 @@ def execute_pages(
         One result for each page, in the order of `pages`.
 
     """
-    report = report or Lines()
-    results = _stored(pages, places, report)
+    results = _stored(pages, places, say)
+    logs.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="robo-") as scratch:
-        folder = logs or Path(scratch)
-        folder.mkdir(parents=True, exist_ok=True)
         waiting = []
         for page in pages:
             if page.docname in results:
                 continue
             place = places[page.docname]
-            log, last = folder / f"{place.parent.name}.log", last_record(place.parent)
+            log, last = logs / f"{place.parent.name}.log", last_record(place.parent)
             given = (page, place, Path(scratch), log, timeout, environment or {}, last)
             waiting.append(PageRun(*given))
         first = _first(waiting, environment or {})
-        schedule = Schedule(in_order(waiting, first), first, jobs, report)
+        schedule = Schedule(in_order(waiting, first), first, jobs, say)
         finished = [*results.values()]
         try:
             while schedule.waiting or schedule.running or finished:
@@ -91,7 +87,7 @@ class Schedule:
         waiting: list[PageRun],
         first: list[PageRun],
         jobs: int,
-        report: Lines,
+        say: progress.Say,
     ) -> None:
         """Start nothing yet.
 
@@ -99,10 +95,10 @@ class Schedule:
             waiting: in the order in which they start.
             first: those that start before the first of them has ended.
             jobs: how many run at once.
-            report: gets each event.
+            say: prints each event.
         """
         self.waiting, self.first, self.jobs = waiting, first, jobs
-        self.report = report
+        self.say = say
         self.running: dict[PageRun, Thread] = {}
         # A run that ended with its result, or with None where it waits for its turn.
         self.events: SimpleQueue[tuple[PageRun, PageResult | None]] = SimpleQueue()
@@ -116,7 +112,7 @@ class Schedule:
             and not any(run.alone for run in self.running)
         ):
             run = self.waiting.pop(0)
-            self.report.say(run.page.docname, progress.start(run))
+            self.say(run.page.docname, progress.start(run))
             self.running[run] = Thread(target=self._work, args=(run,), daemon=True)
             self.running[run].start()
 
@@ -127,16 +123,17 @@ class Schedule:
             run.waits = False
             run.turn.set()
         try:
-            run, result = self.events.get(timeout=self.report.pause())
+            run, result = self.events.get(timeout=progress.EVERY)
         except Empty:
-            self.report.show(self.running)
+            states = [f"{n.page.docname}: {progress.state(n)}" for n in self.running]
+            self.say(f"{len(states)} running: {'; '.join(states)}", "")
             return []
         if result is None:
             return []
         del self.running[run]
         if run in self.first[:1]:
             self.first = []
-        self.report.say(run.page.docname, result.ended)
+        self.say(run.page.docname, result.ended)
         return [result]
 
     def stop(self) -> None:
@@ -210,7 +207,7 @@ def _first(waiting: Sequence[PageRun], environment: Mapping[str, str]) -> list[P
 
 
 def _stored(
-    pages: Sequence[Page], places: Mapping[str, Path], report: Lines
+    pages: Sequence[Page], places: Mapping[str, Path], say: progress.Say
 ) -> dict[str, PageResult]:
     """Return the results of the pages that need no run, by name, and report them."""
     results = {}
@@ -219,11 +216,9 @@ def _stored(
             result = stored_result(page, places[page.docname])
         except PageRefused as refused:
             reason = str(refused).splitlines()[0]
-            report.say(
-                page.docname, f"its stored run is not used; executed again ({reason})"
-            )
+            say(page.docname, f"its stored run is not used; executed again ({reason})")
             continue
         if result is not None:
             results[page.docname] = result
-            report.say(page.docname, result.status)
+            say(page.docname, result.status)
     return results

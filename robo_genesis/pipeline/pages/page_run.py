@@ -8,7 +8,7 @@ import time
 import uuid
 from collections.abc import Callable, Mapping
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -67,9 +67,6 @@ class PageRun:
             self.log.open("wb", buffering=0) as log,
         ):
             seconds, failure = self._execute(Path(folder), log, on_cell)
-        if failure:
-            text = self.log.read_text("utf8", errors="replace")
-            failure = replace(failure, log=results.last_lines(text))
         status: results.Status = "failed" if failure else "executed"
         return PageResult(self.page, status, self.place, seconds, failure, self.log)
 

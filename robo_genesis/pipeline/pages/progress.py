@@ -1,43 +1,15 @@
 """Lines on the pages that run: each start and end, and now and then how far they are."""
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from robo_genesis.pipeline.pages.page_run import PageRun
 
-
-class Lines:
-    """Reports pages as lines."""
-
-    def __init__(
-        self,
-        say: Callable[[str, str], None] = lambda what, event: None,
-        every: float = 30.0,
-    ) -> None:
-        """Report to `say`, which takes a page's name and an event, or the running pages and "".
-
-        Args:
-            say: prints one line.
-            every: seconds without a line after which the running pages are reported.
-        """
-        self._say, self.every, self.last = say, every, time.monotonic()
-
-    def say(self, what: str, event: str) -> None:
-        """Print one line."""
-        self._say(what, event)
-        self.last = time.monotonic()
-
-    def pause(self) -> float:
-        """Return the seconds after which `show` is due."""
-        return max(0.0, self.last + self.every - time.monotonic())
-
-    def show(self, runs: "Iterable[PageRun]") -> None:
-        """Report the running pages, if it is time."""
-        states = [f"{run.page.docname}: {state(run)}" for run in runs]
-        if states and self.pause() == 0:
-            self.say(f"{len(states)} running: {'; '.join(states)}", "")
+# Prints the name of a page and an event, or the running pages and "".
+Say = Callable[[str, str], None]
+EVERY = 30.0  # Seconds without an event after which the running pages are reported
 
 
 def start(run: "PageRun") -> str:

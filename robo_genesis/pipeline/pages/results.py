@@ -52,7 +52,7 @@ class Failure:
     `cell` counts the code cells from 1; `line` is the number of the failing line in the
     page's source, and `source` that line: the one that raised, or called what raised,
     or the cell's first if no line is known. Number and cell are None when the failure
-    belongs to no cell. `log` holds the last lines that were written.
+    belongs to no cell.
     """
 
     error: str
@@ -60,7 +60,6 @@ class Failure:
     cell: int | None = None
     line: int | None = None
     source: str = ""
-    log: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.error}: {self.message}"
@@ -235,11 +234,6 @@ def _failing_line(ran: NotebookNode) -> int:
     return int(found[-1]) + empty if found else 1
 
 
-def last_lines(text: str) -> tuple[str, ...]:
-    """Return the last lines of a text, colours removed."""
-    return tuple(ANSI.sub("", text).splitlines()[-LOG_LINES:])
-
-
 def failure_report(results: Sequence[PageResult]) -> str:
     """Return one text that names page, cell, exception and last log lines of every failed page.
 
@@ -255,10 +249,7 @@ def failure_report(results: Sequence[PageResult]) -> str:
                 f", code cell {failure.cell}, line {failure.line}: {failure.source}"
             )
         lines += ["", place, *(f"    {line}" for line in str(failure).splitlines())]
-        if failure.log:
-            whole = f" of {log}" if log else ""
-            lines += [
-                f"    last lines{whole}:",
-                *(f"    | {line}" for line in failure.log),
-            ]
+        written = log.read_text("utf8", errors="replace") if log else ""
+        if last := ANSI.sub("", written).splitlines()[-LOG_LINES:]:
+            lines += [f"    last lines of {log}:", *(f"    | {line}" for line in last)]
     return "\n".join(lines)

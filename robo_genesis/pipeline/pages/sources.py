@@ -9,7 +9,7 @@ import os
 import platform
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache, cached_property
+from functools import cache
 from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,8 +22,6 @@ from robo_genesis.pipeline.pages.syntax import PACKAGE, ModuleCode, read_module
 
 if TYPE_CHECKING:  # a verification loads no Jupyter
     from robo_genesis.pipeline.pages.book import Page
-
-USED_BY_NO_PAGE = ("maintain", "site")
 
 COMPUTING = ("core", "sim", "lessons")  # The sub-packages with modules that measure
 
@@ -87,28 +85,23 @@ class Tree:
         inside = name.removeprefix(f"{PACKAGE}.").split(".")[0] in COMPUTING
         return inside and path.name != "__init__.py" and self.code(path).measures
 
-    @cached_property
-    def data(self) -> list[Path]:
-        """The files that are not modules, except in what no page can import."""
-        files = files_below(self.root / PACKAGE, USED_BY_NO_PAGE, NO_SOURCE)
-        return [path for path in files if path.suffix != ".py"]
+    def data_for(self, modules: Iterable[str]) -> dict[str, str]:
+        """Return digests, by names below the package, of all files that are not modules.
 
-    def data_for(self, used: Iterable[Path]) -> dict[str, str]:
-        """Return digests by names below the package: of a lesson only if a file of it is used.
-
-        Others are not read, because a page that runs must read nothing of another
-        lesson.
+        They are those of `core`, `sim`, and each lesson of which there is a module. Others
+        are not read, because a page that runs must read nothing of another lesson.
 
         Args:
-            used: the files of modules, or any others.
+            modules: dotted names.
         """
-        lessons = self.root / PACKAGE / "lessons"
-        others = {init.parent for init in lessons.glob("*/__init__.py")}
-        others.difference_update(*(path.parents for path in used))
+        package = self.root / PACKAGE
+        names = (name.split(".") for name in modules)
+        lessons = {name[2] for name in names if name[1:2] == ["lessons"] and name[2:]}
         return {
-            path.relative_to(lessons.parent).as_posix(): self.digest(path)
-            for path in self.data
-            if others.isdisjoint(path.parents)
+            path.relative_to(package).as_posix(): self.digest(path)
+            for folder in ("core", "sim", *(f"lessons/{each}" for each in lessons))
+            for path in files_below(package / folder, left_out=NO_SOURCE)
+            if path.suffix != ".py"
         }
 
 
@@ -139,17 +132,10 @@ def measuring_modules(
     """
     tree = Tree(root)
     modules = tree.closure([*lesson_modules(lesson, root), *imports], tree.measures)
-    data = tree.data_for(
-        [*modules.values(), root / PACKAGE / "lessons" / lesson / "__init__.py"]
-    )
     return {
         name.removeprefix(f"{PACKAGE}."): tree.code(path).digest
         for name, path in sorted(modules.items())
-    } | {
-        name: digest
-        for name, digest in data.items()
-        if name.partition("/")[0] in COMPUTING
-    }
+    } | tree.data_for([*modules, f"{PACKAGE}.lessons.{lesson}"])
 
 
 def running_modules(lesson: str) -> dict[str, str]:
@@ -189,7 +175,7 @@ def page_fingerprint(
         "environment": project.environment_contract(environment),
         "cells": page.code.digests,
         "modules": {name: [each.digest, each.claims] for name, each in code.items()},
-        "data": tree.data_for(modules.values()),
+        "data": tree.data_for(modules),
         "alone": page.alone,
     }
     return json_digest(parts)[:20]

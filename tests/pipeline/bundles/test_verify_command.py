@@ -5,11 +5,8 @@ import shutil
 import pytest
 from spoilers import (
     SPOILED,
-    both,
     filed_as,
-    metric,
     older_compiler,
-    older_engine,
     on,
 )
 
@@ -113,17 +110,6 @@ def test_a_student_learns_what_a_refusal_means_and_nothing_about_damage(
     meant = [line for line in lines if line.startswith("What this means: ")]
     assert status == 1
     assert meant == [f"What this means: {text}"] * bool(text)
-
-
-def test_one_folder_is_compared_with_the_build(check, folder, built):
-    both(metric(value=0.5), older_engine)(folder)
-    status, lines = check(folder)
-    at = lines.index("Compared with this build's run on the CPU (build → yours):")
-    assert status == 1
-    assert lines[at + 1].startswith("L04 lab: engine")
-    assert any(line.startswith("    G2.overshoot: ") for line in lines[at:])
-    status, lines = check(built)
-    assert (status, len(lines)) == (0, 1)
 
 
 def test_a_broken_book_is_named(recorded):

@@ -17,7 +17,6 @@ from robo_genesis.pipeline.pages.execute import execute_pages, in_order
 from robo_genesis.pipeline.pages.kernels import CleanKernelManager, clean_environment
 from robo_genesis.pipeline.pages.page_folder import PageRefused
 from robo_genesis.pipeline.pages.page_run import PageRun
-from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import places, stored_result
 
@@ -61,6 +60,7 @@ BROKEN = {
 def execute(folder: Path, **settings):
     """Execute the book of a folder with its own store; return results by page."""
     pages = find_pages(folder / "book")
+    settings = {"logs": folder / "logs", **settings}
     results = execute_pages(pages, places(pages, folder / "store"), **settings)
     return {result.page.docname: result for result in results}
 
@@ -130,7 +130,7 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
 def test_each_kind_of_failure_is_named(broken, name, error, said, cell):
     result = broken[1][name]
     assert (result.failure.error, result.failure.cell) == (error, cell)
-    assert said in "\n".join([result.failure.message, *result.failure.log])
+    assert said in result.failure.message + result.log.read_text()
     assert result.seconds < 20
 
 
@@ -149,7 +149,7 @@ def test_a_page_is_reused_unless_it_is_to_be_executed_again(lab):
     assert first.bundle == first.folder / "outputs/cpu"
     said = []
     (first.folder / "outputs/cpu/manifest.json").write_text("damaged")
-    again = execute(lab, report=Lines(lambda *words: said.append(words)))["lab"]
+    again = execute(lab, say=lambda *words: said.append(words))["lab"]
     assert (again.status, again.folder) == ("executed", first.folder)
     assert "outputs/cpu/manifest.json changed since" in said[0][1]
     assert re.match(r"started: 2 cells, about \d+ s; its log: .*lab\.log$", said[1][1])
@@ -243,11 +243,6 @@ def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
     assert {result.status for result in results.values()} == {"executed"}, results
 
 
-def noting(said: list) -> Lines:
-    """Note each start and end of a page; an event is cut to its first word."""
-    return Lines(lambda name, event: event and said.append((name, event[:7])))
-
-
 ENDS_AFTER_C = (
     "\nimport time\nwhile not [*pathlib.Path({store!r}).glob('*/executed.ipynb')]:"
 )
@@ -276,7 +271,11 @@ def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
     (kernels / "manager").mkdir()  # the compiler makes it before it has a kernel
     (kernels / "manager" / ("T1.qdc" if saved else "asked.txt")).touch()
     said = []
-    results = execute(tmp_path, jobs=2, environment=environment, report=noting(said))
+
+    def say(name, event):  # an event is cut to its first word
+        said.append((name, event[:7]))
+
+    results = execute(tmp_path, jobs=2, environment=environment, say=say)
     assert {result.status for result in results.values()} == {"executed"}
     if saved:
         assert [name for name, event in said if event == "started"] == [
@@ -317,20 +316,13 @@ def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest
     assert order == ["d", "e", "b", "c", "f"]
 
 
-def test_how_far_the_running_pages_are_is_said_now_and_then(monkeypatch):
-    monkeypatch.setattr(progress.time, "monotonic", lambda: 190.0)
-    page = SimpleNamespace(docname="lab", code=SimpleNamespace(sources=[""] * 3))
-    runs = [
-        SimpleNamespace(page=page, cell=cell, waits=cell == 1, begin=100.0)
-        for cell in (0, 1)
-    ]
-    lines: list[str] = []
-    for every in (0.0, 1e6):
-        report = Lines(lambda what, event: lines.append(what), every)
-        report.show(runs)
-        report.show([])
-    both = "lab: kernel starts, 90 s; lab: cell 1 of 3 waits, 90 s"
-    assert lines == [f"2 running: {both}"]
+def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatch):
+    monkeypatch.setattr(progress, "EVERY", 0.5)
+    make_book(tmp_path, page=notebook(cell("1"), cell("import time\ntime.sleep(2)")))
+    said = []
+    execute(tmp_path, say=lambda *words: said.append(" ".join(words)))
+    pattern = re.compile(r"1 running: page: cell 2 of 2, \d s ")
+    assert any(map(pattern.fullmatch, said)), said
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):

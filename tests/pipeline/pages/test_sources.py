@@ -81,7 +81,7 @@ def test_a_cell_that_cannot_run_or_needs_no_module_imports_nothing(source):
         ("robo_genesis/lazy.py", "X = 1", True),
         ("robo_genesis/lazy.py", "# a comment", False),
         ("robo_genesis/lazy.py", "X = (", True),  # no longer Python: its text counts
-        ("robo_genesis/evidence/data.json", "1", True),
+        ("robo_genesis/core/data.json", "1", True),
         ("robo_genesis/lessons/l04/arm.xml", "1", True),
         ("robo_genesis/lessons/l04/data/arm", "1", True),
         ("robo_genesis/lessons/l04/deep/spec.py", "X = 1", True),
