@@ -49,18 +49,6 @@ facts = dict(
 (folder / "log.txt").write_text("new")"""
 
 LAB_FRONT = "robo_genesis: {lesson: l04, page: lab}\n"
-SETTINGS = (
-    "RENDER",
-    "RELEASE",
-    "JOBS",
-    "SITE_URL",
-    "EXECUTED",
-    "SECOND",
-    "PAGE",
-    "TO",
-    "LESSON",
-    "BACKEND",
-)
 
 
 def cell(code: str, options: str = "") -> str:
@@ -156,32 +144,26 @@ def old_bundle(folder: Path, backend: str) -> Path:
 
 
 def start(
-    script: str, folder: Path, *more: str, own_group: bool = False, **settings: str
+    command: str, folder: Path, *more: str, own_group: bool = False
 ) -> subprocess.Popen[str]:
-    """Start a command on a folder's tiny book, with more arguments and these settings alone.
+    """Start a command on a folder's tiny book, with more arguments.
 
     In a process group of its own, it can be sent what a terminal sends on Ctrl-C.
     """
-    arguments = [
-        "--book",
-        str(folder / "book"),
-        "--cache",
-        str(folder / "cache"),
-        *more,
-    ]
-    options = [n for n in settings if not n.startswith("ROBO_")]
-    arguments += [f"--{n.lower().replace('_', '-')}={settings.pop(n)}" for n in options]
-    kept = {name: value for name, value in os.environ.items() if name not in SETTINGS}
-    command = [sys.executable, "-m", "robo_genesis", script.removesuffix(".py")]
-    command += arguments
-    how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    how["env"] = kept | {"PYTHONPATH": str(ROOT)} | settings
-    return subprocess.Popen(command, process_group=0 if own_group else None, **how)
+    places = ["--book", str(folder / "book"), "--cache", str(folder / "cache")]
+    return subprocess.Popen(
+        [sys.executable, "-m", "robo_genesis", command, *places, *more],
+        process_group=0 if own_group else None,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )
 
 
-def fails(script: str, folder: Path, *more: str, **settings: str) -> str:
+def fails(command: str, folder: Path, *more: str) -> str:
     """Run a command on a folder's tiny book that ends with status 1; return its report."""
-    process = start(script, folder, *more, **settings)
+    process = start(command, folder, *more)
     _, report = process.communicate(timeout=120)
     assert process.returncode == 1, report
     assert "Traceback" not in report

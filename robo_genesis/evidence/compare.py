@@ -192,9 +192,6 @@ def _notes(old: Manifest, new: Manifest) -> Iterator[str]:
     changed += ["the page's cells"] if old.source.page != new.source.page else []
     if changed:
         yield f"The course's code differs and may be the cause: {', '.join(changed)}."
-    devices = [(run.backend.device_name, run.host.cpu) for run in (old, new)]
-    if devices[0] != devices[1]:
-        yield "The devices differ."
     for word, one, other in (("gained", new, old), ("lost", old, new)):
         for warning in dict.fromkeys(one.warnings):
             if warning not in other.warnings:

@@ -83,7 +83,6 @@ UPGRADED = part("engine", version="9.9.9")
         ),
         (facts(warnings=["New one."]), "repeat", "Engine warning gained: New one."),
         (facts(warnings=[]), "repeat", "Engine warning lost: Approximating tendon."),
-        (part("host", cpu="another CPU"), "repeat", "The devices differ."),
     ],
 )
 def test_axis_and_notes_name_what_differs(compared, spoiler, axis, note):

@@ -9,12 +9,15 @@ from threading import Thread
 
 from robo_genesis.core import project
 from robo_genesis.pipeline.command import TIMEOUT
-from robo_genesis.pipeline.pages import progress
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.page_folder import RECORD, PageRefused
 from robo_genesis.pipeline.pages.page_run import PageRun
 from robo_genesis.pipeline.pages.results import Failure, PageResult
 from robo_genesis.pipeline.pages.store import last_record, stored_result
+
+# Prints the name of a page and an event, or the running pages and "".
+Say = Callable[[str, str], None]
+EVERY = 30.0  # Seconds without an event after which the running pages are reported
 
 
 def execute_pages(
@@ -25,7 +28,7 @@ def execute_pages(
     timeout: int = TIMEOUT,
     environment: Mapping[str, str] | None = None,
     logs: Path,
-    say: progress.Say = lambda what, event: None,
+    say: Say = lambda what, event: None,
     accept: Callable[[PageResult], object] = lambda result: None,
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
@@ -87,7 +90,7 @@ class Schedule:
         waiting: list[PageRun],
         first: list[PageRun],
         jobs: int,
-        say: progress.Say,
+        say: Say,
     ) -> None:
         """Start nothing yet.
 
@@ -112,7 +115,7 @@ class Schedule:
             and not any(run.alone for run in self.running)
         ):
             run = self.waiting.pop(0)
-            self.say(run.page.docname, progress.start(run))
+            self.say(run.page.docname, run.start_line)
             self.running[run] = Thread(target=self._work, args=(run,), daemon=True)
             self.running[run].start()
 
@@ -123,9 +126,9 @@ class Schedule:
             run.waits = False
             run.turn.set()
         try:
-            run, result = self.events.get(timeout=progress.EVERY)
+            run, result = self.events.get(timeout=EVERY)
         except Empty:
-            states = [f"{n.page.docname}: {progress.state(n)}" for n in self.running]
+            states = [f"{n.page.docname}: {n.state}" for n in self.running]
             self.say(f"{len(states)} running: {'; '.join(states)}", "")
             return []
         if result is None:
@@ -207,7 +210,7 @@ def _first(waiting: Sequence[PageRun], environment: Mapping[str, str]) -> list[P
 
 
 def _stored(
-    pages: Sequence[Page], places: Mapping[str, Path], say: progress.Say
+    pages: Sequence[Page], places: Mapping[str, Path], say: Say
 ) -> dict[str, PageResult]:
     """Return the results of the pages that need no run, by name, and report them."""
     results = {}

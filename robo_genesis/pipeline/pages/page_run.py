@@ -56,6 +56,21 @@ class PageRun:
     turn: threading.Event = field(default_factory=threading.Event)
     kernel: kernels.CleanKernelManager | None = None
 
+    @property
+    def start_line(self) -> str:
+        """What the line at the start of the run says."""
+        about = f", about {self.last.seconds:.0f} s" if self.last else ""
+        return (
+            f"started: {len(self.page.code.sources)} cells{about}; its log: {self.log}"
+        )
+
+    @property
+    def state(self) -> str:
+        """Cell and elapsed time of the run."""
+        number = f"cell {self.cell} of {len(self.page.code.sources)}"
+        cell = (number if self.cell else "kernel starts") + " waits" * self.waits
+        return f"{cell}, {time.monotonic() - self.begin:.0f} s"
+
     def execute(self, on_cell: Callable[[], None]) -> PageResult:
         """Execute the page in an empty temporary folder; store it unless it failed.
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -189,9 +188,7 @@ def at_cell(
         message: its whole message.
         ran: the cell with its outputs; the traceback among them names the failing line.
     """
-    cells, text = page.notebook.cells, []
-    with suppress(OSError):  # the page may have been moved since it was read
-        text = page.path.read_text("utf8").split("\n")
+    cells, text = page.notebook.cells, page.path.read_text("utf8").split("\n")
     lines = cells[index].source.splitlines() or [""]
     same = (
         ran and ran.source == cells[index].source

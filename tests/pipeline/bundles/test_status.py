@@ -9,7 +9,6 @@ from robo_genesis.core import project
 from robo_genesis.pipeline.bundles.status import (
     UNREADABLE,
     bundle_status,
-    recorded_folders,
     recorded_status,
     refused_records,
 )
@@ -78,11 +77,6 @@ def book(folder, tmp_path):
     (lesson / ".cpu.partial").mkdir()
     (lesson.parent / "recording.md").touch()
     return tmp_path / "book"
-
-
-def test_recorded_bundles_are_found_and_nothing_else(book, tmp_path):
-    assert recorded_folders(book) == [book / "evidence" / "l04" / "cpu"]
-    assert recorded_folders(tmp_path / "nowhere") == []
 
 
 def test_a_build_continues_with_what_is_sound_and_stops_at_the_rest(

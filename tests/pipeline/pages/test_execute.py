@@ -11,7 +11,7 @@ import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
 from robo_genesis.core.project import engine_cache_environment, engine_cache_folder
-from robo_genesis.pipeline.pages import progress
+from robo_genesis.pipeline.pages import execute as execution
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages, in_order
 from robo_genesis.pipeline.pages.kernels import CleanKernelManager, clean_environment
@@ -317,7 +317,7 @@ def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest
 
 
 def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatch):
-    monkeypatch.setattr(progress, "EVERY", 0.5)
+    monkeypatch.setattr(execution, "EVERY", 0.5)
     make_book(tmp_path, page=notebook(cell("1"), cell("import time\ntime.sleep(2)")))
     said = []
     execute(tmp_path, say=lambda *words: said.append(" ".join(words)))

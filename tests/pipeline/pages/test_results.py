@@ -1,7 +1,5 @@
 """Checks of executed cells; whole pages are executed in test_execute."""
 
-from pathlib import Path
-
 import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
@@ -90,17 +88,21 @@ WRONG = (
 )
 
 
-def outcome(metadata, outputs):
+def outcome(metadata, outputs, folder):
     book = new_notebook(
         cells=[new_code_cell("draw()", metadata=metadata, outputs=outputs)]
     )
     book.metadata.source_map = [3]
-    return unexpected_outcome(Page("page", Path("deleted.md"), book), book)
+    path = folder / "page.md"
+    path.write_text("---\n---\n```\ndraw()\n")
+    return unexpected_outcome(Page("page", path, book), book)
 
 
 @pytest.mark.parametrize(("metadata", "outputs", "error", "said"), WRONG)
-def test_what_a_page_cannot_show_fails_it_in_its_cell(metadata, outputs, error, said):
-    failure = outcome(metadata, outputs)
+def test_what_a_page_cannot_show_fails_it_in_its_cell(
+    tmp_path, metadata, outputs, error, said
+):
+    failure = outcome(metadata, outputs, tmp_path)
     assert (failure.cell, failure.line, failure.source) == (1, 4, "draw()")
     assert failure.error == error
     assert said in failure.message
@@ -115,8 +117,8 @@ def test_what_a_page_cannot_show_fails_it_in_its_cell(metadata, outputs, error, 
         (RAISES, [raised("ValueError", "no way")]),
     ],
 )
-def test_what_a_page_can_show_passes(metadata, outputs):
-    assert outcome(metadata, outputs) is None
+def test_what_a_page_can_show_passes(tmp_path, metadata, outputs):
+    assert outcome(metadata, outputs, tmp_path) is None
 
 
 HELPER = "def helper():\n    raise ValueError('in another cell')"

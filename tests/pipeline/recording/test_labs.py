@@ -13,7 +13,7 @@ from tiny_book import accept, cell, lab, make_book, notebook, old_bundle, refuse
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.recording import labs as recording
 from robo_genesis.pipeline.recording.labs import Recording, record
-from robo_genesis.pipeline.stages import Build, build_lock
+from robo_genesis.pipeline.stages import Build
 from robo_genesis.sim.diagnosis import StepResult
 
 
@@ -159,14 +159,6 @@ def test_what_cannot_be_recorded_is_refused_before_the_run(
     ]
     found = [" ".join(line.split("] ")[1].split()) for line in lines]
     assert found == (probed if "probe" in settings else [])
-
-
-def test_a_recording_beside_a_build_is_refused(tmp_path):
-    with (
-        build_lock(tmp_path / "cache"),
-        pytest.raises(ProjectError, match="Another build"),
-    ):
-        run(tmp_path, lab("cuda"))
 
 
 def test_the_next_command_brings_back_what_a_kill_left_aside(tmp_path):
