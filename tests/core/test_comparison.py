@@ -2,7 +2,7 @@
 
 import pytest
 
-from robo_genesis.core.comparison import Comparison
+from robo_genesis.core.comparison import Comparison, agree, differences
 from robo_genesis.core.tables import comparison_sentence, prediction_sentence
 from robo_genesis.core.text import format_value, scaled_value
 
@@ -93,3 +93,10 @@ def test_a_comparison_says_what_was_measured_or_not_observed(values, margin, say
 def test_a_prediction_is_compared_with_the_measured_order(predicted, values, says):
     sentence = prediction_sentence(NAMES, rise_times(*values), predicted, ADVICE)
     assert sentence == f"Predicted: rise time {predicted} in G2 than in G1. {says}"
+
+
+def test_differences_name_the_path_and_both_values():
+    found = differences({"a": {"b": 1, "c": [2]}}, {"a": {"b": None, "c": [2]}, "d": 3})
+    assert list(found) == [("a.b", 1, None), ("d", "absent", 3)]
+    found = differences({"a": 0.1, "b": 11}, {"a": 0.1 + 1e-15, "b": 11.0}, agree)
+    assert list(found) == [("b", 11, 11.0)]

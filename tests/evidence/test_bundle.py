@@ -1,15 +1,7 @@
 import pytest
 from spoilers import part
 
-from robo_genesis.core.comparison import agree, differences
 from robo_genesis.evidence.bundle import BundleRefused, evidence_key, read_manifest
-
-
-def test_differences_name_the_path_and_both_values():
-    found = differences({"a": {"b": 1, "c": [2]}}, {"a": {"b": None, "c": [2]}, "d": 3})
-    assert list(found) == [("a.b", 1, None), ("d", "absent", 3)]
-    found = differences({"a": 0.1, "b": 11}, {"a": 0.1 + 1e-15, "b": 11.0}, agree)
-    assert list(found) == [("b", 11, 11.0)]
 
 
 def test_the_place_of_a_wrong_field_is_named(folder):

@@ -29,7 +29,6 @@ from robo_genesis.pipeline.pages.kernels import kill_with_descendants
 from robo_genesis.pipeline.stages import Build, BuildError, build_lock, run_build
 
 LAB = lab("cpu")
-NO_CAMERA = LAB.replace('"camera" if camera', '"skip" if camera')
 TWICE = LAB + cell("for k in (1, 2):\n    k\nif 0:\n    page.show(k)")
 
 
@@ -117,7 +116,6 @@ def test_a_release_requires_evidence(built, monkeypatch):
             BuildError,
             "lab: the bundle .* is refused: metrics: metrics.js",
         ),
-        (NO_CAMERA, {}, BuildError, "render.mode is skip, expected camera"),
         (
             TWICE,
             {},
@@ -133,7 +131,6 @@ def test_a_release_requires_evidence(built, monkeypatch):
     ],
     ids=[
         "bundle",
-        "another contract",
         "output",
         "site",
     ],

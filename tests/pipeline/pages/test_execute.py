@@ -14,7 +14,7 @@ from robo_genesis.core.project import engine_cache_environment, engine_cache_fol
 from robo_genesis.pipeline.pages import execute as execution
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages, in_order
-from robo_genesis.pipeline.pages.kernels import CleanKernelManager, clean_environment
+from robo_genesis.pipeline.pages.kernels import CleanKernelManager
 from robo_genesis.pipeline.pages.page_folder import PageRefused
 from robo_genesis.pipeline.pages.page_run import PageRun
 from robo_genesis.pipeline.pages.results import failure_report
@@ -349,24 +349,6 @@ print(os.environ["GIVEN"], len(os.environ["ROBO_GENESIS_RUN_ID"]))"""
     [executed] = (tmp_path / "store/page").glob("*/executed.ipynb")
     [output] = nbformat.read(executed, as_version=4).cells[0].outputs
     assert output.text == f"{sys.executable} False []\nyes 32\n"
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("PYTHONSTARTUP", None),
-        ("OMP_NUM_THREADS", None),
-        ("QD_ARCH", "x"),
-        ("PATH", "x"),
-        ("TZ", "UTC"),
-        ("OWN", "1"),
-    ],
-)
-def test_variables_of_machine_engine_and_page_reach_a_kernel(
-    tmp_path, monkeypatch, name, value
-):
-    monkeypatch.setenv(name, "x")
-    assert clean_environment(tmp_path, {"OWN": "1"}).get(name) == value
 
 
 def test_ctrl_c_while_a_kernel_starts_kills_it(tmp_path, monkeypatch):

@@ -199,20 +199,6 @@ def test_a_page_that_runs_alone_records_elapsed_times():
         assert any(group.kind == "performance" for group in groups), name
 
 
-def test_a_page_with_kernels_of_its_own_compiles_them_before_it_needs_those_of_the_build():
-    after_set_up = {
-        page.docname: page.code.sources[3:4] for page in PAGES if page.own_kernels
-    }
-    starts = [
-        code
-        for page in PAGES
-        for code in page.code.sources
-        if "measure_starts(" in code
-    ]
-    assert [*after_set_up.values()] == [starts] != [[]]
-    assert starts[0].index("measure_starts(") < starts[0].index("examine(")
-
-
 def keys(root, pages):
     """Return fingerprint and modules of the evidence key of some pages of the course."""
     tree = Tree(root)
@@ -314,21 +300,15 @@ def test_a_module_that_computes_uses_none_that_presents(lesson):
 
 SAME = [
     ("x = 1", "x = 1  # one\n\n\n"),
-    ("x = 'a'", 'x = "a"'),
-    ("f(1, 2)", "f(\n    1,\n    2,\n)"),
     ("x = 1", '"""About."""\nx = 1\n"""About x."""'),
-    ("def f():\n  return 1", "def f():\n  'About f.'\n  return 1"),
     ("class A:\n  x = 1", "class A:\n  'About A.'\n  x = 1\n  'About x.'"),
     ("x = f'a{y}b'", "x = f'a' f'{y}' 'b' ''"),
 ]
 OTHERS = [
     ("x = 1", "x = 2"),
     ("x = 1", "x = True"),
-    ("x = [1, 2]", "x = (1, 2)"),
     ("x = f'{y}'", "x = f'{y!r}'"),
     ("x = f'a{y}'", "x = f'{y}a'"),
-    ("def f(a, /): pass", "def f(a): pass"),
-    ("if a:\n  b", "if a:\n  b\nelse:\n  c"),
     ("x = (", "x = [("),
 ]
 
