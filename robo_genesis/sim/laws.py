@@ -4,18 +4,20 @@ Checks of the lessons use laws, so the page, the recorder and the verification j
 arrays alike. A wrong engine, or wrong code around it, breaks them.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding
+from robo_genesis.core.checks import Finding, Findings
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 
 MEASURES = False
 
 
-def kept(run: str, laws: Iterable[Finding]) -> Iterator[Finding]:
+def kept(run: str, laws: Iterable[Finding]) -> Findings:
     """Yield whether a run keeps its laws, and the first thing that breaks one.
 
     Args:
@@ -29,9 +31,15 @@ def kept(run: str, laws: Iterable[Finding]) -> Iterator[Finding]:
         yield replace(wrong, label=f"{run}: {wrong.label}")
 
 
+def each_run(run: Experiment, law: Callable[[Any, Any], Iterable[Finding]]) -> Findings:
+    """Yield whether each run of a page keeps the laws of its trace and case."""
+    for name, case in run.cases.items():
+        yield from kept(name, law(run.traces[name], case))
+
+
 def apart(
     what: str, found: FloatArray, expected: FloatArray, tolerance: float | FloatArray
-) -> Iterator[Finding]:
+) -> Findings:
     """Yield the entry that is farthest beyond the tolerance of its expected value, if any is.
 
     Args:

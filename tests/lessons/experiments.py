@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from lessons.changed_runs import beginning
 
+from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Experiment
 
 
@@ -60,3 +61,15 @@ def checks_of(experiments):
         check.__name__ for run in experiments.values() for check in run.page.checks
     }
     return found - {"laws_of_motion", "functions"}
+
+
+def require_spoilers(run, spoilers):
+    """Require that all checks but laws pass; and of each, that it fails for a spoiled run.
+
+    `spoilers` are pairs (check, spoil).
+    """
+    named = {check.__name__: check for check in run.page.checks}
+    assert named.keys() - {name for name, _ in spoilers} <= {"laws_of_motion"}
+    assert {one.name for one in run.outcomes() if not one.passed} <= {"laws_of_motion"}
+    for k, (name, spoil) in enumerate(spoilers):
+        assert not evaluate([named[name]], spoil(run))[0].passed, (k, name)

@@ -27,10 +27,10 @@ def acceptance(accept: Written) -> Findings:
         for k, (_, ((joint, value), residual, _)) in enumerate(some):
             q[k, joint], error[k] = value, residual
         found = np.asarray(accept(q, error, *spec.IK.tolerances))
-        yield equal(f"{label}.shape", list(found.shape), [len(some)])
+        yield equal(f"{label}.shape", found.shape, (len(some),))
         yield equal(f"{label}.type", found.dtype.name, "bool")
         for (name, (*_, right)), value in zip(some, found, strict=True):
-            yield equal(f"{label}.{name}", bool(value), right)
+            yield equal(f"{label}.{name}", value, right)
     loose = accept(np.zeros((2, 9)), np.full((2, 6), 0.1), 0.2, 0.2)
     yield equal("looser_tolerances", np.asarray(loose).tolist(), [True, True])
 
@@ -133,7 +133,6 @@ class Machine:
 TRIALS: Rows = {
     "steady": ([1, 1, 1], 10, [1] * 5),
     "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),
-    "one_repeat": ([800] * 6, 5, [1]),
     "one_disturbed_repeat": ([1, 1], 10, [1, 1, 30, 1, 1]),
     "no_warm_up": ([], 4, [1] * 3),
     "five_different_repeats": ([1, 1], 2, [9, 0.1, 1, 30, 0.2]),

@@ -20,7 +20,7 @@ from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY, HEIGHT, WALL
 from robo_genesis.sim.bodies.free_fall import GRAVITY, summed_drop
 from robo_genesis.sim.bodies.laws import FALLEN, FALLING
 from robo_genesis.sim.common_checks import stamps
-from robo_genesis.sim.laws import apart, kept
+from robo_genesis.sim.laws import apart, each_run
 
 ENDS, NEAR = (
     WALL + 0.001,
@@ -96,8 +96,7 @@ def fast_small_balls_sink(run: Experiment) -> Findings:
 
 def laws_of_motion(run: Experiment) -> Findings:
     """The balls fall freely until one can touch a bowl."""
-    for name, case in run.cases.items():
-        yield from kept(name, falling_balls(run.traces[name], case))
+    return each_run(run, falling_balls)
 
 
 def falling_balls(trace: BodyTrace, case: BowlCase) -> Findings:

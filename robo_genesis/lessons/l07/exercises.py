@@ -34,7 +34,6 @@ MOTIONS: Rows = {
     "creeps": ([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], 4, 0.25, False),
     "moved_before": ([0, 3, 7, 9, 9, 9, 9, 9], 4, 0.25, True),
     "first_step": ([0, 0, 0, 1, 1], 2, 0.25, False),
-    "last_step": ([0, 0, -1], 2, 0.25, False),
     "record_is_the_window": ([0, 0, 0], 2, 0.25, True),
     "no_states": ([], 2, 0.25, False),
     "one_state_too_short": ([0, 0], 2, 0.25, False),
@@ -129,7 +128,6 @@ RESULTS: Rows = {
     ),
     "first_value": ({"a": {"x": (4, 2, 3), "y": (2, 2, 3)}, "b": GOOD}, "a"),
     "negative": ({"b": {"x": (-1, 0.5, inf)}}, "b"),
-    "infinite": ({"b": {"x": (inf, 0, 9)}}, "b"),
     "nan": ({"c": {"x": (2, 1, 3), "y": (nan, 0, 1)}, "a": {}}, "c"),
     "nothing_measured": ({"c": GOOD, "b": {}, "a": {"x": (5, 0, 1)}}, "b"),
 }

@@ -20,7 +20,7 @@ from robo_genesis.sim.bodies.grippers import CONTACTS, LINKS, HeldCase
 from robo_genesis.sim.bodies.laws import UNTURNED
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 from robo_genesis.sim.common_checks import read_back, stamps
-from robo_genesis.sim.laws import apart, kept
+from robo_genesis.sim.laws import apart, each_run
 from robo_genesis.sim.throughput import KEPT
 
 SHARE, STILL = (
@@ -46,8 +46,7 @@ def settings(run: Experiment) -> Findings:
 
 def laws_of_motion(run: Experiment) -> Findings:
     """No box turns, and each slides at a constant speed."""
-    for name, case in run.cases.items():
-        yield from kept(name, steady(run.traces[name], case))
+    return each_run(run, steady)
 
 
 def steady(trace: BodyTrace, case: HeldCase) -> Findings:
