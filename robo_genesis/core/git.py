@@ -5,8 +5,7 @@ import subprocess
 from pathlib import Path
 
 from robo_genesis.core.project import ProjectError
-
-SHOWN = 5  # Number of changed files that a message names
+from robo_genesis.core.text import quoted
 
 
 def git(root: Path, *arguments: str, **variables: str) -> str:
@@ -83,9 +82,8 @@ def unclean(
         ]
     if not changed:
         return []
-    more = f", and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""
-    names = ", ".join(line[3:] for line in changed[:SHOWN])
+    names = quoted([line[3:] for line in changed])
     return [
-        f"The tree has {len(changed)} changed or new files ({names}{more}). {reason}: commit or "
+        f"The tree has {len(changed)} changed or new files ({names}). {reason}: commit or "
         "stash them (git stash --include-untracked)."
     ]

@@ -86,30 +86,21 @@ def with_chapter(toc: str, lesson: str) -> str:
     folder = f"lessons/{lesson}-new-lesson"
     new = f"{CHAPTER}{folder}/lecture\n    sections:\n"
     new += "".join(f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes"))
-    lessons = [
-        k for k, text in enumerate(chapters) if text.startswith(f"{CHAPTER}lessons/")
-    ]
-    later = [k for k in lessons if chapters[k] > new]
-    chapters.insert(min(later, default=max(lessons, default=-1) + 1), new)
+    before = (
+        k for k, text in enumerate(chapters) if f"{CHAPTER}lessons/" <= text < new
+    )
+    chapters.insert(max(before, default=-1) + 1, new)
     return "".join([head, *chapters])
 
 
 def with_entry(course_map: str, lesson: str) -> str:
-    """Return the course map with the lesson: a planned one gets its page, another one is added.
-
-    Raises:
-        ProjectError: the map already names a page of this lesson.
-    """
+    """Return the course map with the lesson: a planned one gets its page, another one is added."""
     head, *entries = re.split(f"(?m)^(?={ENTRY})", f"{course_map.rstrip()}\n")
     names, name = [entry.split()[2] for entry in entries], lesson.upper()
     new = f"  page: lessons/{lesson}-new-lesson/lecture\n  outcomes: [{OUTCOME}]\n"
     if name not in names:
         at = sum(other < name for other in names)
         entries.insert(at, f"{ENTRY}{name}\n  title: A robot turns one joint\n{new}")
-    elif "\n  page:" in entries[names.index(name)]:
-        raise ProjectError(
-            f"book/course_map.yml names a page of {name}. Remove that line."
-        )
     else:
         entries[names.index(name)] += new
     return "".join([head, *entries])

@@ -77,7 +77,6 @@ def small(tmp_path):
         ("l04", "Lesson l04 exists: robo_genesis/lessons/l04"),
         ("l07", "Lesson l07 exists: book/lessons/l07-old"),
         ("l08", "Lesson l08 exists: tests/lessons/l08"),
-        ("l02", "course_map.yml names a page of L02"),
     ],
 )
 def test_a_name_that_cannot_be_used_changes_nothing(small, name, message):
