@@ -113,7 +113,7 @@ def _limited(
     order: Callable[[Any, Any], Any],
     words: str,
     label: str,
-    found: float | None,
+    found: Any,
     limit: float,
 ) -> Finding:
     """Require a value that has this order to the limit."""

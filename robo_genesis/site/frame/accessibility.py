@@ -6,11 +6,7 @@ and shows each column's head beside its value. A table that fits, or that has to
 rows to be read as blocks, stays a table.
 """
 
-import re
-
 from bs4 import BeautifulSoup, Tag
-
-ICON = re.compile("^fa-")  # How the classes of an icon's element begin
 
 PHONE = 358  # Width of a page's column on a phone that is 390 pixels wide [CSS px]
 LETTER, PADDING = (
@@ -32,10 +28,7 @@ ROLES = {
 def make_accessible(page: BeautifulSoup) -> None:
     """Correct the attributes of a complete page, in place."""
     # The control around an icon has its name as text or label.
-    for icon in [
-        *page.find_all("i", class_=ICON),
-        *page.find_all("span", class_="fa-solid"),
-    ]:
+    for icon in page.select('i[class*="fa-"], span.fa-solid'):
         icon["aria-hidden"] = "true"
     for summary in page.find_all("summary"):
         fold = summary.find_parent("details")
@@ -70,21 +63,11 @@ def make_accessible(page: BeautifulSoup) -> None:
 
 def stack_tables(page: BeautifulSoup) -> None:
     """Mark the wide tables of an article in place, and give each cell the head of its column."""
-    for table in page.find_all("table"):
-        if table.thead is None or not table.find_parent("article"):
-            continue
+    for table in page.select("article table:has(thead):not(.scroll-box table)"):
         columns = table.thead.find_all("th")
         heads = [head.get_text(" ", strip=True) for head in columns]
-        lines = (
-            line for body in table.find_all("tbody") for line in body.find_all("tr")
-        )
-        rows = [line.find_all(["td", "th"]) for line in lines]
-        even = all(len(row) == len(heads) for row in rows)
-        if (
-            table.find_parent(class_="scroll-box")
-            or not even
-            or not 0 < len(rows) <= MOST_ROWS
-        ):
+        rows = [row.find_all(["td", "th"]) for row in table.select("tbody tr")]
+        if {len(row) for row in rows} != {len(heads)} or len(rows) > MOST_ROWS:
             continue
         whole = table.thead.find(class_="case-mark") is not None
         widths = (
