@@ -66,7 +66,6 @@ def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
         ]
     columns = [*next(iter(tables.values()))[0]]
     return {
-        "choices": ("Map", "Cells show"),
         "maps": shown,
         "measures": [{"label": name} for name in QUANTITIES],
         "columns": columns[1:],

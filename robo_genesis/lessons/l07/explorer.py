@@ -33,9 +33,7 @@ def explored(found: Experiment) -> dict[str, Any]:
     columns, rows = [f"{x:g}" for x in X], [decimal(y, 2) for y in Y]
     names = ["place x, y [m]", *WORDS.values()]
     return {
-        "thing": "robot",
         "around": True,
-        "choices": ("Map", "Cells show"),
         "maps": [maps.grid(caption, columns, rows, cells, run="table", label="Table")],
         "measures": [
             {"label": f"thousand pixels, camera {place}"}

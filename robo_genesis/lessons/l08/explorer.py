@@ -41,9 +41,7 @@ def explored(found: Experiment) -> dict[str, Any]:
         label="Starts",
     )
     return {
-        "thing": "robot",
         "around": True,
-        "choices": ("Map", "Cells show"),
         "maps": [starts],
         "measures": [{"label": "rungs passed"}, {"label": "error along the pads [mm]"}],
         "columns": COLUMNS,

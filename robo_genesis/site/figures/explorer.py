@@ -10,12 +10,11 @@ bundle and the directive's second word:
 | `columns` | names of the values that are read |
 | `maps` | each a `label`, a `caption`, labels of `columns`, and `rows` of a `label` and `cells` |
 | `measures` | each a `label`; a `noun` makes questions about the next run |
-| `choices` | labels of the choice of a map and of a measure |
+| `choices` | labels of the choice of a map and of a measure, by default `Map`, `Cells show` |
 | `notes` | the meaning of signs in the cells |
 | `curves` | what is drawn of a run; each map has the axes, each cell the packed values |
 | `postures` | by run the targets (m, 3) [m] of its answers; each map names its `run` |
 | `traces` | runs of the postures that are not in the bundle, by name |
-| `thing` | what the postures are of, by default the thing of the lesson's first replay |
 | `around` | whether what does not move is drawn with the postures |
 | `tables` | by caption the rows of a table below the fold |
 | `picture` | `name`, `alt` and `caption` of a recorded view; see `l05.explorer.picture` |
@@ -31,13 +30,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from html import escape
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from docutils import nodes
-from PIL import Image
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -66,6 +63,9 @@ if TYPE_CHECKING:
 # rods [m]. They are longer than the hand, which hides the target when it is there.
 CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
 
+
+# The parts of a recorded view; the second and the third hold numbers.
+FRAMES = ("rgb", "depth", "segmentation")
 
 # See the module's table.
 Data: TypeAlias = Mapping[str, Any]
@@ -126,21 +126,13 @@ def explorer_block(
         name: what the lesson calls the data, if it has several.
     """
     data = recorded.explored(*name)
-    kept = ("postures", "traces", "tables", "picture")
-    parts = {part: data.pop(part, None) for part in kept}
     block = nodes.container(classes=["explorer-block"], evidence_runs=(key,))
-    if parts["picture"] is not None:
-        if not (
-            recorded.folder / "frames" / f"{parts['picture']['name']}_rgb.png"
-        ).is_file():
-            return nodes.paragraph("", "SKIP: this run has no camera.")
-        data["frames"] = frames(recorded.folder / "frames", parts["picture"]["name"])
-        figure = picture(directive, key, recorded.folder / "frames", **parts["picture"])
-        block += [opening("with-picture", data), figure, panel(data)]
-    elif parts["postures"] is not None:
+    if "picture" in data:
+        block += picture(directive, key, recorded.folder / "frames", data)
+    elif "postures" in data:
         block["classes"].append("replay-block")
         files = "-".join(("postures", *key.split("/"), *name))
-        block += postures(directive, files, recorded, data, parts)
+        block += postures(directive, files, recorded, data)
     else:
         block += [opening("", data), panel(data)]
     return block
@@ -180,34 +172,29 @@ def fold(
     return [*shown, html("</details>")]
 
 
-def frames(folder: Path, name: str) -> dict[str, str]:
-    """Return the frames that hold numbers: a page from disk cannot read the pixels of a file."""
-    return {
-        part: base64.b64encode((folder / f"{name}_{part}.png").read_bytes()).decode()
-        for part in ("depth", "segmentation")
-    }
-
-
 def picture(
-    directive: SphinxDirective,
-    key: str,
-    folder: Path,
-    name: str,
-    alt: str,
-    caption: str,
-) -> nodes.Node:
-    """Return a recorded view with the cross that marks a pixel."""
-    file = "-".join(("picture", *key.split("/"), name))
-    content = BytesIO()
-    with Image.open(folder / f"{name}_rgb.png") as frame:
-        # To look at: other frames have numbers.
-        frame.convert("RGB").save(content, "JPEG", quality=85, optimize=True)
-    shown = image(directive.env, f"{file}.jpg", content.getvalue(), alt)
-    return replays.stage(shown, '<span class="cross" hidden></span>', caption, file)
+    directive: SphinxDirective, key: str, folder: Path, data: dict[str, Any]
+) -> list[nodes.Node]:
+    """Return a recorded view, the cross that marks a pixel, and what reads its values.
+
+    The frames that hold numbers are part of the data: a page from disk cannot read the
+    pixels of a file.
+    """
+    view = data.pop("picture")
+    rgb, *numbers = (folder / f"{view['name']}_{part}.png" for part in FRAMES)
+    if not rgb.is_file():
+        return [nodes.paragraph("", "SKIP: this run has no camera.")]
+    texts = (base64.b64encode(frame.read_bytes()).decode() for frame in numbers)
+    data["frames"] = dict(zip(FRAMES[1:], texts, strict=True))
+    file = "-".join(("picture", *key.split("/"), view["name"]))
+    shown = image(directive.env, f"{file}.png", rgb.read_bytes(), view["alt"])
+    cross = '<span class="cross" hidden></span>'
+    figure = replays.stage(shown, cross, view["caption"], file)
+    return [opening("with-picture", data), figure, panel(data)]
 
 
 def postures(
-    directive: SphinxDirective, name: str, recorded: Recorded, data: Data, parts: Data
+    directive: SphinxDirective, name: str, recorded: Recorded, data: dict[str, Any]
 ) -> Iterator[nodes.Node]:
     """Yield the answers of a page in 3D, and leave one model with an animation for each map.
 
@@ -216,18 +203,17 @@ def postures(
         name: of the model's files.
         recorded: the bundle of the page.
         data: see the module's table.
-        parts: the keys `postures`, `traces` and `tables` there.
     """
     from robo_genesis.site.replay import model  # these load slowly
     from robo_genesis.site.replay.scenery import fitted
 
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
-    runs = {**run.traces, **(parts["traces"] or {})}
+    runs = {**run.traces, **data.pop("traces", {})}
     traces = {
-        name: with_target(runs[name], of) for name, of in parts["postures"].items()
+        run: with_target(runs[run], of) for run, of in data.pop("postures").items()
     }
+    tables_below = data.pop("tables", {})
     shape = replays.shape_file(recorded.lesson, replay.thing)
-    thing = data.get("thing", replay.thing)
     camera = fitted(
         np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()])
     )
@@ -236,21 +222,25 @@ def postures(
         shape.read_bytes(),
         *replays.bundle_inputs(recorded.folder),
     ]
-    alt = f"The {thing} at the start, drawn from the recorded poses."
     drawn = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
     what = with_cross(drawn, camera), [*run.links, CROSS], traces, replay.credit
     files, weight, still = replays.leave_model(
-        env, name, inputs, lambda: model.glb(*what), camera, alt
+        env,
+        name,
+        inputs,
+        lambda: model.glb(*what),
+        camera,
+        "The robot at the start, drawn from the recorded poses.",
     )
-    words = files | {"orbit": camera.orbit, "target": camera.target}
-    words["alt"] = f"The {thing} in 3D, in the chosen posture."
-    yield opening("with-model", data, **words)
+    view = {"orbit": camera.orbit, "target": camera.target}
+    alt = "The robot in 3D, in the chosen posture."
+    yield opening("with-model", data, alt=alt, **files, **view)
     over = controls.over_the_picture("Show in 3D")
-    caption = f"Recorded postures of the {thing}. Yellow cross: the target."
+    caption = "Recorded postures of the robot. Yellow cross: the target."
     yield replays.stage(still, over, caption, f"{name}-model")
-    yield panel(data, f"Show in 3D loads the {thing}: {weight} kB.")
-    if parts["tables"]:
-        yield from fold(directive, parts["tables"])
+    yield panel(data, f"Show in 3D loads the robot: {weight} kB.")
+    if tables_below:
+        yield from fold(directive, tables_below)
     yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
 
 

@@ -83,7 +83,7 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
-    wheel = build_wheel(folder, repository=config.course_repository)
+    wheel = build_wheel(folder)
     constraints = folder / CONSTRAINTS
     shutil.copy(project.ROOT / "requirements.lock", constraints)
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
@@ -242,34 +242,29 @@ def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]
 
 
 @cache
-def build_wheel(folder: Path, root: Path = project.ROOT, repository: str = "") -> Path:
+def build_wheel(folder: Path, root: Path = project.ROOT) -> Path:
     """Write the wheel and return its path; the labs of one site share it.
 
     Args:
         folder: gets the wheel.
         root: the checkout.
-        repository: an address for the metadata of the wheel, empty for none.
 
     Raises:
         ProjectError: setuptools failed; the message contains its output.
     """
     package = sorted(files_below(root / PACKAGE, left_out=NO_SOURCE))
     digest = files_digest(root, [*(root / source for source in SOURCES), *package])
-    inputs = [digest.encode(), repository.encode()]
     wheel = folder / wheel_name()
-    write_whole(wheel, derived("wheel", inputs, lambda: built_wheel(root, repository)))
+    write_whole(wheel, derived("wheel", [digest.encode()], lambda: built_wheel(root)))
     return wheel
 
 
-def built_wheel(root: Path, repository: str = "") -> bytes:
+def built_wheel(root: Path) -> bytes:
     """Return the content of the wheel; setuptools writes into a copy of the sources."""
     with tempfile.TemporaryDirectory() as name:
         copy = Path(name)
         for source in SOURCES:
             shutil.copy(root / source, copy)
-        if repository:
-            with (copy / SOURCES[0]).open("a", encoding="utf8") as facts:
-                facts.write(f'\n[project.urls]\nRepository = "{repository}"\n')
         ignored = shutil.ignore_patterns(*NO_SOURCE)
         shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=ignored)
         command = [sys.executable, "-c", BUILD, "."]

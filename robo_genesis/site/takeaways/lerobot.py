@@ -188,18 +188,16 @@ def joined(episodes: np.ndarray) -> np.ndarray:
     return episodes.reshape(-1, *episodes.shape[2:])
 
 
-def pandas_column(name: str, kind: str, numpy_kind: str) -> dict[str, Any]:
-    """Return what pandas stores about a column."""
-    kinds = {"pandas_type": kind, "numpy_type": numpy_kind}
-    return {"name": name, "field_name": name, "metadata": None} | kinds
-
-
 # Pandas, with which LeRobot reads the tasks, takes their texts as the index.
 PANDAS = {
     "index_columns": ["task"],
     "columns": [
-        pandas_column("task_index", "int64", "int64"),
-        pandas_column("task", "unicode", "object"),
+        {
+            "name": "task",
+            "field_name": "task",
+            "pandas_type": "unicode",
+            "numpy_type": "object",
+        }
     ],
     "column_indexes": [],
 }

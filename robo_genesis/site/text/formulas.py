@@ -52,7 +52,9 @@ SHEET = Path(__file__).with_name(STYLE)  # Its template
 
 # The characters that a formula may contain.
 SHOWN = {
-    *map(chr, range(0x20, 0x7F)),  # ASCII
+    *map(
+        chr, (*range(0x20, 0x5C), *range(0x5D, 0x7F))
+    ),  # ASCII; `\\` is left of a command
     *"\N{NO-BREAK SPACE}¬¯±´·×÷ˆˇ˘˙˜–—‖…′″‴",
     *map(chr, range(0x0300, 0x0309)),  # accents
     *"ΑΒΓΔΕΖΗΘΙΚΛΜΝΞΟΠΡΣΤΥΦΧΨΩαβγδεζηθικλμνξοπρςστυφχψωϑϕϖϱϵ",
@@ -96,17 +98,11 @@ def to_mathml(latex: str, display: str) -> str:
         if over[1].text in ACCENTS:
             over.set("accent", "true")
     markup = ElementTree.tostring(tree, encoding="unicode")
-    unknown = re.search(r"\\[A-Za-z]*", markup)
-    if unknown:
+    if lacking := {*"".join(tree.itertext())} - SHOWN - ITALIC - {"\n"}:
         raise ValueError(
-            f"{latex!r} uses {unknown[0]}, which latex2mathml does not know."
-        )
-    if lacking := "".join(
-        sorted({*"".join(tree.itertext())} - SHOWN - ITALIC - {"\n"})
-    ):
-        raise ValueError(
-            f"{latex!r} shows {lacking}, which the site's font for formulas does not have. Use "
-            "another symbol, or add it to SHOWN in robo_genesis/site/text/formulas.py."
+            f"{latex!r} shows {' '.join(sorted(lacking))}, which the site's font for formulas does "
+            "not have. Use another symbol, or add it to SHOWN in site/text/formulas.py. "
+            "A \\ is left of a command that latex2mathml does not know."
         )
     for pattern, replacement in FOR_BROWSERS.items():
         markup = re.sub(pattern, replacement, markup)

@@ -82,7 +82,6 @@ def map_of(run: str, answers: list[list[int]]) -> dict:
 
 def maps() -> dict:
     return {
-        "choices": ("Map", "Cells show"),
         "columns": ["left [mm]", "margin [rad]"],
         "dt": 0.01,
         "maps": [map_of("upright", [[1, 2, 3], [4, 5]]), map_of("level", [[7, 8, 9]])],

@@ -7,10 +7,8 @@ import subprocess
 import sys
 import zipfile
 from email import message_from_bytes
-from types import SimpleNamespace
 
 import numpy as np
-from nbformat.v4 import new_markdown_cell, new_notebook
 
 from robo_genesis.core import project
 from robo_genesis.evidence.trace_files import write_traces
@@ -67,15 +65,13 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
     data = {f"{lesson}arm.xml", f"{lesson}data/arm"}
     for name in (*data, f"{lesson}arm.xml~", f"{lesson}.arm.xml.swp"):
         (root / name).touch()
-    repository = "https://github.com/a/b"
-    first = files.build_wheel(tmp_path, root, repository)
-    assert files.built_wheel(root, repository) == first.read_bytes()
+    first = files.build_wheel(tmp_path, root)
+    assert files.built_wheel(root) == first.read_bytes()
     with zipfile.ZipFile(first) as wheel:
         names = wheel.namelist()
         (about,) = (name for name in names if name.endswith("/METADATA"))
         metadata = message_from_bytes(wheel.read(about))
     assert f"genesis-world=={project.engine_pin()}" in metadata.get_all("Requires-Dist")
-    assert metadata["Project-URL"] == f"Repository, {repository}"
     sources = {
         path.relative_to(project.ROOT).as_posix()
         for path in (project.ROOT / "robo_genesis").rglob("*")
@@ -100,21 +96,3 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
     assert f"genesis-world {project.engine_pin()}, as pinned" in version["found"]
     assert libraries["state"] == "ok"
     assert "the engine would start now" in backend["found"]
-
-
-def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
-    commands = files.run_commands("https://example.org/cpu", "lab.ipynb")
-    page = SimpleNamespace(
-        notebook=new_notebook(cells=[new_markdown_cell("# A lab\n\nText.")])
-    )
-    ran = SimpleNamespace(run_id="0" * 32, started="2026-01-02T10:00:00Z")
-    config = SimpleNamespace(html_title="Course", author="Its authors")
-    text = files.origin_of(page, ran, commands, config, "student notebook")
-    for words in (
-        f"Course, *A lab*: student notebook. Written for Genesis {project.engine_pin()};",
-        "the site shows run 00000000 of 2026-01-02.",
-        "© Its authors. Code: MIT licence. Text and figures: CC BY 4.0.",
-        f"`{files.wheel_name()}` and `constraints.txt`",
-        "\n".join(commands),
-    ):
-        assert words in text
