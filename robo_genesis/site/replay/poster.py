@@ -10,7 +10,7 @@ from tempfile import NamedTemporaryFile
 from PIL import Image
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkIOImport import vtkGLTFImporter
-from vtkmodules.vtkRenderingCore import vtkLight
+from vtkmodules.vtkRenderingCore import vtkLightKit
 from vtkmodules.vtkRenderingOpenGL2 import vtkEGLRenderWindow
 
 from robo_genesis.site.replay.scenery import ASPECT, Camera
@@ -18,14 +18,7 @@ from robo_genesis.site.replay.scenery import ASPECT, Camera
 SIZE = WIDTH, HEIGHT = 960, round(960 / ASPECT)
 SAMPLES = 8  # of each pixel
 
-# Directions from which light comes, in the viewer's frame, y up, and its intensities.
-LIGHTS = {
-    (0.35, 0.8, 0.5): 2.0,
-    (0.0, 1.0, 0.0): 1.2,
-    (0.0, -1, 0): 0.8,
-    (-0.5, 0.0, -0.5): 0.5,
-    (0.5, 0, 0.87): 1.0,
-}
+KEY_LIGHT = 3.0  # Intensity of the light from above; others have a share of it
 
 
 def picture(model: bytes, camera: Camera) -> bytes:
@@ -42,13 +35,10 @@ def picture(model: bytes, camera: Camera) -> bytes:
         importer.Update()
     scene = importer.GetRenderer()
     scene.SetBackgroundAlpha(0.0)
-    scene.RemoveAllLights()
-    scene.AutomaticLightCreationOff()
-    for direction, intensity in LIGHTS.items():
-        light = vtkLight()
-        light.SetPosition(*direction)
-        light.SetIntensity(intensity)
-        scene.AddLight(light)
+    lights = vtkLightKit()
+    lights.SetKeyLightIntensity(KEY_LIGHT)
+    lights.SetKeyLightWarmth(0.5)  # white
+    lights.AddLightsToRenderer(scene)
     view = scene.GetActiveCamera()
     view.SetFocalPoint(*camera.centre)
     view.SetPosition(*camera.centre + camera.distance * camera.axes[2])

@@ -196,10 +196,10 @@ def swept(shape: Sequence[Part], runs: Runs, followed: int | None) -> FloatArray
     for trace, k in product(runs.traces.values(), range(len(runs.links))):
         own = [part.vertices for part in shape if part.link == runs.links[k]]
         if own:
-            ends = np.concatenate(own).min(axis=0), np.concatenate(own).max(axis=0)
-            corners = np.array(list(product(*np.transpose(ends))))
-            pose = poses(trace, k)
-            places = corners @ pose[:, :3, :3].transpose(0, 2, 1) + pose[:, None, :3, 3]
+            vertices = np.concatenate(own)
+            box = trimesh.bounds.corners([vertices.min(axis=0), vertices.max(axis=0)])
+            corners = np.column_stack([box, np.ones(8)])
+            places = (corners @ poses(trace, k).transpose(0, 2, 1))[..., :3]
             if followed is not None:
                 places[..., :2] -= trace.link_pos[:, None, followed, :2]
             found.append(places.reshape(-1, 3))
@@ -233,23 +233,15 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
             each.
         shape: of the robot; parts of the world remain where they are, unless the replay
             repeats them.
-
-    Raises:
-        ValueError: there is not one place for each run.
     """
-    places, traces = runs.replay.places, list(runs.traces.items())
-    if len(places) != len(traces):
-        raise ValueError(
-            f"{len(places)} places given for {len(traces)} runs: {', '.join(runs.traces)}. Give "
-            "each run a place in the lesson's declaration."
-        )
+    traces = list(runs.traces.items())
+    places = np.pad(runs.replay.places, ((0, 0), (0, 1)))  # (cases, 3) [m]
     arrays: dict[str, Any] = {
         name: np.concatenate([getattr(trace, name) for _, trace in traces], axis=1)
         for name, stored in runs.first.arrays().items()
         if "link" in stored.dims
     }
-    moved = [np.tile([x, y, 0.0], (len(runs.links), 1)) for x, y in places]
-    arrays["link_pos"] = arrays["link_pos"] + np.concatenate(moved)
+    arrays["link_pos"] = arrays["link_pos"] + np.repeat(places, len(runs.links), axis=0)
     links = [f"{case}: {link}" for case, _ in traces for link in runs.links]
     marks = palette.marks_of([case for case, _ in traces], MARKS)
 
@@ -259,17 +251,13 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
         rgb = (red, green, blue) if part.link == runs.replay.follows else part.rgb
         return replace(part, link=f"{case}: {part.link}", rgb=rgb, hinge=None)
 
-    parts = [
-        of_case(part, case)
-        for case, _ in traces
-        for part in shape
-        if part.link != WORLD
-    ]
+    moving = [part for part in shape if part.link != WORLD]
+    parts = [of_case(part, case) for case, _ in traces for part in moving]
     still = [part for part in shape if part.link == WORLD]
     if runs.replay.repeats:
         still = [
-            replace(part, vertices=part.vertices + np.array([x, y, 0.0], np.float32))
-            for x, y in places
+            replace(part, vertices=part.vertices + place.astype(np.float32))
+            for place in places
             for part in still
         ]
     together = {case: replace(trace, **arrays) for case, trace in traces}

@@ -136,7 +136,7 @@ PLACES = ((-0.5, 0.0), (0.5, 0.25))
 SHAPE = [Part("box", (1, 2, 3), np.eye(3), np.array([[0, 1, 2]])), floor(2.0)]
 
 
-def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_place():
+def test_each_case_moves_all_links_and_keeps_its_curve():
     one = falling(1.0)
     other = replace(one, link_pos=one.link_pos * 2)
     replay = Replay(("one", "other"), "box", "box", places=PLACES)
@@ -167,7 +167,3 @@ def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_pla
     around = scenery.scenery(parts, found)
     assert not around.axis
     assert around.followed is None
-    with pytest.raises(ValueError, match="1 places given for 2 runs: one, other"):
-        scenery.side_by_side(
-            replace(runs, replay=replace(runs.replay, places=PLACES[:1])), SHAPE
-        )
