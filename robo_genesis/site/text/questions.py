@@ -92,14 +92,13 @@ def asked(**facts: Any) -> question:
 
 
 def split_causes(
-    content: Sequence[str], keys: Sequence[str], factors: bool = False
+    content: Sequence[str], keys: Sequence[str]
 ) -> tuple[str, dict[str, str]]:
     """Return the question, and the cause of each answer that has one.
 
     Args:
         content: lines; each cause begins a line with `- key:`.
-        keys: the valid keys.
-        factors: whether a key may also be that of a typical wrong number.
+        keys: the valid keys, besides that of a typical wrong number.
 
     Raises:
         LookupError: a key is not valid or given twice; the message lists the valid
@@ -110,7 +109,7 @@ def split_causes(
     for item in map(str.strip, items):
         parts = CAUSE.fullmatch(item)
         key, cause = parts.groups() if parts else ("", "")
-        known = key in keys or (factors and FACTOR.fullmatch(key))
+        known = key in keys or FACTOR.fullmatch(key)
         if not known or key in causes:
             valid = ", ".join(f"`- {key}: …`" for key in keys)
             raise LookupError(f"{item!r} is not a cause. Valid, once each: {valid}.")
@@ -161,7 +160,7 @@ class Number(Question):
 
     def ask(self) -> tuple[str, dict[str, Any]]:
         """See `Question.ask`."""
-        text, causes = split_causes(self.content, [*JUDGED], factors=True)
+        text, causes = split_causes(self.content, [*JUDGED])
         percent, unit = self.options["tolerance"], self.options.get("unit", "")
         page, name = self.arguments
         return text, asked_number(page, name, percent, causes, unit)

@@ -13,7 +13,6 @@ from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.scene import CAMERA_RES
-from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.reader import write_frame
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.camera import record as view_record
@@ -90,17 +89,6 @@ def maps() -> dict:
     }
 
 
-def assigned(height: float) -> Trace:
-    """Return the places of a falling box as assigned postures of a robot with one joint."""
-    body = falling(height, len(TARGETS))
-    q, one, step = np.zeros((41, 1)), np.zeros(1), np.zeros((40, 1))
-    rest = dict.fromkeys(("qd", "target", "control_force", "internal_force"), step)
-    start = dict.fromkeys(("start_control_force", "start_qd", "effort_limit"), one)
-    return Trace(
-        t=body.t, q=q, link_pos=body.link_pos, link_quat=body.link_quat, **rest, **start
-    )
-
-
 @pytest.fixture
 def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
     visual_shape.write_shape(tmp_path, [box("box")])
@@ -115,7 +103,7 @@ def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
         for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))
     }
     data = maps() | {"postures": {"upright": TARGETS, "level": TARGETS}, "tables": rows}
-    traces = {"upright": assigned(2.0), "level": assigned(1.0)}
+    traces = {"upright": falling(2.0, 40), "level": falling(1.0, 40)}
     return block_of(tmp_path, folder, data, "reach", traces=traces, links=LINKS)
 
 
@@ -142,15 +130,8 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(
     page = open_block(postures, **PHONE)
     assert texts(page, "output") == ["Answer 2, accepted."]  # the first that is
     page.locator("[aria-selected=true]").focus()
-    for key in (
-        "ArrowDown",
-        "ArrowRight",
-        "ArrowUp",
-        "ArrowLeft",
-        "ArrowLeft",
-        "ArrowDown",
-    ):
-        page.keyboard.press(key)  # right of 5 and left of 1 is no cell
+    for way in ("Down", "Right", "Up", "Left", "Left", "Down"):
+        page.keyboard.press(f"Arrow{way}")  # right of 5 and left of 1 is no cell
     assert (texts(page, "output"), texts(page, "dd")) == (
         ["Answer 4, accepted."],
         ["40", "0.250"],
