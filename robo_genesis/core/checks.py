@@ -94,16 +94,14 @@ def equal(label: str, found: Any, expected: Any, recorded: bool = True) -> Findi
     return Finding(label, value, value == required, quoted(required), recorded)
 
 
-def within(
-    label: str, found: float | None, expected: float, tolerance: float
-) -> Finding:
+def within(label: str, found: Any, expected: float, tolerance: float) -> Finding:
     """Require a value that differs from the expected one by no more than the tolerance."""
     passed = found is not None and abs(found - expected) <= tolerance
     return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
 
 
 def nearly(
-    label: str, found: float | None, expected: float, share: float, room: float = 0.0
+    label: str, found: Any, expected: float, share: float, room: float = 0.0
 ) -> Finding:
     """Require a value that differs from the expected one by a share of it and some room at most."""
     return within(label, found, expected, share * abs(expected) + room)

@@ -97,7 +97,7 @@ def brief(value: Any) -> str:
 
 Given = ParamSpec("Given")
 Written = Callable[..., Any]  # A function that a student wrote
-Rows = dict[str, Any]  # What a test gives the function and expects, by name
+Examples = dict[str, Any]  # What a test gives the function and expects, by name
 
 
 def as_test(

@@ -121,7 +121,7 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
         kp: (9,) position gains [N·m/rad or N/m].
     """
     angles = (mujoco_kinematics.gravity_effort(q) / kp)[:ARM]
-    return np.asarray(-kinematics.jacobian(q) @ angles)
+    return -kinematics.jacobian(q) @ angles
 
 
 def sag_lengths(run: Experiment, name: str) -> tuple[float, float, float, float]:
@@ -202,7 +202,7 @@ LONGEST_CURVE = 400  # Most postures of a self-motion in one direction
 
 def null_vector(q: FloatArray) -> FloatArray:
     """Return the direction (7,) of joint angles that leaves the hand at rest, of length 1."""
-    return np.asarray(np.linalg.svd(kinematics.jacobian(q))[2][-1])
+    return np.linalg.svd(kinematics.jacobian(q))[2][-1]
 
 
 def families(solutions: FloatArray) -> list[tuple[FloatArray, list[int]]]:

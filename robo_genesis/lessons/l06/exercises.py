@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
-from robo_genesis.core.exercises import Rows, Written, as_test, refused
+from robo_genesis.core.exercises import Examples, Written, as_test, refused
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.sim.arm.reaching import ANSWERS
 
@@ -69,7 +69,7 @@ SHAPES = ((1, 3), (3,), (6,), (3, 2), (2,), (2, 3, 1), (3, 3))
 
 # Environments that do not fit two rows and a scene of three environments.
 MASK = np.array([False, True])
-NUMBERS = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK)
+NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK)
 
 # Shape and environments of commands that must be refused.
 WRONG: list[tuple[Any, Any]] = [
@@ -130,7 +130,7 @@ class Machine:
 
 # Durations of the steps of the warm-up, steps of a repeat, and their duration in each
 # repeat.
-TRIALS: Rows = {
+TRIALS: Examples = {
     "steady": ([1, 1, 1], 10, [1] * 5),
     "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),
     "one_disturbed_repeat": ([1, 1], 10, [1, 1, 30, 1, 1]),

@@ -30,7 +30,7 @@ def to_target(run: Experiment, name: str, world: Environment) -> FloatArray:
     target = np.repeat(world.positions[:1], trace.steps + 1, axis=0)
     target[world.switch + 1 :] = world.positions[-1]
     apart = np.linalg.norm(trace.link_pos[:, HAND].astype(float) - target, axis=1)
-    return np.asarray(1000 * apart)
+    return 1000 * apart
 
 
 def distance(run: Experiment) -> Figure:

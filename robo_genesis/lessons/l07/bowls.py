@@ -214,4 +214,4 @@ def outside(hulls: list[Any], points: FloatArray) -> FloatArray:
         normals = hull.face_normals
         offsets = (normals * hull.triangles[:, 0]).sum(axis=1)
         beyond.append((points @ normals.T - offsets).max(axis=-1))
-    return np.asarray(np.min(beyond, axis=0))
+    return np.min(beyond, axis=0)

@@ -5,13 +5,13 @@ from math import inf, nan
 import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
-from robo_genesis.core.exercises import Rows, Written, as_test, compared
+from robo_genesis.core.exercises import Examples, Written, as_test, compared
 from robo_genesis.sim.arm.reaching import ONE_START, RESIDUALS
 from robo_genesis.sim.bodies.table import gap
 
 MEASURES = False
 
-PAIRS: Rows = {
+PAIRS: Examples = {
     "apart_along_x": ((0.0, 0.0, 0.2, 0.4), (0.5, 0.1, 0.1, 0.3)),
     "only_corners_near": ((0.1, 0.1, 0.1, 0.1), (0.21, 0.24, 0.1, 0.1)),
     "overlap_of_corners": ((0.0, 0.0, 0.2, 0.4), (0.18, -0.15, 0.2, 0.4)),
@@ -28,7 +28,7 @@ def footprints(margin: Written) -> Findings:
 
 
 # Positions of one coordinate [m], window, bound [m], and whether the object is at rest
-MOTIONS: Rows = {
+MOTIONS: Examples = {
     "exactly_the_bound": ([0, 0, 0, 0.25, 0, 0.25], 4, 0.25, True),
     "both_ways": ([0, 0, 0, 0.1875, -0.1875, 0, 0], 4, 0.25, False),
     "creeps": ([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], 4, 0.25, False),
@@ -59,7 +59,7 @@ def rest(at_rest: Written) -> Findings:
 
 
 # Segmentations, number of the object, area of its outline [pixel]
-PICTURES: Rows = {
+PICTURES: Examples = {
     "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0),
     "absent": ([[0, 1], [2, 0]], 4, 12.5),
     "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 2.0),
@@ -80,7 +80,7 @@ def pixels(visible: Written) -> Findings:
 
 # Heights of the fingertips at two answers [m], contacts, and whether the object is
 # reachable
-TIPS: Rows = {
+TIPS: Examples = {
     "all_good": ((0.136, 0.036), (0, 0, 0, 0), True),
     "at_limits": ((0.03, 0.02), (0, 0), True),
     "first_too_low": ((0.025, 0.025), (0,), False),
@@ -117,7 +117,7 @@ def reach(reachable: Written) -> Findings:
 GOOD = {"margin": (0.171, 0.005, inf), "mass": (0.0, 0.0, 0.01)}
 
 # Results by rung, and the first rung that fails
-RESULTS: Rows = {
+RESULTS: Examples = {
     "at_limits": (
         {"b": {"x": (2, 2, 5)}, "a": {"y": (5, 2, 5), "z": (-1, -1, -1)}},
         None,

@@ -33,20 +33,12 @@ def of_scenes(*scenes: str) -> MeasuringPage:
     )
 
 
-LECTURE = (
-    of_scenes(*spec.SCENES_OF_LECTURE)
-    .with_more(
-        lambda: spec.parameters(spec.runs(*spec.SCENES_OF_LECTURE) | spec.FURTHER),
-        runs_of(spec.FURTHER),
-        {"contacts": study.group("contacts", *spec.SCENES_OF_LECTURE, *spec.FURTHER)},
-        checks.LECTURE,
-    )
-    .with_more(
-        table_map.parameters,
-        table_map.RUNS,
-        table_map.READINGS,
-        (table_map.map_follows,),
-    )
+SCENES = spec.SCENES_OF_LECTURE
+LECTURE = of_scenes(*SCENES).with_more(
+    lambda: spec.parameters(spec.runs(*SCENES) | spec.FURTHER) | table_map.parameters(),
+    runs_of(spec.FURTHER) | table_map.RUNS,
+    {"contacts": study.group("contacts", *SCENES, *spec.FURTHER)} | table_map.READINGS,
+    (*checks.LECTURE, table_map.map_follows),
 )
 LAB = with_functions(
     of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder"

@@ -150,7 +150,7 @@ def moved(trace: ContactTrace) -> np.ndarray:
     """Return how far the centre goes from each place in the window that follows, (m,) [m]."""
     place, n = trace.link_pos[:, 0].astype(np.float64), round(WINDOW / trace.dt)
     later = np.stack([place[k : len(place) - n + k] for k in range(1, n + 1)])
-    return np.asarray(np.linalg.norm(later - place[:-n], axis=2).max(axis=0))
+    return np.linalg.norm(later - place[:-n], axis=2).max(axis=0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
 from robo_genesis.core.exercises import (
-    Rows,
+    Examples,
     Written,
     as_test,
     compared,
@@ -41,7 +41,7 @@ AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
 
 # Whether a phase of the arm ends and one of the fingers, and by array and joint what is
 # added to an arm at its goal with still fingers
-STATES: Rows = {
+STATES: Examples = {
     "at_its_goal": (True, True, {}),
     "nan": (False, True, {("q", 2): nan}),
     "near": (True, True, {("q", k): 0.9 * AT * (-1) ** k for k in range(ARM)}),
@@ -82,7 +82,7 @@ LATE, END, RIM = slice(5, None), slice(9, None), (0.55, 0.22, 0.05)
 
 # Array, index and value of each fault of an episode, and how many rungs the episode
 # passes
-EPISODES: Rows = {
+EPISODES: Examples = {
     "success": (7,),
     "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
     "done_at_first": ("phase", 0, 8, 0),

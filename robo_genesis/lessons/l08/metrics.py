@@ -32,12 +32,12 @@ def lowest(trace: Episodes, case: PickCase) -> FloatArray:
         reach = np.hypot(up[..., 0], up[..., 1]) * half[0] + up[..., 2] * half[2]
     else:
         reach = up @ half
-    return np.asarray(trace.object_pos[..., 2] - reach)
+    return trace.object_pos[..., 2] - reach
 
 
 def off_axis(trace: Episodes, case: PickCase) -> FloatArray:
     """Return the horizontal distance (n+1, e) of the object from the axis of the bowl [m]."""
-    return np.asarray(np.linalg.norm(trace.object_pos[..., :2] - case.bowl_at, axis=-1))
+    return np.linalg.norm(trace.object_pos[..., :2] - case.bowl_at, axis=-1)
 
 
 def pressed(trace: Episodes) -> np.ndarray:
@@ -76,7 +76,7 @@ RUNGS = ("planned", "held", "lifted", "carried", "released", "contained", "resti
 def reached(trace: Episodes, case: PickCase) -> np.ndarray:
     """Return how many rungs each episode passes before the first that it fails (e,)."""
     passed = np.stack([*rungs(trace, case).values()])
-    return np.asarray(np.logical_and.accumulate(passed).sum(axis=0))
+    return np.logical_and.accumulate(passed).sum(axis=0)
 
 
 def good(trace: Episodes, case: PickCase) -> np.ndarray:
@@ -162,14 +162,12 @@ def slides(trace: Episodes) -> tuple[FloatArray, FloatArray]:
 def at_closing(trace: Episodes) -> FloatArray:
     """Return where the middle of the pads is (e, 3) when the fingers begin to close [m]."""
     hand = hand_pose(trace.q[first_closing(trace), np.arange(trace.phase.shape[1])])
-    return np.asarray(
-        hand.position + rotate(hand.quat, np.array([0.0, 0.0, HAND_TO_PAD]))
-    )
+    return hand.position + rotate(hand.quat, np.array([0.0, 0.0, HAND_TO_PAD]))
 
 
 def first_closing(trace: Episodes) -> np.ndarray:
     """Return the first sample (e,) at which the fingers close."""
-    return np.asarray((trace.phase >= CLOSE).argmax(axis=0))
+    return (trace.phase >= CLOSE).argmax(axis=0)
 
 
 def grip(trace: Episodes, held: np.ndarray) -> tuple[float, float]:
@@ -186,4 +184,4 @@ def grip(trace: Episodes, held: np.ndarray) -> tuple[float, float]:
 def inside_move(trace: Episodes) -> np.ndarray:
     """Return the samples (n+1, e) of the move without its first and its last one."""
     moving = trace.phase == MOVE
-    return np.asarray(moving & np.roll(moving, 1, 0) & np.roll(moving, -1, 0))
+    return moving & np.roll(moving, 1, 0) & np.roll(moving, -1, 0)

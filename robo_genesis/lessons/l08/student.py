@@ -31,7 +31,7 @@ def missing(function: Written, *given: Any) -> bool:
 def waypoints(grasp_pose: Written, case: PickCase) -> list[FloatArray]:
     """Return the waypoints of a case by a student's function, as `PickCase.waypoints`."""
 
-    def asked(place: FloatArray, z: float) -> FloatArray:
+    def asked(place: Any, z: float) -> FloatArray:
         places = np.broadcast_to(place, case.beliefs.shape)
         return np.array([grasp_pose(np.append(at, z), case.size[2]) for at in places])
 
