@@ -88,8 +88,9 @@ def run_build(build: Build) -> list[str]:
 
         def finish(published: Path) -> None:
             _check(published / "html", progress)
-            now = up_to_date.inputs_digest(build.root, build.book)
-            up_to_date.record(published, inputs, now, summary(executed=0))
+            # After an edit during the build, the next one has work.
+            if up_to_date.inputs_digest(build.root, build.book) == inputs:
+                up_to_date.record(published, inputs, summary(executed=0))
 
         html = publish(target, rendered, results, finish)
         progress("publish", str(html))

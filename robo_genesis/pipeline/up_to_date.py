@@ -14,7 +14,7 @@ from pathlib import Path
 from robo_genesis.core import project
 from robo_genesis.core.files import files_below, files_digest, json_digest
 from robo_genesis.core.git import git_or_none
-from robo_genesis.core.project import PUBLISHED, ProjectError
+from robo_genesis.core.project import PUBLISHED
 
 # Lies beside the site's HTML and describes the site that was published with it.
 RECORD = "build.json"
@@ -90,51 +90,24 @@ def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
         book: the folder of the pages.
         published: the folder of the published site.
     """
+    now = {"inputs": inputs_digest(root, book), "site": site_digest(published)}
     try:
-        project.require_pinned_engine(root)
-        lines = recorded_lines(published, inputs_digest(root, book))
-    except (ProjectError, OSError):
-        return []  # the build reports it
-    site = [
-        "Nothing changed: the site is up to date.",
-        f"Site: {published / 'html/index.html'}",
-    ]
-    return lines and [*site, *lines]
+        record = json.loads((published / RECORD).read_text("utf8"))
+        if any(record[name] != digest for name, digest in now.items()):
+            return []
+        site = f"Site: {published / 'html/index.html'}"
+        return ["Nothing changed: the site is up to date.", site, *record["lines"]]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
 
 
-def record(published: Path, inputs: str, now: str, lines: Sequence[str]) -> None:
+def record(published: Path, inputs: str, lines: Sequence[str]) -> None:
     """Write beside a site from which inputs it was made, and the last lines of its build.
-
-    Nothing is written, and so the next build has work, if the inputs changed during the
-    build.
 
     Args:
         published: the folder of the complete site.
-        inputs: the digest of the inputs when the build began.
-        now: the same at its end.
+        inputs: the digest of the inputs.
         lines: the last lines of a build without work.
     """
-    if inputs == now:
-        record = {
-            "inputs": inputs,
-            "site": site_digest(published),
-            "lines": list(lines),
-        }
-        (published / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf8")
-
-
-def recorded_lines(published: Path, inputs: str) -> list[str]:
-    """Return the last lines of the build that made the site, none if there is work to do.
-
-    Args:
-        published: the folder of the published site.
-        inputs: the digest of the inputs of a build now.
-    """
-    try:
-        record = json.loads((published / RECORD).read_text("utf8"))
-        current = record["inputs"] == inputs and record["site"] == site_digest(
-            published
-        )
-        return list(record["lines"]) if current else []
-    except (OSError, ValueError, KeyError, TypeError):
-        return []
+    made = {"inputs": inputs, "site": site_digest(published), "lines": list(lines)}
+    (published / RECORD).write_text(json.dumps(made, indent=1) + "\n", "utf8")

@@ -1,5 +1,4 @@
 import shutil
-from dataclasses import replace
 
 import pytest
 from bundles import QUADRANTS
@@ -19,17 +18,6 @@ def test_a_sound_bundle_is_verified(folder):
     assert (status.state, status.reason) == ("verified", "")
     assert status.sentence.startswith("Lab run by hand, Genesis ")
     assert "checks passed, camera frames by llvmpipe, measured 20" in status.sentence
-
-
-def test_a_build_without_a_camera_says_clean_kernel_and_skip(
-    recorder, experiment, monkeypatch
-):
-    monkeypatch.setenv("ROBO_GENESIS_COMMAND", "make book")
-    recorder.contract = replace(recorder.contract, render=False)
-    written = recorder.write(replace(experiment, frames={}, rendered=False), None)
-    sentence = bundle_status(written).sentence
-    assert "clean notebook kernel" in sentence
-    assert "camera SKIP" in sentence
 
 
 OLD_ENGINE = f"Genesis 1.2.0; this site uses {project.engine_pin()}."
