@@ -58,7 +58,7 @@ OUTSIDE = dict(os.environ)
 def executed_pages() -> PageIndex:
     """Return the executed pages from which the site was built."""
     pages = find_pages(BOOK)
-    into = places(pages, CACHE / STORE, ROOT, OUTSIDE)
+    into = places(pages, CACHE / STORE, OUTSIDE)
     results = [stored_result(page, into[page.docname]) for page in pages]
     absent = [
         page.docname for page, found in zip(pages, results, strict=True) if not found

@@ -44,7 +44,6 @@ class Build:
     that bundles name.
     """
 
-    root: Path = project.ROOT
     book: Path = project.BOOK
     cache: Path = project.CACHE
     jobs: int = os.cpu_count() or 1
@@ -71,7 +70,9 @@ def run_build(build: Build) -> list[str]:
     """
     with build_lock(build.cache):
         target, progress = build.to or build.book, Progress(build.say)
-        inputs = up_to_date.inputs_digest(build.root, build.book)  # before any is read
+        inputs = up_to_date.inputs_digest(
+            project.ROOT, build.book
+        )  # before any is read
         engine, pages, into = prepare(build)
         npm.packages()
         about = [*described(), f"Engine: {project.ENGINE} {engine}"]
@@ -89,7 +90,7 @@ def run_build(build: Build) -> list[str]:
         def finish(published: Path) -> None:
             _check(published / "html", progress)
             # After an edit during the build, the next one has work.
-            if up_to_date.inputs_digest(build.root, build.book) == inputs:
+            if up_to_date.inputs_digest(project.ROOT, build.book) == inputs:
                 up_to_date.record(published, inputs, summary(executed=0))
 
         html = publish(target, rendered, results, finish)
@@ -138,14 +139,14 @@ def prepare(
         build: where book and caches are.
         store: a folder of the caches.
     """
-    require_history(build.root)
+    require_history(project.ROOT)
     settle_below(build.book / "evidence")
     settle_below(build.cache / project.STORE)
     settle((build.to or build.book) / project.PUBLISHED)
     project.remove_stale_kernel_lock(build.cache)
-    engine = project.require_pinned_engine(build.root)
+    engine = project.require_pinned_engine()
     pages = find_pages(build.book)
-    return engine, pages, places(pages, build.cache / store, build.root)
+    return engine, pages, places(pages, build.cache / store)
 
 
 def execute(
@@ -177,7 +178,7 @@ def execute(
             progress("verify", name, f"refused: {error}")
             refusals.append(f"{name}: the bundle {result.bundle} is refused: {error}")
 
-    environment = kernel_environment(build.root, build.cache, build.command)
+    environment = kernel_environment(build.cache, build.command)
     results = execute_pages(
         pages,
         into,

@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -256,12 +257,12 @@ def test_sphinx_ends_with_a_killed_build(tmp_path):
     os.mkfifo(pipe)
     process = start("book", tmp_path)
     wait(process, cache / "render/executed-pages.json")
-    below = psutil.Process(process.pid).children(recursive=True)
+    while not (below := psutil.Process(process.pid).children(recursive=True)):
+        time.sleep(0.05)
     process.kill()
     process.communicate()
     try:
         assert psutil.wait_procs(below, timeout=5)[1] == []
-        assert below
     finally:
         kill_with_descendants(child.pid for child in below)
     assert marker.read_text() == "the old site"

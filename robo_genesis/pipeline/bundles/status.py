@@ -115,7 +115,6 @@ def bundle_status(
     absent: str = "There is no such folder.",
     book: Path = project.BOOK,
     *,
-    root: Path = project.ROOT,
     once: bool = False,
 ) -> Status:
     """Return the state of the bundle in a folder that is named after its backend.
@@ -126,7 +125,6 @@ def bundle_status(
         page: the required page, None for any.
         absent: the reason if there is no bundle.
         book: the folder of the pages.
-        root: the checkout, for pin, lock and modules.
         once: see `verify_bundle`.
 
     Raises:
@@ -136,9 +134,7 @@ def bundle_status(
     if not folder.exists():
         return Status("missing", backend, absent, None)
     try:
-        manifest = verify_bundle(
-            folder, lesson=lesson, page=page, root=root, book=book, once=once
-        )
+        manifest = verify_bundle(folder, lesson=lesson, page=page, book=book, once=once)
     except BundleRefused as refusal:
         code, summary = refusal.code, SUMMARIES.get(refusal.code, UNREADABLE)
         if code == "stale":

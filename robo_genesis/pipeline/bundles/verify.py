@@ -90,13 +90,13 @@ def changed(manifest: Manifest, root: Path, book: Path) -> list[tuple[str, Any, 
     return list(differences(recorded, current))
 
 
-def check_current(manifest: Manifest, root: Path, book: Path) -> None:
+def check_current(manifest: Manifest, book: Path) -> None:
     """Require that a bundle has the evidence key of the checkout.
 
     Raises:
         BundleRefused: `stale`, with everything that differs; `lesson`.
     """
-    if differing := changed(manifest, root, book):
+    if differing := changed(manifest, project.ROOT, book):
         named = "; ".join(
             f"{path} is {quoted(here)}, expected {quoted(there)}"
             for path, here, there in differing
@@ -114,7 +114,6 @@ def verify_bundle(
     *,
     lesson: str | None = None,
     page: str | None = None,
-    root: Path = project.ROOT,
     book: Path = project.BOOK,
     once: bool = False,
 ) -> Manifest:
@@ -126,7 +125,6 @@ def verify_bundle(
         folder: the bundle, named after its actual backend.
         lesson: the required lesson, None for any.
         page: the required page, None for any.
-        root: the checkout, for pin, lock and modules.
         book: the folder of the pages.
         once: whether metrics and checks are not computed again if they were accepted
             before, with the same files of the bundle and the same code of the course.
@@ -146,7 +144,7 @@ def verify_bundle(
         expect("lesson", MANIFEST, what, found, required or found, MOVE)
     bundle.check_files(folder, manifest)
     check_backend(folder, manifest)
-    check_current(manifest, root, book)
+    check_current(manifest, book)
     if once:
         inputs = [bundle.sha256(folder / MANIFEST), manifest.files, _code()]
         derived_value("accepted", inputs, lambda: recompute(folder, manifest))

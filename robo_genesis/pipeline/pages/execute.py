@@ -157,16 +157,15 @@ class Schedule:
         self.events.put((run, result))
 
 
-def kernel_environment(root: Path, cache: Path, command: str) -> dict[str, str]:
+def kernel_environment(cache: Path, command: str) -> dict[str, str]:
     """Return the variables that every kernel of a command gets.
 
     Args:
-        root: the checkout.
         cache: the folder of the caches.
         command: the command that bundles name.
     """
     return {
-        **project.engine_cache_environment(root, cache),
+        **project.engine_cache_environment(cache=cache),
         **project.environment_contract(),
         project.COMMAND: command,
     }

@@ -6,7 +6,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.page_folder import (
     PageRefused,
@@ -26,7 +25,6 @@ KEPT = 3  # Folders that are kept of each page; RENDER=0 and RENDER=1 have one e
 def places(
     pages: Iterable[Page],
     store: Path,
-    root: Path = ROOT,
     environment: Mapping[str, str] | None = None,
 ) -> dict[str, Path]:
     """Return where the store has each page, or will have it, by name.
@@ -34,10 +32,9 @@ def places(
     Args:
         pages: the pages of the book.
         store: the folder of all executed pages.
-        root: the checkout.
         environment: variables, by default those of this process.
     """
-    store, tree = store.absolute(), Tree(root)
+    store, tree = store.absolute(), Tree()
     return {
         page.docname: executions(store, page)
         / page_fingerprint(page, tree, environment)

@@ -138,7 +138,7 @@ def _is_kept(
     """Return whether a lab has an accepted bundle of this backend, and say so."""
     lesson, build = str(page.lesson), recording.build
     place = recording.evidence / lesson / backend
-    kept = bundle_status(place, lesson, RECORDED_PAGE, book=build.book, root=build.root)
+    kept = bundle_status(place, lesson, RECORDED_PAGE, book=build.book)
     if kept.manifest:
         progress("keep", lesson, f"{kept.badge}; LESSON={lesson} records it again")
     return kept.manifest is not None
