@@ -5,8 +5,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tiny_book import SETTINGS
-
 from robo_genesis.core.git import git
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline.release import environment
@@ -23,10 +21,9 @@ def copy_checkout(work: Path) -> Path:
 
 
 def run_in(work: Path, *command: str, fails: bool = False) -> str:
-    """Run a command in a copy, with no setting of an outer make; `python` is this interpreter."""
+    """Run a command in a copy, with no flag of an outer make; `python` is this interpreter."""
     words = [sys.executable if word == "python" else word for word in command]
-    given = {n: v for n, v in environment(work).items() if n not in SETTINGS}
-    given |= {"PYTHONDONTWRITEBYTECODE": "1"}
+    given = environment(work) | {"PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(words, cwd=work, env=given, capture_output=True, text=True)
     said = done.stdout + done.stderr
     assert (done.returncode != 0) == fails, said
