@@ -285,13 +285,12 @@ def log_axis(ax: Axes, ticks: Iterable[float], label: str) -> None:
     ax.set_xlabel(label)
 
 
-def label_ends(ax: Axes, title: str) -> None:
+def label_ends(ax: Axes, title: str, ylabel: str) -> None:
     """Write the label of each line beside its last point, in its colour; labels keep a distance.
 
     Call it when all lines are drawn: it fixes the vertical range.
     """
-    ax.set_title(title)
-    ax.set_ylim(ax.get_ylim())
+    ax.set(title=title, ylabel=ylabel, ylim=ax.get_ylim())
     lines = [
         line for line in ax.get_lines() if not str(line.get_label()).startswith("_")
     ]

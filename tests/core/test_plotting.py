@@ -59,7 +59,7 @@ def test_labels_are_beside_the_ends_of_lines_in_their_order_and_apart():
     for name, end in {"b": 2.0, "a": 1.99, "top": 900.0, "c": 2.01}.items():
         ax.semilogy([0, 1], [50, end], label=name)
     ax.axvline(0.5)
-    plotting.label_ends(ax, "title")
+    plotting.label_ends(ax, "title", "z [mm]")
     found = sorted((text.xy[1], text.get_text()) for text in ax.texts)
     assert [name for _, name in found] == ["a", "b", "c", "top"]
     heights = np.array([height for height, _ in found])

@@ -39,8 +39,9 @@ def distance(run: Experiment) -> Figure:
     for name, world in spec.WORLDS.items():
         apart, style = to_target(run, name, world), look(spec.CASE_MARKS[name])
         ax.semilogy(run.traces[name].t, apart, label=spec.LABELS[name], **style)
-    ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
-    plotting.label_ends(ax, "Distance of each hand from its target")
+    ax.set_xlabel("time [s]")
+    title, ylabel = "Distance of each hand from its target", "hand to target [mm]"
+    plotting.label_ends(ax, title, ylabel)
     ax.axvline(spec.SWITCH * spec.FIRST.dt, **LINE)
     return figure
 

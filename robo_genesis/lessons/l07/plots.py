@@ -46,8 +46,8 @@ def settling(run: Experiment) -> Figure:
         gap = 1000 * (trace.link_pos[:, OBJECT, 2] - case.size[2] / 2 - case.place[2])
         ax.plot(trace.t, gap, label=spec.LABELS[name], **look(spec.CASE_MARKS[name]))
     ax.axvline(trace.t[-WINDOW - 1], **LINE)
-    ax.set(xlabel="time [s]", ylabel="gap below [mm]")
-    plotting.label_ends(ax, "Gap between object and table")
+    ax.set_xlabel("time [s]")
+    plotting.label_ends(ax, "Gap between object and table", "gap below [mm]")
     return figure
 
 
@@ -60,8 +60,8 @@ def lifts(run: Experiment) -> Figure:
         ax.plot(trace.t, rise, label=label, **look(spec.CASE_MARKS.get(name, "other")))
     for phase in ("settle", "close", "lift"):
         ax.axvline(trace.t[ENDS[phase]], **LINE)
-    ax.set(xlabel="time [s]", ylabel="rise [mm]")
-    plotting.label_ends(ax, "Height of the objects above their start")
+    ax.set_xlabel("time [s]")
+    plotting.label_ends(ax, "Height of the objects above their start", "rise [mm]")
     return figure
 
 

@@ -139,20 +139,7 @@ LIMITS: dict[str, tuple[float, float]] = {
     "rise": (0.8, np.inf),
 }
 
-RESOLUTION = rest.RESOLUTION | {
-    "s": DT / 2,
-    "%": 1.0,
-    "m": 1e-5,
-    "rad": 1e-5,
-    "rad/s": 1e-3,
-    "1": 0.5,
-    "kg": 1e-6,
-    "pixels": 3.0,
-    "steps": 0.5,
-    "points": 0.5,
-    "poses": 0.5,
-    "postures": 0.5,
-}
+RESOLUTION = rest.RESOLUTION | {"s": DT / 2, "1": 0.5}
 
 # Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of
 # the table have no bound: rounding decides which of many postures a search finds.

@@ -47,7 +47,8 @@ def batch(
     starts: FloatArray, errors: FloatArray | float = 0.0, **more: Any
 ) -> PickCase:
     """Return episodes with these starts (e, 2) and errors (e, 2) of what the expert believes."""
-    return replace(spec.ASKEW, starts=starts, beliefs=starts + errors, **STEPS, **more)
+    settings = STEPS | more
+    return replace(spec.ASKEW, starts=starts, beliefs=starts + errors, **settings)
 
 
 def cases() -> dict[str, PickCase]:
@@ -67,8 +68,9 @@ def cases() -> dict[str, PickCase]:
         "timed": batch(
             np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)
         ),
-        "paced": replace(
-            batch(np.tile(timed, (len(STRIDES), 1)), stride=np.repeat(STRIDES, TIMED)),
+        "paced": batch(
+            np.tile(timed, (len(STRIDES), 1)),
+            stride=np.repeat(STRIDES, TIMED),
             steps=90,
         ),
         "boxes": batch(starts, shape="box", size=OBLONG, yaws=yaws),

@@ -1,6 +1,7 @@
 """Checks of the functions that a student writes in L08's lab; see `core/exercises.py`."""
 
 from functools import partial
+from itertools import product
 from math import nan
 from typing import Any
 
@@ -64,13 +65,12 @@ def ends(ended: Written) -> Findings:
         state = {"q": goal.copy(), "qd": np.zeros(ARM + 2)}
         for (array, joint), value in changed.items():
             state[array][joint] += value
-        for since in (1, 4, 5, 90):
-            for of_fingers in (False, True):
-                early = of_fingers and since < picking.CLOSING
-                right = expected[of_fingers] and not early
-                rows.append((*state.values(), goal[:ARM], of_fingers, since, right))
-                label = f"{name}.of_fingers_{of_fingers}_since_{since}"
-                yield equal(label, bool(ended(*rows[-1][:-1])), right)
+        for since, of_fingers in product((1, 4, 5, 90), (False, True)):
+            early = of_fingers and since < picking.CLOSING
+            right = expected[of_fingers] and not early
+            rows.append((*state.values(), goal[:ARM], of_fingers, since, right))
+            label = f"{name}.of_fingers_{of_fingers}_since_{since}"
+            yield equal(label, bool(ended(*rows[-1][:-1])), right)
     *batch, answers = (np.array(column) for column in zip(*rows, strict=True))
     found = np.asarray(ended(*batch))
     yield equal("batch.shape", list(found.shape), [len(rows)])

@@ -34,8 +34,7 @@ def phases(run: Experiment) -> Figure:
     below.set(
         yticks=range(len(picking.PHASES)), yticklabels=picking.PHASES, xlabel="time [s]"
     )
-    above.set_ylabel("z [mm]")
-    plotting.label_ends(above, "Height of hand and object, and the phase")
+    plotting.label_ends(above, "Height of hand and object, and the phase", "z [mm]")
     return figure
 
 
