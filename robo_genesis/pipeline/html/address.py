@@ -2,7 +2,6 @@
 
 import os
 import re
-from collections.abc import Mapping
 from urllib.parse import urlsplit
 
 from robo_genesis.core.project import ProjectError, solutions_shown
@@ -14,13 +13,13 @@ FOLDER = re.compile(
 )
 
 
-def site_address(environment: Mapping[str, str] = os.environ) -> str | None:
+def site_address() -> str | None:
     """Return the site's address with a slash at its end, None if none is given.
 
     Raises:
         ProjectError: it is not the address of a folder of the web.
     """
-    given = environment.get(SITE_URL)
+    given = os.environ.get(SITE_URL)
     if not given:
         return None
     if not FOLDER.fullmatch(given.rstrip("/")):
@@ -31,9 +30,9 @@ def site_address(environment: Mapping[str, str] = os.environ) -> str | None:
     return given.rstrip("/") + "/"
 
 
-def site_root(environment: Mapping[str, str] = os.environ) -> str:
+def site_root() -> str:
     """Return the path of the site's root on its server, `/` if no address is given."""
-    return urlsplit(site_address(environment) or "/").path
+    return urlsplit(site_address() or "/").path
 
 
 def described() -> list[str]:

@@ -53,7 +53,6 @@ def execute_pages(
 
     Returns:
         One result for each page, in the order of `pages`.
-
     """
     results = _stored(pages, places, say)
     logs.mkdir(parents=True, exist_ok=True)

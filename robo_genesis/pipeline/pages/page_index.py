@@ -10,7 +10,6 @@ from pydantic import Field
 
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.bundle import Strict
-from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.page_folder import OUTPUTS, SECONDS, executed_cells
 from robo_genesis.pipeline.pages.results import PageResult
 
@@ -34,14 +33,11 @@ class PageIndex(Strict):
         """Return the pages of a build from their results, of which none failed."""
         found = cls()
         for result in results:
-            found.add(result.page, result.folder)
+            page, folder = result.page, result.folder
+            found.folders[page.docname] = folder
+            if page.declares_bundle:
+                found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
         return found
-
-    def add(self, page: Page, folder: Path) -> None:
-        """Add a page with its folder in the store."""
-        self.folders[page.docname] = folder
-        if page.declares_bundle:
-            self.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
 
     def write(self, path: Path) -> dict[str, str]:
         """Write the file and return the variable that names it."""

@@ -33,7 +33,6 @@ class Tree:
         self.root = root
         self.module: Callable[[str], Path | None] = cache(self._module)
         self.code: Callable[[Path], ModuleCode] = cache(self._code)
-        self.digest: Callable[[Path], str] = cache(sha256)
 
     def _module(self, name: str) -> Path | None:
         """Return the file of a module, None if the name is not a module."""
@@ -98,7 +97,7 @@ class Tree:
         names = (name.split(".") for name in modules)
         lessons = {name[2] for name in names if name[1:2] == ["lessons"] and name[2:]}
         return {
-            path.relative_to(package).as_posix(): self.digest(path)
+            path.relative_to(package).as_posix(): sha256(path)
             for folder in ("core", "sim", *(f"lessons/{each}" for each in lessons))
             for path in files_below(package / folder, left_out=NO_SOURCE)
             if path.suffix != ".py"
