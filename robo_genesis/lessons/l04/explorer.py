@@ -14,7 +14,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.tables import as_table
 from robo_genesis.core.text import decimal, format_value
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
+from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import (
     CASE_POINTS,
     KP,
@@ -66,12 +66,11 @@ def written(measured: StepMetrics) -> dict[str, str]:
 def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     """Describe a point, its overshoot, and whether it saturated."""
     name = f" (the case {NAMES[point]})" if point in NAMES else ""
-    overshoot = "none"
+    overshoot, force = "none", "Not saturated: no sample"
     if measured.overshoot > 0:
         overshoot = f"{share_text(measured.overshoot / point.step)} of the step"
-    force = "Not saturated: no sample"
-    if count := measured.saturation_samples:
-        force = f"Saturated: {count} of {samples} samples"
+    if measured.saturation_samples:
+        force = f"Saturated: {measured.saturation_samples} of {samples} samples"
     return (
         f"KP {point.kp:g}, KV {point.kv:g}, step {point.step:g} rad{name}. "
         f"Overshoot: {overshoot}. {force} at the force limit."
@@ -122,10 +121,18 @@ def _map(run: Experiment, step: float) -> dict[str, Any]:
     start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
     target, room = start + step, 0.08 * step
     highest = max(start + PACKED["q"] * max(max(cell["q"]) for cell in cells), target)
-    q = _axis(
-        (start, start + step / 2, target), (start - room, highest + room), 3, "target"
-    )
-    force = _axis((-limit, 0.0, limit), (-1.15 * limit, 1.15 * limit), 0, "limit")
+    q = {
+        "low": start - room,
+        "high": highest + room,
+        "ticks": _ticks((start, start + step / 2, target), 3),
+        "levels": [{"value": target, "mark": "target"}],
+    }
+    force = {
+        "low": -1.15 * limit,
+        "high": 1.15 * limit,
+        "ticks": _ticks((-limit, 0.0, limit), 0),
+        "levels": [{"value": value, "mark": "limit"} for value in (-limit, limit)],
+    }
     return maps.grid(
         "Map of the runs: KP upwards, KV to the right.",
         [f"{kv:g}" for kv in KV],
@@ -137,17 +144,9 @@ def _map(run: Experiment, step: float) -> dict[str, Any]:
     )
 
 
-def _axis(
-    ticks: Sequence[float], ends: Sequence[float], digits: int, mark: str
-) -> dict[str, Any]:
-    """Return the value axis of a curve, with a mark of the palette at its target or limits."""
-    marked = ticks[-1:] if mark == "target" else ticks[::2]
-    return {
-        "low": ends[0],
-        "high": ends[1],
-        "ticks": [{"value": tick, "label": decimal(tick, digits)} for tick in ticks],
-        "levels": [{"value": value, "mark": mark} for value in marked],
-    }
+def _ticks(values: Sequence[float], digits: int) -> list[dict[str, Any]]:
+    """Return the ticks of the value axis of a curve."""
+    return [{"value": value, "label": decimal(value, digits)} for value in values]
 
 
 def _measure(name: str) -> dict[str, Any]:
@@ -159,7 +158,7 @@ def _measure(name: str) -> dict[str, Any]:
         "noun": NOUNS[name],
         "lower": words[0],
         "higher": words[1],
-        "margin": max(MARGINS[name], RESOLUTION[UNITS[name]]),
+        "margin": MARGINS[name],
         "within": margin_text(name),
     }
 

@@ -10,6 +10,7 @@ from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import PARTS, marks_of
 from robo_genesis.core.plotting import BAND, LIMIT, LINE, log_axis, look
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study, study_spec
@@ -157,17 +158,12 @@ def _target(ax: Axes, trace: Trace) -> None:
 
 def theory(run: Experiment) -> Figure:
     """Draw the compared cases over the ideal joint's response, one case on each axes."""
-    start, t = spec.BASELINE.q_start[ENTRY], run.traces["G1"].t
-    figure = plotting.figure(7)
-    axes = figure.subplots(len(COMPARED), 1, sharex=True)
-    for ax, name in zip(axes, COMPARED, strict=True):
-        ideal = start + spec.STEP * study.ideal(run, name).response(t)
-        curve = run.traces[name].q[:, ENTRY]
-        ax.axhline(start + spec.STEP, **LINE)
-        ax.plot(t, ideal, label="ideal joint", **IDEAL)
-        ax.plot(t, curve, label="measured", **look(CASE_MARKS[name]))
-        _beginning(ax, name, f"q of {STEPPED_JOINT} [rad]")
-    return figure
+    start = spec.BASELINE.q_start[ENTRY]
+    curves = {
+        name: {"measured": (run.traces[name].q[:, ENTRY], CASE_MARKS[name])}
+        for name in COMPARED
+    }
+    return _over_ideal(run, 7, curves, start, spec.STEP, f"q of {STEPPED_JOINT} [rad]")
 
 
 def step_size(run: Experiment) -> Figure:
@@ -175,23 +171,47 @@ def step_size(run: Experiment) -> Figure:
 
     The curve of the ideal joint is dashed.
     """
-    t, figure = run.traces["G1"].t, plotting.figure(5.6)
-    axes = figure.subplots(2, 1, sharex=True)
-    for ax, name in zip(axes, study_spec.SMALL_STEPPED, strict=True):
-        ax.axhline(1.0, **LINE)
-        ax.plot(t, study.ideal(run, name).response(t), label="ideal joint", **IDEAL)
-        small, large = study.share(run, name, "small"), study.share(run, name)
-        ax.plot(t, small, label=f"+{study_spec.SMALL_STEP:g} rad", **look("other"))
-        ax.plot(t, large, label=f"+{spec.STEP:g} rad", **look(CASE_MARKS[name]))
-        _beginning(ax, name, "share of the step")
+    small, large = f"+{study_spec.SMALL_STEP:g} rad", f"+{spec.STEP:g} rad"
+    curves = {
+        name: {
+            small: (study.share(run, name, "small"), "other"),
+            large: (study.share(run, name), CASE_MARKS[name]),
+        }
+        for name in study_spec.SMALL_STEPPED
+    }
+    return _over_ideal(run, 5.6, curves, 0.0, 1.0, "share of the step")
+
+
+def _over_ideal(
+    run: Experiment,
+    height: float,
+    curves: Mapping[str, Mapping[str, tuple[FloatArray, str]]],
+    start: float,
+    step: float,
+    ylabel: str,
+) -> Figure:
+    """Draw the beginning of responses over the ideal joint's, one case on each axes.
+
+    Args:
+        run: the experiment.
+        height: of the figure [inch].
+        curves: by case and label, a response (n+1,) and its mark in the palette.
+        start: value at the start, in the unit of the responses.
+        step: height of the step, in this unit.
+        ylabel: their name.
+    """
+    figure = plotting.figure(height)
+    axes = figure.subplots(len(curves), 1, sharex=True)
+    for ax, (case, drawn) in zip(axes, curves.items(), strict=True):
+        t, ideal = run.traces[case].t, study.ideal(run, case)
+        ax.axhline(start + step, **LINE)
+        ax.plot(t, start + step * ideal.response(t), label="ideal joint", **IDEAL)
+        for label, (response, mark) in drawn.items():
+            ax.plot(t, response, label=label, **look(mark))
+        ax.set(title=case, xlim=(0, START), xlabel="time [s]", ylabel=ylabel)
+        ax.legend(loc="lower right")
+        ax.label_outer()
     return figure
-
-
-def _beginning(ax: Axes, title: str, ylabel: str) -> None:
-    """Show the beginning of a response."""
-    ax.set(title=title, xlim=(0, START), xlabel="time [s]", ylabel=ylabel)
-    ax.legend(loc="lower right")
-    ax.label_outer()
 
 
 def overshoot_by_step(run: Experiment) -> Figure:
@@ -200,12 +220,12 @@ def overshoot_by_step(run: Experiment) -> Figure:
     The mark of an unstable run is hollow, and no line leads there.
     """
     figure, ax = plotting.axes(3.8)
-    steps = 1000 * spec.G2.dt / np.array(study_spec.SUBSTEPS_STUDIED)
+    substeps = study_spec.SUBSTEPS_STUDIED
+    steps = 1000 * spec.G2.dt / np.array(substeps)
     for engine, label in ENGINE_LABELS.items():
         style = ENGINE_STYLES[label] | {"markersize": 6}
-        found = study.overshoot_by_substeps(run, engine)
-        hollow = np.array([study.unstable(run, engine, n) for n in found])
-        values = np.array([*found.values()])
+        hollow = np.array([study.unstable(run, engine, n) for n in substeps])
+        values = np.array([*study.overshoot_by_substeps(run, engine).values()])
         ax.plot(steps[~hollow], values[~hollow], label=label, **style)
         if hollow.any():
             empty = style | {"linestyle": "", "markerfacecolor": PARTS["ground"].light}

@@ -58,15 +58,23 @@ def measure(trace: Trace, case: ControlCase) -> StepMetrics:
     return step_metrics(trace, ENTRY)
 
 
+def of_joint(values: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Return the stepped joint's entry of each array (d,)."""
+    return {name: float(array[ENTRY]) for name, array in values.items()}
+
+
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     """Read passive damping, inertia and gravity effort at the start, in Genesis."""
     q, dofs = spec.BASELINE.q_start, joints.dofs_idx_local.tolist()
-    found = {
-        "passive_damping": dynamics.passive_damping(robot, dofs),
-        "inertia_Genesis": dynamics.effective_inertia(scene, robot, joints, q),
-        "gravity_at_start_Genesis": dynamics.gravity_effort(scene, robot, joints, q),
-    }
-    return {name: float(values[ENTRY]) for name, values in found.items()}
+    return of_joint(
+        {
+            "passive_damping": dynamics.passive_damping(robot, dofs),
+            "inertia_Genesis": dynamics.effective_inertia(scene, robot, joints, q),
+            "gravity_at_start_Genesis": dynamics.gravity_effort(
+                scene, robot, joints, q
+            ),
+        }
+    )
 
 
 def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
@@ -83,24 +91,26 @@ def read_gravity(
     scene: Any, robot: Any, joints: JointMap, traces: Mapping[str, Trace]
 ) -> dict[str, float]:
     """Read the gravity effort at the end state of each case, in Genesis."""
-    ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES}
-    efforts = {
-        n: dynamics.gravity_effort(scene, robot, joints, q) for n, q in ends.items()
-    }
-    return {name: float(of[ENTRY]) for name, of in efforts.items()}
+    return of_joint(
+        {
+            f"gravity_{name}": dynamics.gravity_effort(
+                scene, robot, joints, traces[name].q[-1]
+            )
+            for name in spec.CASES
+        }
+    )
 
 
 def by_model(traces: Mapping[str, Trace]) -> dict[str, float]:
-    """Return every value of `GROUP` by the model in MuJoCo, for the cases that have a trace."""
-    start = mujoco_kinematics.at_rest(spec.G1.q_start)
-    inertia, gravity, damping = (float(of[ENTRY]) for of in start)
+    """Return every value of `GROUP` by the model in MuJoCo."""
+    inertia, gravity, damping = mujoco_kinematics.at_rest(spec.G1.q_start)
     found = dict(zip(AT_START, (damping, inertia, gravity), strict=True))
-    found |= {f"mass_KV_{kv:g}": inertia + H * (damping + kv) for kv in COMPARED_KV}
-    ends = {
-        f"gravity_{name}": traces[name].q[-1] for name in spec.CASES if name in traces
-    }
-    efforts = {name: mujoco_kinematics.gravity_effort(q) for name, q in ends.items()}
-    return found | {name: float(of[ENTRY]) for name, of in efforts.items()}
+    for kv in COMPARED_KV:
+        found[f"mass_KV_{kv:g}"] = inertia + H * (damping + kv)
+    for name in spec.CASES:
+        end = traces[name].q[-1]
+        found[f"gravity_{name}"] = mujoco_kinematics.gravity_effort(end)
+    return of_joint(found)
 
 
 def implicit_term(run: Experiment, kv: float) -> float:
@@ -117,7 +127,7 @@ def damping_ratio(case: str) -> FloatArray:
     """Return h (KV + d) / I of each joint (d,) at the start, by the model in MuJoCo."""
     settings = study_spec.COMPARED[case]
     inertia, _, damping = mujoco_kinematics.at_rest(settings.q_start)
-    return np.asarray(H * (settings.kv + damping) / inertia)
+    return H * (settings.kv + damping) / inertia
 
 
 def ideal(run: Experiment, case: str) -> IdealJoint:
@@ -179,17 +189,12 @@ def overshoots(run: Experiment, case: str, height: float) -> tuple[float, float,
     )
 
 
-def leaves_ideal(run: Experiment, case: str) -> tuple[int, float]:
-    """Return the first sample at which a case is too far from the ideal joint, and how far it gets.
-
-    The sample is the last one if the distance [rad] never exceeds `PARTING_THRESHOLD`.
-    """
+def distance_from_ideal(run: Experiment, case: str) -> FloatArray:
+    """Return the distance of a case from the ideal joint at each state, (n+1,) [rad]."""
     trace = run.traces[case]
     q = trace.q[:, ENTRY].astype(float)
     step = float(study_spec.COMPARED[case].q_target[ENTRY]) - q[0]
-    distance = np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
-    beyond = np.flatnonzero(distance > study_spec.PARTING_THRESHOLD)
-    return int(beyond[0]) if beyond.size else trace.steps, float(distance.max())
+    return np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
 
 
 def at_limit_until(trace: Trace) -> float:
@@ -229,11 +234,6 @@ def run_name(engine: str, case: str, substeps: int = SUBSTEPS) -> str:
     return study_spec.SecondRun(case, engine, substeps).name
 
 
-def by_engine(run: Experiment, case: str) -> dict[str, Trace]:
-    """Return a compared case's runs at the lesson's solver step, by engine."""
-    return {engine: run.traces[run_name(engine, case)] for engine in ENGINES}
-
-
 def compared(
     run: Experiment, engine: str, substeps: int = SUBSTEPS
 ) -> dict[str, StepMetrics]:
@@ -260,19 +260,21 @@ def overshoot_by_substeps(run: Experiment, engine: str) -> dict[int, float]:
 
 def spread(run: Experiment, substeps: int) -> float:
     """Return how far the stable engines' overshoots of G2 differ [rad]."""
-    stable = [engine for engine in ENGINES if not unstable(run, engine, substeps)]
-    return float(
-        np.ptp([overshoot_by_substeps(run, engine)[substeps] for engine in stable])
-    )
+    stable = [
+        run.metrics[run_name(engine, "G2", substeps)].overshoot
+        for engine in ENGINES
+        if not unstable(run, engine, substeps)
+    ]
+    return float(np.ptp(stable))
 
 
 def relation_outcome(
     run: Experiment, engine: str, relation: Relation, substeps: int = SUBSTEPS
 ) -> tuple[str, str]:
     """Return whether an engine's runs show one claimed ordering, and the two values."""
-    cases, metric, *_ = relation
-    unit, found = StepMetrics.about("unit")[metric], compared(run, engine, substeps)
     values = {
-        f"{case}.{metric}": Value(getattr(found[case], metric), unit) for case in cases
+        f"{case}.{name}": Value(value, unit)
+        for case, found in compared(run, engine, substeps).items()
+        for name, value, unit in found.items()
     }
     return outcome(values, relation)

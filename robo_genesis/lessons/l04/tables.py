@@ -32,7 +32,8 @@ def share_text(share: float) -> str:
 
 def margin_text(metric: str) -> str:
     """Write the margin of a metric with its unit."""
-    return f"{spec.MARGINS[metric]:g} {'samples' if UNITS[metric] == '1' else UNITS[metric]}"
+    unit = UNITS[metric].replace("1", "samples")
+    return f"{spec.MARGINS[metric]:g} {unit}"
 
 
 def model_table(run: Experiment) -> str:
@@ -86,13 +87,18 @@ def first_demand(run: Experiment) -> Iterator[Row]:
 def outcomes_of_predictions(run: Experiment) -> Iterator[Row]:
     """Return the values and the outcome of each prediction of the lesson."""
     for relation in spec.RELATIONS:
-        (first, second), metric, claim, _ = relation
         yield {
-            "prediction": f"{NOUNS[metric]}: {second} {claim} than {first}",
+            "prediction": _claim(relation),
             "measured": _change(run.metrics, relation),
-            "margin": margin_text(metric),
+            "margin": margin_text(relation[1]),
             "outcome": _said(run, relation),
         }
+
+
+def _claim(relation: Relation) -> str:
+    """Write the claim of an ordering."""
+    (first, second), metric, claim, _ = relation
+    return f"{NOUNS[metric]}: {second} {claim} than {first}"
 
 
 def _said(run: Experiment, relation: Relation) -> str:
@@ -117,8 +123,8 @@ def _change(found: Mapping[str, StepMetrics], relation: Relation) -> str:
 @as_table
 def gravity_table(run: Experiment) -> Iterator[Row]:
     """Return for each case KP × final error beside the gravity effort, and how the case ended."""
-    for name, m in ((name, run.metrics[name]) for name in spec.CASES):
-        support, effort = study.supports(run, name)
+    for name in spec.CASES:
+        m, (support, effort) = run.metrics[name], study.supports(run, name)
         yield {
             "case": name,
             "KP × final error": format_value(support, "N·m"),
@@ -132,16 +138,14 @@ def gravity_table(run: Experiment) -> Iterator[Row]:
 @as_table
 def mass_table(run: Experiment) -> Iterator[Row]:
     """Return the inertia of the stepped joint, and the masses with a commanded position."""
-    head, unit = f"`get_mass_mat`, {spec.STEPPED_JOINT}", "kg·m²"
     readings = run.readings[study.GROUP]
-    yield {head: "without effort, less h · d", unit: readings["inertia_Genesis"]}
+    masses = {"without effort, less h · d": readings["inertia_Genesis"]}
     for kv in study.COMPARED_KV:
-        term = f"that, less h (d + KV) = {study.implicit_term(run, kv):g}"
-        yield {
-            head: f"position commanded, KV = {kv:g}",
-            unit: readings[f"mass_KV_{kv:g}"],
-        }
-        yield {head: term, unit: study.without_term(run, kv)}
+        masses[f"position commanded, KV = {kv:g}"] = readings[f"mass_KV_{kv:g}"]
+        term = study.implicit_term(run, kv)
+        masses[f"that, less h (d + KV) = {term:g}"] = study.without_term(run, kv)
+    for what, mass in masses.items():
+        yield {f"`get_mass_mat`, {spec.STEPPED_JOINT}": what, "kg·m²": mass}
 
 
 @as_table
@@ -192,14 +196,12 @@ def convergence_table(run: Experiment) -> Iterator[Row]:
 def relation_table(run: Experiment) -> Iterator[Row]:
     """Return for each ordering that the lesson claims its state and values in each engine."""
     for relation in spec.RELATIONS:
-        (first, second), metric, claim, _ = relation
-        row = {"claim": f"{NOUNS[metric]}: {second} {claim} than {first}"}
+        row = {"claim": _claim(relation)}
         for engine, label in ENGINE_LABELS.items():
             state, _ = study.relation_outcome(run, engine, relation)
-            values = _change(study.compared(run, engine), relation)
-            row[label] = (
-                f"{'unstable' if study.unstable(run, engine) else state}: {values}"
-            )
+            if study.unstable(run, engine):
+                state = "unstable"
+            row[label] = f"{state}: {_change(study.compared(run, engine), relation)}"
         yield row
 
 
