@@ -9,7 +9,12 @@ import numpy as np
 from robo_genesis.core.checks import Finding, at_most, equal, within
 from robo_genesis.core.exercises import as_test, compared
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics, clearance
+from robo_genesis.lessons.l03.metrics import (
+    LandingMetrics,
+    SlideMetrics,
+    clearance,
+    of_body,
+)
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 
@@ -99,10 +104,10 @@ class _Touching:
     def get_contacts(self, with_entity: Any = None, **_: Any) -> dict[str, Any]:
         import torch
 
-        found = list(self.depths.values())
-        if with_entity is not None:
-            found = [self.depths.get(id(with_entity), [])]
-        return {"penetration": torch.tensor([depth for of in found for depth in of])}
+        found = self.depths.get(id(with_entity), [])
+        if with_entity is None:
+            found = [depth for each in self.depths.values() for depth in each]
+        return {"penetration": torch.tensor(found)}
 
 
 @as_test
@@ -131,9 +136,7 @@ def stopping(
     """Check `measure(t, x, speed)`: stop time and distance by the rule with a hold, or None."""
     names = ("stop_time", "stop_distance")
     for number, (trace, of) in enumerate(runs):
-        x, speed = (
-            a[:, 0, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel)
-        )
+        x, speed = of_body(trace.link_pos)[:, 0], of_body(trace.link_vel)[:, 0]
         found = measure(trace.t, x, speed)
         expected = of.stop_time, of.stop_distance
         yield from compared(f"run_{number}", names, found, expected, TINY)

@@ -81,10 +81,15 @@ class BounceMetrics(CaseMetrics):
     )
 
 
+def of_body(array: FloatArray) -> FloatArray:
+    """Return an array (n+1, 1, …) of the only body as float64, (n+1, …)."""
+    return array[:, 0].astype(np.float64)
+
+
 def total_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
     """Return m v² / 2 + I ω² / 2 + m g (z − z_rest) at each state, (n+1,) [J]."""
-    z = trace.link_pos[:, 0, 2].astype(np.float64)
-    v, w = (np.asarray(a[:, 0], np.float64) for a in (trace.link_vel, trace.link_ang))
+    z = of_body(trace.link_pos)[:, 2]
+    v, w = of_body(trace.link_vel), of_body(trace.link_ang)
     motion = case.mass * (v**2).sum(axis=1) + case.inertia * (w**2).sum(axis=1)
     return motion / 2 + case.mass * case.gravity * (z - case.rest_height)
 
@@ -96,14 +101,8 @@ def conserved_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
     the total energy E and m g h v_z / 2 change by −m g² h² / 2. At the top of a flight
     v_z is zero and both energies are equal.
     """
-    error = (
-        case.mass
-        * case.gravity
-        * case.h
-        * trace.link_vel[:, 0, 2].astype(np.float64)
-        / 2
-    )
-    return total_energy(trace, case) - error
+    v_z = of_body(trace.link_vel)[:, 2]
+    return total_energy(trace, case) - case.mass * case.gravity * case.h * v_z / 2
 
 
 def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
@@ -111,10 +110,10 @@ def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
 
     The lowest corner of a cube follows from its orientation.
     """
-    z = trace.link_pos[:, 0, 2].astype(np.float64)
+    z = of_body(trace.link_pos)[:, 2]
     if case.shape == "ball":
         return z - case.size / 2 - TOP
-    w, x, y, q = trace.link_quat[:, 0].astype(np.float64).T
+    w, x, y, q = of_body(trace.link_quat).T
     upward = np.stack([2 * (x * q - w * y), 2 * (y * q + w * x), 1 - 2 * (x**2 + y**2)])
     return z - case.size / 2 * np.abs(upward).sum(axis=0) - TOP
 
@@ -156,7 +155,7 @@ def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
     landed = np.maximum.accumulate(clear <= 0)
     after = landed & (np.arange(len(clear)) > 0)
     separated = after & (clear > CLEAR) & (trace.contacts[:, 0] == 0)
-    offset = trace.link_pos[:, 0, 2].astype(np.float64) - case.rest_height
+    offset = of_body(trace.link_pos)[:, 2] - case.rest_height
     upward = np.where(after, trace.link_vel[:, 0, 2], 0.0)
     return LandingMetrics(
         touchdown=first_time(trace.t, clear <= 0),
@@ -185,11 +184,10 @@ def stopped_at(speed: FloatArray, dt: float) -> int | None:
 
 def slide_metrics(trace: ContactTrace, case: ContactCase) -> SlideMetrics:
     """Measure how a pushed body slides; distance and speed are those of its centre along x."""
-    x = trace.link_pos[:, 0, 0].astype(np.float64)
-    speed = trace.link_vel[:, 0, 0].astype(np.float64)
+    x, speed = of_body(trace.link_pos)[:, 0], of_body(trace.link_vel)[:, 0]
     clear, stop = clearance(trace, case), stopped_at(speed, trace.dt)
     airborne = (clear > CLEAR) & (trace.contacts[:, 0] == 0)
-    spin = np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1)
+    spin = np.linalg.norm(of_body(trace.link_ang), axis=1)
     return SlideMetrics(
         stop_time=None if stop is None else float(trace.t[stop]),
         stop_distance=None if stop is None else float(x[stop] - x[0]),
@@ -213,14 +211,13 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
     def share(bounces: int) -> float | None:
         return 100 * levels[bounces] / levels[0] if len(levels) > bounces else None
 
+    def largest_change(energy: FloatArray) -> float | None:
+        return max((float(np.ptp(energy[flight])) for flight in in_air), default=None)
+
     return BounceMetrics(
         start_energy=float(total[0]),
         first_kept=share(1),
         later_kept=share(BOUNCES_COUNTED),
-        flight_drift=max(
-            (float(np.ptp(kept[flight])) for flight in in_air), default=None
-        ),
-        flight_change=max(
-            (float(np.ptp(total[flight])) for flight in in_air), default=None
-        ),
+        flight_drift=largest_change(kept),
+        flight_change=largest_change(total),
     )

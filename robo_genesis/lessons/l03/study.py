@@ -6,7 +6,12 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import study_spec, theory
-from robo_genesis.lessons.l03.metrics import LandingMetrics, aligned
+from robo_genesis.lessons.l03.metrics import (
+    LandingMetrics,
+    SlideMetrics,
+    aligned,
+    of_body,
+)
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 # Group of a bundle's metrics: the engine's time constant of a contact by scene [s].
@@ -44,10 +49,12 @@ def depth_shares(run: Experiment, scene: str) -> list[float]:
     ]
 
 
-def clean(run: Experiment) -> list[str]:
-    """Return the slides with the elliptic cone and the resolution that comes with it."""
+def clean(run: Experiment) -> list[tuple[str, ContactCase, SlideMetrics]]:
+    """Return name, case and metrics of the slides with the elliptic cone and its resolution."""
     return [
-        n for n, c in run.cases.items() if c.cone == "elliptic" and c.resolution is None
+        (name, case, run.metrics[name])
+        for name, case in run.cases.items()
+        if case.cone == "elliptic" and case.resolution is None
     ]
 
 
@@ -56,20 +63,9 @@ def first_impulses(run: Experiment, name: str) -> tuple[float, float]:
 
     Both are an impulse of the contact divided by the mass.
     """
-    case, velocity = (
-        run.cases[name],
-        run.traces[name].link_vel[:2, 0].astype(np.float64),
-    )
-    before, after = velocity
-    return float(before[0] - after[0]), float(
-        after[2] - before[2] + case.gravity * case.dt
-    )
-
-
-def heights_apart(run: Experiment, one: str, other: str) -> float:
-    """Return the largest difference of the heights of two runs at shared times [m]."""
-    fine, coarse = aligned(run.traces[one], run.traces[other], "link_pos")
-    return float(np.abs(fine - coarse)[:, 2].max())
+    case, (before, after) = run.cases[name], of_body(run.traces[name].link_vel)[:2]
+    gained = after - before
+    return -gained[0], gained[2] + case.gravity * case.dt
 
 
 def distance_between(first: ContactTrace, second: ContactTrace) -> FloatArray:

@@ -63,15 +63,14 @@ def stop(run: Experiment, name: str) -> str:
 @as_table
 def clean_slides(run: Experiment) -> Iterator[Row]:
     """Return the slides with the elliptic cone beside Coulomb's distance."""
-    for name in study.clean(run):
-        case = run.cases[name]
+    for name, case, found in study.clean(run):
         yield {
             "cube on table": f"{case.friction:g} on {case.surface_friction:g}",
             "h": milliseconds(case.h),
             "measured": stop(run, name),
             "v² / (2 μ g)": format_value(theory.coulomb_distance(case), "m"),
             "v² / (2 μ g) − v h / 2": format_value(theory.stepped_distance(case), "m"),
-            "hop": millimetres(run.metrics[name].hop),
+            "hop": millimetres(found.hop),
         }
 
 
