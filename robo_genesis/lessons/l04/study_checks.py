@@ -176,7 +176,8 @@ def first_step(run: Experiment) -> Iterator[Finding]:
     """G2 and G3 have the same clipped effort before and after the first outer step.
     They move alike in MuJoCo, while G3 is slower in Genesis.
     """
-    noise, speeds = spec.RESOLUTION["rad/s"], {}
+    noise = spec.RESOLUTION["rad/s"]
+    speeds = {}
     for engine in study.ENGINES:
         for case in ("G2", "G3"):
             trace = run.traces[study.run_name(engine, case)]
