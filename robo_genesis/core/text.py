@@ -10,13 +10,6 @@ MEASURES = False
 NOT_OBSERVED = "not observed"
 LONGEST_SHOWN = 160
 
-# Characters of one line of the engine's log, and of one warning. Most have less than
-# 400.
-LINE_LIMIT = 2**14
-
-# Characters of a message that are not printable by themselves.
-BLANK = "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}"
-
 # Digits after the point by unit, in texts for readers.
 DIGITS = {
     "s": 2,
@@ -186,12 +179,3 @@ def printable(text: str) -> str:
     """
     odd = (c for c in {*text} if not c.isprintable())
     return text.translate({ord(c): c.encode("unicode_escape").decode() for c in odd})
-
-
-def clean_message(text: str, limit: int) -> str:
-    """Return a message of several lines without control characters, shortened to a length."""
-    plain = "".join(
-        c if c.isprintable() or c in BLANK else "\N{REPLACEMENT CHARACTER}"
-        for c in text
-    )
-    return plain if len(plain) <= limit else f"{plain[: limit - 1]}…"

@@ -4,14 +4,10 @@ import logging
 import re
 
 from robo_genesis.core.project import without_folders
-from robo_genesis.core.text import LINE_LIMIT, clean_message
 
 
 class EngineLog(logging.Handler):
-    """Keeps every line that the engine logs, without its colour marks and control characters.
-
-    A message that is too long for a bundle is shortened.
-    """
+    """Keeps every line that the engine logs, without its colour marks."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -19,11 +15,8 @@ class EngineLog(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Keep (level, message)."""
-        level, plain = (
-            record.levelname,
-            re.sub("~{1,4}<|>~{1,4}", "", record.getMessage()),
-        )
-        self.lines.append((level, clean_message(plain, LINE_LIMIT - len(f"{level} "))))
+        plain = re.sub("~{1,4}<|>~{1,4}", "", record.getMessage())
+        self.lines.append((record.levelname, plain))
 
     @property
     def warnings(self) -> list[str]:

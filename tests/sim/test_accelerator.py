@@ -132,17 +132,8 @@ def machine(tmp_path):
 def test_an_amd_machine_is_fine(machine, expected):
     backend, states, found = machine.probe(expected)
     assert (backend, {*states.values()}) == ("amdgpu", {"ok"})
-    assert found == {
-        "devices": "may open kfd renderD128",
-        "driver": "amdgpu 6.16",
-        "linker": f"{machine.root}/opt/rocm/llvm/bin/ld.lld",
-        "visibility": "no variable hides a card",
-        "torch": "2.13.0+rocm7.1, built for HIP 7.1.2",
-        "device": "a card gfx942, device 0 of 1",
-        "device_code": "Torch has code for gfx942",
-        "hip_runtime": OWN,
-        "kernel": "a sum on the card is 140, as expected",
-    }
+    assert found["device"] == "a card gfx942, device 0 of 1"
+    assert found["hip_runtime"] == OWN
 
 
 M, EVERY = Synthetic, ("ROCR", "HIP", "CUDA")
@@ -183,21 +174,6 @@ def test_one_thing_that_is_wrong_is_named_with_the_fix(
     later = own[own.index(step) + 1 :] if state == "broken" and step in own else []
     others = {name: "not run" if name in later else "ok" for name in steps}
     assert states == others | {step: state}  # a step of Torch ends those after it
-
-
-def test_ld_lld_is_looked_for_where_the_compiler_looks(machine):
-    places = [
-        machine.write(f"{folder}/{LLD[9:]}", "")
-        for folder in ("mine", "opt/rocm-6.0.0")
-    ]
-    on_path = machine.write("bin/ld.lld", "")
-    machine.environ |= {
-        "ROCM_PATH": str(machine.root / "mine"),
-        "PATH": str(on_path.parent),
-    }
-    for place in (places[0], machine.root / LLD, places[1], on_path):
-        assert machine.probe()[2]["linker"] == str(place)
-        place.unlink()
 
 
 @pytest.mark.parametrize(
@@ -253,11 +229,3 @@ def test_a_torch_that_does_not_answer_is_named_with_the_fix(
     assert [*states.values()] == ["ok"] * 4 + ["broken"] + ["not run"] * 4
     assert f"Torch of {sys.executable} ended without an answer: " in found["torch"]
     assert said in found["torch"]
-
-
-def test_the_probe_loads_neither_engine_nor_course(machine):
-    modules = ["genesis", "quadrants", "robo_genesis", "numpy"]
-    machine.told(
-        kernel=f"import sys; assert not {{*sys.modules}} & set({modules}), 'loaded'"
-    )
-    assert machine.probe()[1]["kernel"] == "ok"

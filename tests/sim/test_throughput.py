@@ -42,15 +42,6 @@ def test_scenes_are_timed_in_turn_after_their_warm_up():
     }
 
 
-def test_each_repeat_has_an_order_of_its_own():
-    made, clock = [], iter(range(100))
-    calls = {name: (lambda n=name: made.append(n), lambda: None) for name in "abcd"}
-    throughput.in_turn(calls, 1, 1, 4, clock.__next__)
-    orders = ["".join(made[k : k + 8 : 2]) for k in range(0, 32, 8)]
-    assert {"".join(sorted(order)) for order in orders} == {"abcd"}
-    assert len(set(orders)) > 1
-
-
 def test_memory_grows_by_what_is_kept():
     throughput.used_memory()  # frees what earlier tests left
     before = throughput.used_memory()

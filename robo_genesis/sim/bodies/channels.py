@@ -1,7 +1,7 @@
 """Runs of free bodies as channels: position and velocity of the origin of a link along axes."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,35 +14,28 @@ MEASURES = False
 CLOSE = 20.0  # Largest clearance that is drawn [mm]
 
 
-@dataclass(frozen=True, slots=True)
-class Axis:
+class Axis(NamedTuple):
     """Words for an axis of the world: its two channels, a position on it, and both directions."""
 
-    number: int
+    name: str
     position: str
     velocity: str
-    heads: tuple[str, str]
     at: str
     forward: str
     backward: str
 
+    @property
+    def number(self) -> int:
+        """Its place in an array of coordinates."""
+        return "xyz".index(self.name)
+
+
+LEVEL = ("moved on by", "moved back by")
 
 AXES = {
-    "x": Axis(
-        0, "x", "velocity along x", ("x", "ẋ"), "x =", "moved on by", "moved back by"
-    ),
-    "y": Axis(
-        1, "y", "velocity along y", ("y", "ẏ"), "y =", "moved on by", "moved back by"
-    ),
-    "z": Axis(
-        2,
-        "height",
-        "vertical velocity",
-        ("z", "ż"),
-        "a height of",
-        "rose by",
-        "fell by",
-    ),
+    "x": Axis("x", "x", "velocity along x", "x =", *LEVEL),
+    "y": Axis("y", "y", "velocity along y", "y =", *LEVEL),
+    "z": Axis("z", "height", "vertical velocity", "a height of", "rose by", "fell by"),
 }
 
 
@@ -96,11 +89,11 @@ def _channels(
     velocity = {
         case: trace.link_vel[:, k, axis.number] for case, trace in traces.items()
     }
-    where = Channel(axis.position, axis.heads[0], "m", 4, position)
+    where = Channel(axis.position, axis.name, "m", 4, position)
     if rest is not None and axis is AXES["z"]:
         clear = {case: 1000 * (values - rest) for case, values in position.items()}
         where = Channel("clearance", "clearance", "mm", 2, clear, top=CLOSE)
-    return where, Channel(axis.velocity, axis.heads[1], "m/s", 4, velocity)
+    return where, Channel(axis.velocity, "ẋẏż"[axis.number], "m/s", 4, velocity)
 
 
 def _along(trace: BodyTrace, k: int, axis: Axis) -> str:

@@ -16,27 +16,18 @@ AXES = np.array(
 )  # Directions in which the left and the right pad press
 
 
-def load(case: HeldCase, as_genesis: bool = False) -> Any:
-    """Compile the pads of `grippers.pads` and the box, with a constant force on each pad.
-
-    Args:
-        case: settings of the run.
-        as_genesis: make the edges of a pyramid as soft as Genesis does. With μ² /
-            impratio for each μ² it has 1 + μ² / impratio where MuJoCo has 1 + μ².
-    """
+def load(case: HeldCase) -> Any:
+    """Compile the pads of `grippers.pads` and the box, with a constant force on each pad."""
     import mujoco
 
-    ratio = impratio(case)
-    if as_genesis and case.cone == "pyramidal":
-        ratio *= (1 + case.friction**2) / (1 + case.friction**2 / ratio)
     press = "".join(
         f'<general joint="{j}" gainprm="0" biastype="affine" biasprm="{case.force} 0 0"/>'
         for j in "lr"
     )
     return mujoco.MjModel.from_xml_string(f"""<mujoco>
-    <option timestep="{case.h}" gravity="0 0 {-case.gravity}" cone="{case.cone}" impratio="{ratio}"
-     noslip_iterations="{case.noslip}" iterations="{case.iterations or 100}"
-     integrator="implicitfast"/>
+    <option timestep="{case.h}" gravity="0 0 {-case.gravity}" cone="{case.cone}"
+     impratio="{impratio(case)}" noslip_iterations="{case.noslip}"
+     iterations="{case.iterations or 100}" integrator="implicitfast"/>
     <worldbody><body pos="0 {case.place} 0">{pads(case)}</body>
     <body name="box" pos="0 {case.place} 0"><freejoint/>
     <geom type="box" size="{SIZE / 2} {SIZE / 2} {SIZE / 2}" mass="{case.mass}"
@@ -44,14 +35,11 @@ def load(case: HeldCase, as_genesis: bool = False) -> Any:
     <actuator>{press}</actuator></mujoco>""")
 
 
-def run_case(case: HeldCase, as_genesis: bool = False) -> BodyTrace:
-    """Run a case as `grippers.record_world` does, computed in float64, stored in float32.
-
-    The arguments are as of `load`.
-    """
+def run_case(case: HeldCase) -> BodyTrace:
+    """Run a case as `grippers.record_world` does, computed in float64, stored in float32."""
     import mujoco
 
-    model = load(case, as_genesis)
+    model = load(case)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, nstep=round(case.settle / case.h))
     states = record_states(

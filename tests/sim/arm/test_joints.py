@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robo_genesis.sim.arm.joints import JointError, resolve_joints, to_numpy
+from robo_genesis.sim.arm.joints import JointError, resolve_joints
 
 JOINTS = {
     "base": ("FREE", [0, 1, 2, 3, 4, 5], [0, 1, 2, 3, 4, 5, 6]),
@@ -13,8 +13,6 @@ JOINTS = {
     "slider": ("PRISMATIC", [10], [12]),
     "weld": ("FIXED", [], []),
     "disc": ("REVOLUTE", [11], [13, 14]),
-    "screw": ("REVOLUTE", [12, 13], [15]),
-    "twin": ("REVOLUTE", [6], [16]),
 }
 
 
@@ -70,21 +68,12 @@ def test_the_map_follows_the_names_and_not_the_model():
     [
         (
             ("shoulder", "elbw"),
-            r"'elbw'.*base, shoulder, slider, weld, disc, screw, twin",
+            r"'elbw'.*base, shoulder, slider, weld, disc",
         ),
         (("base",), "'base' has 6 DOFs and 7 qpos"),
-        (("weld",), "'weld' has 0 DOFs and 0 qpos"),
         (("disc",), "'disc' has 1 DOFs and 2 qpos"),
-        (("screw",), "'screw' has 2 DOFs and 1 qpos"),
     ],
 )
 def test_names_that_are_not_one_dof_each_are_refused(names, message):
     with pytest.raises(JointError, match=message):
         resolve_joints(ROBOT, names)
-
-
-def test_to_numpy_copies():
-    values = np.zeros(2)
-    copy = to_numpy(values)
-    values[0] = 1
-    assert copy.tolist() == [0, 0]

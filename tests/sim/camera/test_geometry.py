@@ -29,10 +29,6 @@ def test_a_point_behind_the_camera_has_no_pixel():
     assert np.isnan(cameras.project(behind, K, TRANSFORM)).all()
 
 
-def test_other_axes_of_other_axes_are_the_first():
-    assert cameras.other_axes(cameras.other_axes(TRANSFORM)) == pytest.approx(TRANSFORM)
-
-
 def test_projection_of_back_projected_pixels_gives_their_centres():
     points = cameras.back_project(np.full((120, 160), 1.7), K, TRANSFORM)
     pixels = cameras.project(points, K, TRANSFORM)
