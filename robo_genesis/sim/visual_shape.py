@@ -142,20 +142,6 @@ def ball(centre: Sequence[float], radius: float, rgb: tuple[int, int, int]) -> P
     return Part(WORLD, rgb, vertices, np.array(mesh.faces, dtype=np.int32))
 
 
-def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
-    """Require that each part belongs to one link of the record, or to the world.
-
-    Raises:
-        ValueError: a part belongs to a link that is not in the record.
-    """
-    unknown = sorted({part.link for part in shape} - {*links, WORLD})
-    if unknown:
-        raise ValueError(
-            f"The shape has parts of {', '.join(unknown)}; the record knows {', '.join(links)}. "
-            "Both must come from one model: run the lecture and the recorded lab at one pin."
-        )
-
-
 def write_shape(folder: Path, parts: Sequence[Part]) -> Path:
     """Write the parts to a file in `folder`, which is made if it is missing."""
     folder.mkdir(parents=True, exist_ok=True)

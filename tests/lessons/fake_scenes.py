@@ -50,13 +50,8 @@ class FakeBody:
 class FakeScene:
     """A scene with bodies."""
 
-    def __init__(self, *bodies, dt=0.01, substeps=2, is_built=True):
-        self.bodies, self.dt, self.substeps, self.is_built = (
-            bodies,
-            dt,
-            substeps,
-            is_built,
-        )
+    def __init__(self, *bodies, dt=0.01, substeps=2):
+        self.bodies, self.dt, self.substeps = bodies, dt, substeps
         of_bodies = lambda bodies: torch.tensor([bodies[0].friction])  # noqa: E731
         self.rigid_solver = SimpleNamespace(get_geoms_friction=of_bodies)
 

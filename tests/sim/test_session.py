@@ -13,7 +13,6 @@ import pytest
 
 from robo_genesis.core import project
 from robo_genesis.sim import session
-from robo_genesis.sim.engine_log import EngineLog
 from robo_genesis.sim.session import (
     Backend,
     Contract,
@@ -148,13 +147,6 @@ def test_an_engine_with_other_arguments_is_refused(
     fake_engine.init(backend=backend, **given)
     with pytest.raises(EngineError, match=message):
         session.started(contract)
-
-
-def test_a_second_attempt_to_start_keeps_one_log(fake_engine, tmp_path):
-    contract = Contract("auto", True, tmp_path)
-    assert [session.requested_backend(contract) for _ in range(2)] == ["gpu", "gpu"]
-    handlers = logging.getLogger("genesis").handlers
-    assert len([kept for kept in handlers if isinstance(kept, EngineLog)]) == 1
 
 
 def test_the_device_has_the_name_in_the_log(fake_engine, tmp_path):

@@ -2,16 +2,12 @@
 
 from collections.abc import Iterator
 
-from robo_genesis.core.checks import Finding, at_most, equal, model_counts
+from robo_genesis.core.checks import Finding, at_most, equal
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l01 import machine, spec
+from robo_genesis.sim.bodies.checks import structure
 from robo_genesis.sim.bodies.laws import free_fall
 from robo_genesis.sim.common_checks import posture, stamps, start
-
-
-def structure(run: Experiment) -> Iterator[Finding]:
-    """Two entities; the sphere is a link with one geom and one joint, 6 DOFs and 7 qpos."""
-    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def computed_height(run: Experiment) -> Iterator[Finding]:

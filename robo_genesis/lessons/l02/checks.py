@@ -1,6 +1,7 @@
 """Named checks of a dropped box: all pass, or the exact invariant that failed is named."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -9,15 +10,17 @@ from robo_genesis.core.checks import (
     above,
     at_most,
     equal,
+    factors,
     masses,
-    model_counts,
+    nearly,
     noted,
 )
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
-from robo_genesis.sim.bodies.free_fall import fallen
+from robo_genesis.sim.bodies.checks import structure
+from robo_genesis.sim.bodies.free_fall import ahead_of_continuous, fallen
 from robo_genesis.sim.bodies.laws import free_fall
 from robo_genesis.sim.common_checks import posture, stamps, start
 
@@ -25,11 +28,6 @@ from robo_genesis.sim.common_checks import posture, stamps, start
 def speeds(trace: BodyTrace) -> FloatArray:
     """Return the speed downwards at each state, (n+1,) [m/s]."""
     return -trace.link_vel[:, 0, 2]
-
-
-def structure(run: Experiment) -> Iterator[Finding]:
-    """The scene has two entities; the box is one link, one geom, one joint, 6 DOFs and 7 qpos."""
-    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def mass(run: Experiment) -> Iterator[Finding]:
@@ -83,6 +81,42 @@ def straight_down(run: Experiment) -> Iterator[Finding]:
         )
 
 
+# How far a stepped fall is from continuous free fall as the solver step shrinks
+
+
+def by_step(run: Experiment) -> list[str]:
+    """Return the names of the runs, from the largest solver step to the smallest."""
+    return sorted(run.cases, key=lambda name: -run.cases[name].h)
+
+
+def expected_gap(run: Experiment, name: str) -> float:
+    """Return g h t / 2: how much farther than g t² / 2 the body of a run falls [m]."""
+    case = run.cases[name]
+    return float(ahead_of_continuous(case.h, run.metrics[name].duration, case.gravity))
+
+
+def one_factor(run: Experiment) -> Iterator[Finding]:
+    """The cases differ in their substeps alone."""
+    first, *others = by_step(run)
+    return factors(run.cases, {(first, name): ["substeps"] for name in others})
+
+
+def shrinks(run: Experiment) -> Iterator[Finding]:
+    """The gap to continuous free fall is smaller with every smaller solver step."""
+    for coarse, fine in pairwise(by_step(run)):
+        larger, gap = (run.metrics[name].continuous_gap for name in (coarse, fine))
+        yield Finding(
+            f"{fine}.gap_m", gap, 0 < gap < larger, f"between 0 and {larger:g}"
+        )
+
+
+def first_order(run: Experiment) -> Iterator[Finding]:
+    """The gap is g h t / 2, so half the solver step leaves half of it."""
+    for name in by_step(run):
+        gap, expected = run.metrics[name].continuous_gap, expected_gap(run, name)
+        yield nearly(f"{name}.gap_m", gap, expected, spec.FIRST_ORDER_SHARE)
+
+
 CHECKS = (
     structure,
     mass,
@@ -96,3 +130,6 @@ CHECKS = (
     free_fall,
     posture,
 )
+
+# Those that the lecture has besides.
+BY_STEP = (one_factor, shrinks, first_order)

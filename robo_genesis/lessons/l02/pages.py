@@ -7,7 +7,7 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l02 import checks, life_cycle, spec, study, trials
+from robo_genesis.lessons.l02 import checks, life_cycle, spec, trials
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
 
 MEASURES = False
@@ -32,7 +32,7 @@ LECTURE = replace(
         **trials.READINGS,
     },
     with_camera={life_cycle.GROUP: counts(life_cycle.expected(rendered=True))},
-    checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build, *trials.CHECKS),
+    checks=(*checks.CHECKS, *checks.BY_STEP, life_cycle.sides_of_build, *trials.CHECKS),
     parameters=spec.study_parameters,
     frames=(*DROP.frames, spec.TRAYS),
 )

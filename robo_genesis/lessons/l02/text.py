@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import bullets, decimal, readable, signed
-from robo_genesis.lessons.l02 import spec, study
+from robo_genesis.lessons.l02 import checks, spec
 from robo_genesis.sim.bodies.free_fall import continuous_drop, summed_drop
 
 MEASURES = False
@@ -72,12 +72,12 @@ def three_drops(run: Experiment) -> Iterator[dict[str, str]]:
 @tables.as_table
 def substep_table(run: Experiment) -> Iterator[dict[str, str]]:
     """Return the drops of all solver steps."""
-    for name in study.by_step(run):
+    for name in checks.by_step(run):
         case, m = run.cases[name], run.metrics[name]
         yield {
             "substeps": f"{case.substeps}",
             "h [ms]": f"{1000 * case.h:g}",
             "measured drop [m]": decimal(m.drop, 6),
             "farther than g t² / 2 [mm]": decimal(1000 * m.continuous_gap, 3),
-            "g h t / 2 [mm]": decimal(1000 * study.expected_gap(run, name), 3),
+            "g h t / 2 [mm]": decimal(1000 * checks.expected_gap(run, name), 3),
         }

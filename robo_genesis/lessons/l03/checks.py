@@ -6,12 +6,10 @@ from typing import TypeVar
 import numpy as np
 
 from robo_genesis.core import checks
-from robo_genesis.core.check_spec import READ_BACK
 from robo_genesis.core.checks import Finding, above, at_most, nearly, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.lessons.l03 import spec, theory
-from robo_genesis.lessons.l03.laws import laws_of_motion
 from robo_genesis.lessons.l03.metrics import (
     BounceMetrics,
     LandingMetrics,
@@ -19,7 +17,8 @@ from robo_genesis.lessons.l03.metrics import (
     aligned,
     of_body,
 )
-from robo_genesis.sim.bodies.contacts import SETTINGS, TOP
+from robo_genesis.sim.bodies.checks import laws_of_motion, settings, structure
+from robo_genesis.sim.bodies.contacts import TOP
 from robo_genesis.sim.common_checks import posture, stamps
 
 Metrics = TypeVar("Metrics", bound=CaseMetrics)
@@ -30,26 +29,10 @@ def measured(run: Experiment, metrics: type[Metrics]) -> dict[str, Metrics]:
     return {name: of for name, of in run.metrics.items() if isinstance(of, metrics)}
 
 
-def structure(run: Experiment) -> Iterator[Finding]:
-    """The scene has two entities; the cube is one link, one geom, one joint, 6 DOFs and 7 qpos."""
-    return checks.model_counts(run.readings["model"], spec.EXPECTED_MODEL)
-
-
 def mass(run: Experiment) -> Iterator[Finding]:
     """The engine's masses are density times volume."""
     expected = {case.shape: case.mass for case in run.cases.values()}
     return checks.masses(run.readings["mass"], expected)
-
-
-def settings(run: Experiment) -> Iterator[Finding]:
-    """Frictions and substeps read back from the scenes are those of the cases."""
-    for name in SETTINGS:
-        read = run.readings.get(name, {})
-        for case, value in read.items():
-            yield within(
-                f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK
-            )
-        yield above(f"number of cases with {name}", len(read), 0)
 
 
 def one_factor(run: Experiment) -> Iterator[Finding]:

@@ -143,7 +143,9 @@ def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
 
 def default_cone_hops(run: Experiment) -> Iterator[Finding]:
     """With the engine's default friction model, both cubes that are pushed to 2 m/s hop."""
-    for name in study_spec.HOPPED:
+    for name, case in study_spec.HOPPED.items():
+        top = float(run.traces[name].link_pos[:, 0, 2].max())
+        yield noted(f"{name}.rise_m", top - case.rest_height)
         yield above(f"{name}.hop_m", run.metrics[name].hop, study_spec.HOP)
 
 

@@ -20,12 +20,12 @@ from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import format_value
 from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.laws import laws_of_motion
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, is_saturated
 from robo_genesis.sim.arm import laws
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import differences
 from robo_genesis.sim.common_checks import posture, stamps
+from robo_genesis.sim.laws import kept
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
@@ -190,6 +190,17 @@ def same_metrics(run: Experiment) -> Iterator[Finding]:
     for name, value, unit in run.metrics["G2"].items():
         found = format_value(getattr(longer, name), unit)
         yield equal(name, found, format_value(value, unit), recorded=False)
+
+
+def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+    """At each sample links and control forces are those of the driven or assigned robot."""
+    for name, case in run.cases.items():
+        trace = run.traces[name]
+        if name == study_spec.ASSIGNED:
+            found = laws.assigned_run(trace, run.links, case.model)
+        else:
+            found = laws.driven_run(trace, case, run.links)
+        yield from kept(name, found)
 
 
 CHECKS = (

@@ -15,7 +15,7 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import joint_control
 from robo_genesis.sim.arm.joint_control import ControlCase
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
-from robo_genesis.sim.session import CaseError
+from robo_genesis.sim.session import require_built
 
 
 class Batch:
@@ -58,20 +58,13 @@ class Batch:
         """Command positions to all environments, or to some of them; the others keep theirs.
 
         Args:
-            q_target: (k, d), row j for environment `envs[j]` [rad or m]. Nothing
-                broadcasts.
+            q_target: (k, d), row j for environment `envs[j]` [rad or m].
             envs: numbers of k environments; all, in their order, by default.
 
         Raises:
-            CaseError: the rows are not one for each environment, or an environment does
-                not exist or is named twice.
+            IndexError: an environment does not exist.
         """
         chosen = self._chosen(envs)
-        if np.shape(q_target) != (len(chosen), len(self.dofs)):
-            raise CaseError(
-                f"The command has shape {np.shape(q_target)}, expected one row of "
-                f"{len(self.dofs)} positions for each of the environments {chosen}."
-            )
         values = np.array(q_target, dtype=np.float64)
         if self.scene.n_envs:
             self.robot.control_dofs_position(values, self.dofs, envs_idx=chosen)
@@ -94,7 +87,7 @@ class Batch:
         so send a new one before the next step. Their traces begin here.
 
         Raises:
-            CaseError: an environment does not exist, or is named twice.
+            IndexError: an environment does not exist.
         """
         chosen = self._chosen(envs)
         self.scene.reset(envs_idx=chosen)
@@ -128,18 +121,12 @@ class Batch:
         return tuple(values if self.scene.n_envs else values[None] for values in found)
 
     def _chosen(self, envs: Sequence[int] | None) -> list[int]:
-        """Return the numbers of environments as a list, of all where none are given."""
-        known = range(len(self.cases))
-        chosen = list(known) if envs is None else [int(k) for k in envs]
-        if (
-            not chosen
-            or not set(chosen) <= set(known)
-            or len(set(chosen)) != len(chosen)
-        ):
-            raise CaseError(
-                f"Environments {chosen} were given. Valid are different numbers from 0 to "
-                f"{len(self.cases) - 1}, at least one. The engine itself does not check them."
-            )
+        """Return the numbers of environments as a list, of all where none are given.
+
+        The engine itself does not check them; the index of an array is checked.
+        """
+        known = np.arange(len(self.cases))
+        chosen: list[int] = (known if envs is None else known[list(envs)]).tolist()
         return chosen
 
 
@@ -173,26 +160,19 @@ def reset_batch(
     """Do as `joint_control.reset` does in every environment, and read back what was set.
 
     Raises:
-        CaseError: the scene does not fit the cases, a case must not be run, or a value
-            reads back differently from the value that was set.
+        CaseError: the scene has another time step than a case, a case must not be run,
+            or a value reads back differently from the value that was set.
 
     Returns:
         The cases as one: its arrays are (cases, joints), without environments
             (joints,).
     """
     for case in cases:
+        require_built(scene, case)
         joint_control.validate(case, joints)
-    found = (scene.n_envs, scene.dt, scene.substeps)
-    rows = len(cases) if scene.n_envs or len(cases) != 1 else 0
-    required = {(rows, case.dt, case.substeps) for case in cases}
-    if required != {found} or len({case.steps for case in cases}) != 1:
-        raise CaseError(
-            f"The scene has (environments, dt, substeps) {found}, the cases require "
-            f"{sorted(required)}. Build it with n_envs={rows}, for cases of equal length."
-        )
     dofs = joints.dofs_idx_local.tolist()
     arrays: dict[str, Any] = {
-        name: np.stack(each) if rows else each[0]
+        name: np.stack(each) if scene.n_envs else each[0]
         for name in ("q_start", "q_target", "kp", "kv", "effort_limit")
         for each in [[getattr(case, name) for case in cases]]
     }

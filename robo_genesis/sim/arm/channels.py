@@ -91,19 +91,11 @@ def distances(
     hand: str,
 ) -> list[Channel]:
     """Return the distance of the hand from its goal, which each state has."""
-    if hand not in links:
-        raise ValueError(
-            f"The record has no link {hand!r} as hand. Links: {', '.join(links)}."
-        )
-    found = {
-        case: 1000
-        * np.linalg.norm(
-            trace.link_pos[:, links.index(hand)]
-            - [goal(case, k) for k in range(len(trace.t))],
-            axis=1,
-        )
-        for case, trace in traces.items()
-    }
+    found = {}
+    for case, trace in traces.items():
+        goals = [goal(case, k) for k in range(len(trace.t))]
+        apart = trace.link_pos[:, links.index(hand)] - goals
+        found[case] = 1000 * np.linalg.norm(apart, axis=1)
     return [Channel("distance from the target", "distance", "mm", 1, found)]
 
 

@@ -15,10 +15,6 @@ from robo_genesis.sim.arm.model import RobotModel
 END_EFFECTOR = FRANKA.hand
 
 
-class KinematicsError(ValueError):
-    """A query has the wrong shape or a value that is not finite; the message says which."""
-
-
 class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
     """An answer is not finite or too far from its target; nothing was commanded."""
 
@@ -75,8 +71,7 @@ def solve_ik(
     """Ask the engine for joint positions that bring the hand to a pose. Nothing is commanded.
 
     In a scene with environments all arrays have one row for each asked environment, and
-    so has the answer. The engine would broadcast some other shapes; here they are
-    errors.
+    so has the answer.
 
     Args:
         robot: rigid entity of a built scene.
@@ -89,15 +84,9 @@ def solve_ik(
         of: the robot, whose fingers the solver does not move.
 
     Raises:
-        KinematicsError: an array has the wrong shape, or a value that is not finite.
         ModelError: the robot has further DOFs, such as those of a free base.
     """
     require_whole(robot, joints)
-    d, count = len(joints.names), robot.scene.n_envs
-    rows = () if count == 0 else (count if envs is None else len(envs),)
-    require_finite("position", position, (*rows, 3))
-    require_finite("quat", quat, (*rows, 4))
-    require_finite("q_start", q_start, (*rows, d))
     in_model_order = np.empty(np.shape(q_start), dtype=np.float32)
     in_model_order[..., joints.qs_idx_local] = q_start
     chosen = {} if envs is None else {"envs_idx": list(envs)}
@@ -178,15 +167,3 @@ def jacobian(robot: Any, joints: JointMap, link: str = END_EFFECTOR) -> FloatArr
     """
     found = to_numpy(robot.get_jacobian(link=robot.get_link(link)))
     return np.asarray(found[:, joints.dofs_idx_local])
-
-
-def require_finite(name: str, values: FloatArray, shape: tuple[int, ...]) -> None:
-    """Raise KinematicsError unless an array has a shape and finite values."""
-    if np.shape(values) != shape:
-        raise KinematicsError(
-            f"{name} has shape {np.shape(values)}, expected {shape}. Give one value for each entry."
-        )
-    if not np.isfinite(values).all():
-        raise KinematicsError(
-            f"{name} is {np.asarray(values)}, expected finite numbers."
-        )

@@ -148,7 +148,7 @@ def build_world(
         view: settings of the camera, None for no camera.
 
     Raises:
-        CaseError: there are no cases, or they differ in such a setting.
+        CaseError: cases differ in such a setting.
     """
     common = shared_case(cases)
     scene = new_scene(gs, common, rigid_options(gs, common), gravity=tuple(common.fall))
@@ -263,10 +263,8 @@ def shared_case(cases: Mapping[str, Case]) -> Case:
     """Return the first case, which has what cases in one scene have in common.
 
     Raises:
-        CaseError: there are no cases, or they differ in such a setting.
+        CaseError: they differ in such a setting.
     """
-    if not cases:
-        raise CaseError("No cases were given; a scene takes at least one. Name a case.")
     first = next(iter(cases.values()))
     for name, case in cases.items():
         for field in (*(of.name for of in fields(ContactRun)), *first.shared):

@@ -115,11 +115,8 @@ def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
         f"{label}.pixels_at_the_border", int(mask.sum() - mask[1:-1, 1:-1].sum()), 0
     )
     yield above(f"{label}.pixels", int(mask.sum()), FEWEST_PIXELS)
-    found = cameras.centroid(mask)
-    to_centre, to_ellipse = (
-        float(np.linalg.norm(found - of)) for of in computed(view, marker)
-    )
-    yield noted(f"{label}.centroid_to_centre_px", to_centre)
+    apart = cameras.centroid(mask) - computed(view, marker)[1]
+    to_ellipse = float(np.linalg.norm(apart))
     yield at_most(f"{label}.centroid_to_silhouette_px", to_ellipse, CENTROID)
 
 
@@ -132,21 +129,20 @@ def from_sphere(view: View, marker: Marker) -> Residuals | None:
     return cameras.residuals(apart[view.segmentation == marker.number])
 
 
-def from_plane(view: View, number: int, height: float = 0.0) -> Residuals | None:
-    """Return how far above a horizontal plane its back-projected pixels are.
+def from_plane(view: View, number: int) -> Residuals | None:
+    """Return how far above z = 0 the back-projected pixels of the ground are.
 
     Pixels deeper than `PLANE_FAR` are left out: the depth buffer resolves less there.
 
     Args:
-        view: of the plane; without pictures, the result is None.
-        number: of the plane in the segmentation.
-        height: of the plane [m].
+        view: of the ground; without pictures, the result is None.
+        number: of the ground in the segmentation.
     """
     if view.depth is None or view.segmentation is None:
         return None
     points = cameras.back_project(view.depth, view.intrinsics, view.transform)
     mask = (view.segmentation == number) & (view.depth < PLANE_FAR)
-    return cameras.residuals((points[..., 2] - height)[mask])
+    return cameras.residuals(points[..., 2][mask])
 
 
 def sphere_surface(label: str, view: View, marker: Marker) -> Iterator[Finding]:
@@ -154,11 +150,9 @@ def sphere_surface(label: str, view: View, marker: Marker) -> Iterator[Finding]:
     return _surface(label, from_sphere(view, marker), MESH_SHARE * marker.radius)
 
 
-def plane_surface(
-    label: str, view: View, number: int, height: float = 0.0
-) -> Iterator[Finding]:
-    """Require the back-projected pixels of a horizontal plane to be at its height [m]."""
-    return _surface(label, from_plane(view, number, height), PLANE)
+def plane_surface(label: str, view: View, number: int) -> Iterator[Finding]:
+    """Require the back-projected pixels of the ground to be at z = 0."""
+    return _surface(label, from_plane(view, number), PLANE)
 
 
 def _surface(label: str, found: Residuals | None, most: float) -> Iterator[Finding]:
@@ -167,5 +161,4 @@ def _surface(label: str, found: Residuals | None, most: float) -> Iterator[Findi
         yield noted(f"{label}.depth", SKIP)
         return
     yield above(f"{label}.pixels", found.count, FEWEST_PIXELS)
-    yield noted(f"{label}.mean_m", found.mean)
     yield at_most(f"{label}.largest_m", found.largest, most)

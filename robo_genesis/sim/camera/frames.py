@@ -58,13 +58,11 @@ def capture(camera: Any) -> np.ndarray:
 
 
 def require_frame(rgb: Any) -> None:
-    """Raise FrameError unless `rgb` is a finite, non-empty RGB picture of the course's shape."""
+    """Raise FrameError unless `rgb` is a non-empty RGB picture of the course's shape."""
     shape = np.shape(rgb)
     if shape != FRAME_SHAPE:
         raise FrameError(f"The camera returned shape {shape}, expected {FRAME_SHAPE}.")
     picture = np.asarray(rgb)
-    if picture.dtype != np.uint8 and not np.isfinite(picture).all():
-        raise FrameError("The camera returned values that are not finite.")
     if picture.tobytes() == picture[0, 0].tobytes() * (shape[0] * shape[1]):
         raise FrameError(
             f"The camera returned an empty picture: every pixel is {picture[0, 0].tolist()}. "

@@ -29,27 +29,19 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
     """
     import mujoco
 
-    def padded(*values: float) -> FloatArray:  # MuJoCo has ten parameters
-        return np.pad(
-            np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values))
-        )
-
     spec = bare_spec(case.model)
     for k, name in enumerate(case.model.joints):
         motor = bool(
             case.effort_limit[k] > 0
         )  # MuJoCo takes no actuator with an empty range
-        spec.add_actuator(
+        actuator = spec.add_actuator(
             name=name,
             target=name,
             trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
-            gainprm=padded(motor * case.kp[k]),
-            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-            biasprm=padded(0, -motor * case.kp[k], -motor * case.kv[k]),
             forcelimited=motor,
             forcerange=[-case.effort_limit[k], case.effort_limit[k]],
         )
+        actuator.set_to_position(kp=motor * case.kp[k], kv=motor * case.kv[k])
     spec.option.timestep = timestep
     spec.option.integrator = getattr(
         mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"

@@ -18,7 +18,7 @@ from trimesh.transformations import quaternion_matrix, rotation_matrix
 from robo_genesis.core import palette
 from robo_genesis.core.channels import Run, Runs
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.visual_shape import WORLD, Hinge, Part, check_links, floor
+from robo_genesis.sim.visual_shape import WORLD, Hinge, Part, floor
 from robo_genesis.site.figures.case_labels import MARKS
 
 # Width of the tiles of the floor [m]; they show its distance and the motion above it
@@ -88,10 +88,8 @@ def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
     """Return what the replay of some runs shows.
 
     Raises:
-        ValueError: a part belongs to a link that is not in the record, or two links
-            have one name.
+        ValueError: two links have one name.
     """
-    check_links(shape, runs.links)
     followed = find_followed(runs)
     *_, tiles = floors = floor_of(shape)
     parts, ground = [*shape, *floors], float(tiles.vertices[:, 2].max())

@@ -18,7 +18,7 @@ from lessons.changed_runs import (
 from lessons.experiments import checks_of, each, run_with
 
 from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.laws import laws_of_motion
+from robo_genesis.lessons.l04.checks import laws_of_motion
 
 K = spec.ENTRY
 GRID_G2 = study_spec.CASE_POINTS["G2"].name

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from lessons.engine_scenes import robot_in_scene
 
@@ -12,7 +11,6 @@ from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.run import ask, reach
 from robo_genesis.sim.arm.batch import Batch, set_link_mass
 from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.session import CaseError
 
 pytestmark = pytest.mark.engine
 
@@ -48,19 +46,11 @@ def test_answers_of_some_environments_are_those_of_all(four):
     assert (some.error == every.error[[3, 1]]).all()
 
 
-@pytest.mark.parametrize(
-    ("rows", "envs", "message"),
-    [
-        (1, [1, 3], r"shape \(1, 9\), expected one row"),
-        (2, [1, 1], r"Environments \[1, 1\]"),
-        (1, [4], r"Environments \[4\]"),
-    ],
-)
-def test_a_command_that_would_broadcast_is_refused(four, rows, envs, message):
+def test_a_command_to_an_environment_that_does_not_exist_is_refused(four):
     cases = [world.commanding(world.q_start) for world in WORLDS]
     batch = Batch(**vars(four), cases=cases)
-    with pytest.raises(CaseError, match=message):
-        batch.command(np.tile(spec.FIRST.q_start, (rows, 1)), envs)
+    with pytest.raises(IndexError):
+        batch.command(spec.FIRST.q_start[None], [4])
 
 
 def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):

@@ -3,11 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import STEPPED_JOINT
-from robo_genesis.sim.arm.channels import channels, distances, levels, motion
+from robo_genesis.sim.arm.channels import channels, levels, motion
 
 
 def test_channels_are_the_record_with_the_start_before_the_first_step(traces, joints):
@@ -50,8 +49,3 @@ def test_levels_are_the_targets_one_after_the_other_and_the_limit_read_back(
     command[:, k] = -np.linspace(1.75, 1.5, len(command))
     every = f"{sentence}, then −1.5000 rad ({len(command)} values)."
     assert motion(replace(trace, target=command), joints, STEPPED_JOINT) == every
-
-
-def test_a_record_without_the_hand_of_the_replay_is_refused(traces):
-    with pytest.raises(ValueError, match="no link 'tool' as hand"):
-        distances(traces, ["link0", "hand"], lambda case, state: np.zeros(3), "tool")

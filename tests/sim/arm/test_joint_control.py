@@ -111,7 +111,6 @@ def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints
 @pytest.mark.parametrize(
     ("scene", "case", "message"),
     [
-        ({"is_built": False}, {}, r"not built: call scene.build\(\)"),
         ({"dt": 0.02}, {}, "Restart and build"),
         ({"substeps": 20}, {}, "Restart and build"),
         ({}, value("q_target", 3, 0.0), "none is clipped"),

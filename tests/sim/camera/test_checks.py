@@ -20,8 +20,10 @@ def along(view):
     return replace(view, depth=view.depth * np.linalg.norm(directions, axis=-1))
 
 
-def moved(view):
-    return replace(view, transform=TRANSFORM + np.outer([1, 0, 0, 0], [0, 0, 0, 0.01]))
+def moved(view, axis=0):
+    return replace(
+        view, transform=TRANSFORM + 0.01 * np.outer(np.eye(4)[axis], np.eye(4)[3])
+    )
 
 
 GIVEN = {
@@ -42,7 +44,7 @@ SPOILED = {
     "too few pixels": (checks.projection, closed_view(SMALL), SMALL),
     "moved pose": (checks.projection, moved(closed_view()), MARKER),
     "depth along the ray": (checks.sphere_surface, along(closed_view()), MARKER),
-    "another height": (checks.plane_surface, closed_view(), PLANE, 0.01),
+    "another height": (checks.plane_surface, moved(closed_view(), 2), PLANE),
 }
 OTHER = {"fov": 43.0, "near": 0.2, "far": 21.0, "lookat": (0, 0, 0)}
 SPOILED |= {
