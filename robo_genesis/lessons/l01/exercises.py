@@ -1,10 +1,9 @@
 """Checks of the functions that a student writes in L01's lab; see `core/exercises.py`."""
 
-from collections.abc import Callable, Iterator
 from typing import Any
 
-from robo_genesis.core.checks import Finding, within
-from robo_genesis.core.exercises import as_test
+from robo_genesis.core.checks import Findings, within
+from robo_genesis.core.exercises import Written, as_test
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim.bodies.free_fall import summed_drop
 
@@ -14,7 +13,7 @@ TINY = 1e-9  # Largest difference that rounding explains in float64 [m]
 
 
 @as_test
-def height_after(height: Callable[..., Any]) -> Iterator[Finding]:
+def height_after(height: Written) -> Findings:
     """Check `height(z0, g, h, n)`: the height [m] after n solver steps from rest."""
     case = spec.BASELINE
     for name, z0, g, h, n in (
@@ -27,7 +26,7 @@ def height_after(height: Callable[..., Any]) -> Iterator[Finding]:
 
 
 @as_test
-def fall(run: Callable[..., Any], scene: Any, sphere: Any) -> Iterator[Finding]:
+def fall(run: Written, scene: Any, sphere: Any) -> Findings:
     """Check `run(scene, sphere, steps)`: the last height [m] after a reset, twice and shorter."""
     case = spec.BASELINE
     for name, steps in (("first", case.steps), ("again", case.steps), ("shorter", 5)):

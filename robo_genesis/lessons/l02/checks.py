@@ -1,12 +1,12 @@
 """Named checks of a dropped box: all pass, or the exact invariant that failed is named."""
 
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
 
 from robo_genesis.core.checks import (
     Finding,
+    Findings,
     above,
     at_most,
     equal,
@@ -30,12 +30,12 @@ def speeds(trace: BodyTrace) -> FloatArray:
     return -trace.link_vel[:, 0, 2]
 
 
-def mass(run: Experiment) -> Iterator[Finding]:
+def mass(run: Experiment) -> Findings:
     """The engine's mass is density times volume."""
     return masses({"box": run.readings["body"]["mass"]}, {"box": spec.BASELINE.mass})
 
 
-def falls(run: Experiment) -> Iterator[Finding]:
+def falls(run: Experiment) -> Findings:
     """The box is lower after every step than before it, and faster."""
     for name, trace in run.traces.items():
         for what, values in (("lower", fallen(trace)), ("faster", speeds(trace))):
@@ -43,14 +43,14 @@ def falls(run: Experiment) -> Iterator[Finding]:
             yield equal(f"{name}.steps_not_{what}", not_more, 0)
 
 
-def clear_of_ground(run: Experiment) -> Iterator[Finding]:
+def clear_of_ground(run: Experiment) -> Findings:
     """The box's underside stays above the ground: the run measures the fall, not a contact."""
     for name, case in run.cases.items():
         lowest = float(run.traces[name].link_pos[:, 0, 2].min()) - case.size / 2
         yield above(f"{name}.clearance_m", lowest, 0)
 
 
-def stepped_formula(run: Experiment) -> Iterator[Finding]:
+def stepped_formula(run: Experiment) -> Findings:
     """At every sample the box has fallen g h² n (n + 1) / 2, to within float32."""
     for name, of in run.metrics.items():
         yield at_most(
@@ -58,7 +58,7 @@ def stepped_formula(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def speed(run: Experiment) -> Iterator[Finding]:
+def speed(run: Experiment) -> Findings:
     """At every sample the velocity is g t, downwards: one outer step is dt long."""
     for name, case in run.cases.items():
         trace = run.traces[name]
@@ -68,7 +68,7 @@ def speed(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.speed_error_m_s", error, spec.SPEED_SHARE * expected[-1])
 
 
-def straight_down(run: Experiment) -> Iterator[Finding]:
+def straight_down(run: Experiment) -> Findings:
     """The box moves vertically and keeps its orientation."""
     for name, of in run.metrics.items():
         quat = run.traces[name].link_quat[:, 0].astype(np.float64)
@@ -95,13 +95,13 @@ def expected_gap(run: Experiment, name: str) -> float:
     return float(ahead_of_continuous(case.h, run.metrics[name].duration, case.gravity))
 
 
-def one_factor(run: Experiment) -> Iterator[Finding]:
+def one_factor(run: Experiment) -> Findings:
     """The cases differ in their substeps alone."""
     first, *others = by_step(run)
     return factors(run.cases, {(first, name): ["substeps"] for name in others})
 
 
-def shrinks(run: Experiment) -> Iterator[Finding]:
+def shrinks(run: Experiment) -> Findings:
     """The gap to continuous free fall is smaller with every smaller solver step."""
     for coarse, fine in pairwise(by_step(run)):
         larger, gap = (run.metrics[name].continuous_gap for name in (coarse, fine))
@@ -110,7 +110,7 @@ def shrinks(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def first_order(run: Experiment) -> Iterator[Finding]:
+def first_order(run: Experiment) -> Findings:
     """The gap is g h t / 2, so half the solver step leaves half of it."""
     for name in by_step(run):
         gap, expected = run.metrics[name].continuous_gap, expected_gap(run, name)

@@ -1,12 +1,11 @@
 """Checks of the four functions that a student writes in L02's lab; see `core/exercises.py`."""
 
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, equal, within
-from robo_genesis.core.exercises import as_test, same_array
+from robo_genesis.core.checks import Findings, equal, within
+from robo_genesis.core.exercises import Written, as_test, same_array
 from robo_genesis.core.scene import FRAME_SHAPE
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
@@ -24,7 +23,7 @@ UNTIL_REST = 100  # Outer steps after which a dropped box lies on the ground
 
 
 @as_test
-def scene(make: Callable[..., Any], gs: Any, case: Drop) -> Iterator[Finding]:
+def scene(make: Written, gs: Any, case: Drop) -> Findings:
     """Check `make(gs)`: a built scene with a ground, and the box of a case, which falls on it."""
     built, box = make(gs)
     yield within("dt_s", float(built.dt), case.dt, 1e-9)
@@ -42,9 +41,7 @@ def scene(make: Callable[..., Any], gs: Any, case: Drop) -> Iterator[Finding]:
 
 
 @as_test
-def record(
-    read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace
-) -> Iterator[Finding]:
+def record(read: Written, built: Any, box: Any, trace: BodyTrace) -> Findings:
     """Check `read(scene, box, steps)`: heights [m] and speeds along z [m/s] of a run.
 
     Args:
@@ -62,7 +59,7 @@ def record(
 
 
 @as_test
-def usable_frame(usable: Callable[..., Any]) -> Iterator[Finding]:
+def usable_frame(usable: Written) -> Findings:
     """Check `usable(rgb)`: whether a frame has the course's shape and type and shows something."""
     background = np.empty(FRAME_SHAPE, np.uint8)
     background[:] = (20, 30, 40)
@@ -82,7 +79,7 @@ def usable_frame(usable: Callable[..., Any]) -> Iterator[Finding]:
 
 
 @as_test
-def stepped(fall: Callable[..., Any]) -> Iterator[Finding]:
+def stepped(fall: Written) -> Findings:
     """Check `fall(g, h, n)`: distances by semi-implicit Euler, before and after each step."""
     for name, g, h, n in (
         ("baseline", spec.BASELINE.gravity, spec.BASELINE.h, 40),

@@ -3,10 +3,10 @@
 A change in what an engine accepts changes the recorded counts.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from robo_genesis.core.checks import Finding, equal
+from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.spec import AFTER, BEFORE
@@ -92,7 +92,7 @@ def counts(attempts: Attempts) -> dict[str, int]:
     }
 
 
-def sides_of_build(run: Experiment) -> Iterator[Finding]:
+def sides_of_build(run: Experiment) -> Findings:
     """The engine accepts each call on its own side of build and refuses it on the other."""
     for name, right in expected(run.rendered).items():
         yield equal(f"{name}, accepted", run.readings[GROUP].get(name), int(right))

@@ -1,7 +1,5 @@
 """Tables of a dropped box, and the sentences that the lab generates."""
 
-from collections.abc import Iterator
-
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import bullets, decimal, readable, signed
@@ -53,7 +51,7 @@ def metric_table(run: Experiment) -> str:
 
 
 @tables.as_table
-def three_drops(run: Experiment) -> Iterator[dict[str, str]]:
+def three_drops(run: Experiment) -> tables.Rows:
     """Return a table of the measured drop and both formulas."""
     found, case = run.metrics["baseline"], run.cases["baseline"]
     steps = case.steps * case.substeps
@@ -70,7 +68,7 @@ def three_drops(run: Experiment) -> Iterator[dict[str, str]]:
 
 
 @tables.as_table
-def substep_table(run: Experiment) -> Iterator[dict[str, str]]:
+def substep_table(run: Experiment) -> tables.Rows:
     """Return the drops of all solver steps."""
     for name in checks.by_step(run):
         case, m = run.cases[name], run.metrics[name]

@@ -1,9 +1,9 @@
 """What the lecture measures beside its runs: geometry, balls in trays, falls after `build`."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from robo_genesis.core.checks import Finding, above, below, equal, within
+from robo_genesis.core.checks import Findings, above, below, equal, within
 from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.free_fall import summed_drop
@@ -55,7 +55,7 @@ def shape_rows(entities: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def two_geometries(run: Experiment) -> Iterator[Finding]:
+def two_geometries(run: Experiment) -> Findings:
     """The box collides with what is drawn; the duck collides with fewer triangles than
     are drawn, the tray with several pieces for one drawn mesh.
     """
@@ -65,7 +65,7 @@ def two_geometries(run: Experiment) -> Iterator[Finding]:
     yield above("tray_pieces", found["tray_pieces"], 1)
 
 
-def invisible_lid(run: Experiment) -> Iterator[Finding]:
+def invisible_lid(run: Experiment) -> Findings:
     """A ball rests on the floor of a tray of several collision pieces, and on the rim
     of a tray with a single one.
     """
@@ -88,7 +88,7 @@ def expected_falls() -> dict[str, float]:
     )
 
 
-def further_falls(run: Experiment) -> Iterator[Finding]:
+def further_falls(run: Experiment) -> Findings:
     """After build, another height, speed, mass and gravity are accepted, and the
     stepped formula holds with each.
     """

@@ -1,12 +1,11 @@
 """Named checks of landings, slides and bounces: all pass, or the invariant that failed is named."""
 
-from collections.abc import Iterator
 from typing import TypeVar
 
 import numpy as np
 
 from robo_genesis.core import checks
-from robo_genesis.core.checks import Finding, above, at_most, nearly, within
+from robo_genesis.core.checks import Findings, above, at_most, nearly, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.lessons.l03 import spec, theory
@@ -29,18 +28,18 @@ def measured(run: Experiment, metrics: type[Metrics]) -> dict[str, Metrics]:
     return {name: of for name, of in run.metrics.items() if isinstance(of, metrics)}
 
 
-def mass(run: Experiment) -> Iterator[Finding]:
+def mass(run: Experiment) -> Findings:
     """The engine's masses are density times volume."""
     expected = {case.shape: case.mass for case in run.cases.values()}
     return checks.masses(run.readings["mass"], expected)
 
 
-def one_factor(run: Experiment) -> Iterator[Finding]:
+def one_factor(run: Experiment) -> Findings:
     """Compared cases differ in the declared factors and in nothing else."""
     return checks.factors(run.cases, spec.ONE_FACTOR)
 
 
-def lands(run: Experiment) -> Iterator[Finding]:
+def lands(run: Experiment) -> Findings:
     """Each dropped cube touches the surface, and its centre stays above the upper face."""
     for name, found in measured(run, LandingMetrics).items():
         trace = run.traces[name]
@@ -49,7 +48,7 @@ def lands(run: Experiment) -> Iterator[Finding]:
         yield above(f"{name}.lowest_m", float(trace.link_pos[:, 0, 2].min()), TOP)
 
 
-def reported_late(run: Experiment) -> Iterator[Finding]:
+def reported_late(run: Experiment) -> Findings:
     """With one substep, a reported depth belongs to the state before: it is one step old."""
     for name in measured(run, LandingMetrics):
         case, trace = run.cases[name], run.traces[name]
@@ -59,7 +58,7 @@ def reported_late(run: Experiment) -> Iterator[Finding]:
             yield at_most(f"{name}.depth_error_m", error, spec.DEPTH_TOLERANCE)
 
 
-def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
+def equal_step_equal_states(run: Experiment) -> Findings:
     """Runs with equal solver steps and different outer steps share states at shared times."""
     short, long = spec.EQUAL_STEP
     for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
@@ -69,24 +68,24 @@ def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def settles(run: Experiment) -> Iterator[Finding]:
+def settles(run: Experiment) -> Findings:
     """Each dropped cube settles at its resting height within the window."""
     for name, found in measured(run, LandingMetrics).items():
         yield above(f"{name}.resting_time_s", found.resting_time, 0)
 
 
-def stops(run: Experiment) -> Iterator[Finding]:
+def stops(run: Experiment) -> Findings:
     """Each pushed cube stops within the window by the declared rule."""
     for name, found in measured(run, SlideMetrics).items():
         yield above(f"{name}.stop_distance_m", found.stop_distance, 0)
 
 
-def friction_orders(run: Experiment) -> Iterator[Finding]:
+def friction_orders(run: Experiment) -> Findings:
     """With less friction a cube travels farther; the smaller coefficient changes nothing."""
     return orders_of_distances(run, "")
 
 
-def orders_of_distances(run: Experiment, model: str) -> Iterator[Finding]:
+def orders_of_distances(run: Experiment, model: str) -> Findings:
     """Require the orders of stopping distances; `model` ends the names of the compared runs."""
     far = {
         name: run.metrics[name + model].stop_distance or np.nan for name in spec.SLIDES
@@ -101,7 +100,7 @@ def orders_of_distances(run: Experiment, model: str) -> Iterator[Finding]:
     yield at_most(f"high{model}.change_of_distance_m", change, spec.SAME_SLIDE)
 
 
-def near_coulomb(run: Experiment) -> Iterator[Finding]:
+def near_coulomb(run: Experiment) -> Findings:
     """Each stopping distance is within 20 % of v² / (2 μ g) with the larger coefficient."""
     for name, found in measured(run, SlideMetrics).items():
         expected = theory.coulomb_distance(run.cases[name])
@@ -109,14 +108,14 @@ def near_coulomb(run: Experiment) -> Iterator[Finding]:
         yield nearly(label, found.stop_distance, expected, share)
 
 
-def level_in_flight(run: Experiment) -> Iterator[Finding]:
+def level_in_flight(run: Experiment) -> Findings:
     """In the air, the energy that semi-implicit Euler conserves is constant to within float32."""
     for name, found in measured(run, BounceMetrics).items():
         allowed = spec.LEVEL_SHARE * found.start_energy
         yield at_most(f"{name}.flight_drift_J", found.flight_drift, allowed)
 
 
-def energy_converges(run: Experiment) -> Iterator[Finding]:
+def energy_converges(run: Experiment) -> Findings:
     """The finest step keeps at the bounce the energy of a linear spring; a coarse one does not."""
     kept = {
         name: found.first_kept for name, found in measured(run, BounceMetrics).items()

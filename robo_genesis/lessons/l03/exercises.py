@@ -1,13 +1,13 @@
 """Checks of the five functions that a student writes in L03's lab; see `core/exercises.py`."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, at_most, equal, within
-from robo_genesis.core.exercises import as_test, compared
+from robo_genesis.core.checks import Findings, at_most, equal, within
+from robo_genesis.core.exercises import Written, as_test, compared
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03.metrics import (
     LandingMetrics,
@@ -26,7 +26,7 @@ SUNK = 2e-3  # How deep a cube at rest may be in the table [m]
 
 
 @as_test
-def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> Iterator[Finding]:
+def scene(make: Written, gs: Any, case: ContactCase) -> Findings:
     """Check `make(gs)`: a built scene, a fixed table and the cube of a case, which lands on it."""
     built, table, cube = make(gs)
     yield within("dt_s", float(built.dt), case.dt, 1e-9)
@@ -54,9 +54,7 @@ def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> Iterator[Find
 
 
 @as_test
-def push(
-    push_cube: Callable[..., Any], built: Any, cube: Any, case: ContactCase
-) -> Iterator[Finding]:
+def push(push_cube: Written, built: Any, cube: Any, case: ContactCase) -> Findings:
     """Check `push_cube(scene, cube, speed, settle)`: settle first, then a speed along x alone.
 
     Args:
@@ -80,7 +78,7 @@ def push(
 
 
 @as_test
-def contact_reading(read: Callable[..., Any]) -> Iterator[Finding]:
+def contact_reading(read: Written) -> Findings:
     """Check `read(cube, table)`: number of contacts with the table alone, and the deepest [m]."""
     table, other = object(), object()
     touching = {
@@ -112,9 +110,9 @@ class _Touching:
 
 @as_test
 def landing(
-    measure: Callable[..., Any],
+    measure: Written,
     runs: Iterable[tuple[ContactTrace, ContactCase, LandingMetrics]],
-) -> Iterator[Finding]:
+) -> Findings:
     """Check `measure(clear)`: penetration and rebound [m] of a landing, from its clearance (n,)."""
     names = ("penetration", "rebound")
     for number, (trace, case, of) in enumerate(runs):
@@ -131,8 +129,8 @@ def landing(
 
 @as_test
 def stopping(
-    measure: Callable[..., Any], runs: Iterable[tuple[ContactTrace, SlideMetrics]]
-) -> Iterator[Finding]:
+    measure: Written, runs: Iterable[tuple[ContactTrace, SlideMetrics]]
+) -> Findings:
     """Check `measure(t, x, speed)`: stop time and distance by the rule with a hold, or None."""
     names = ("stop_time", "stop_distance")
     for number, (trace, of) in enumerate(runs):

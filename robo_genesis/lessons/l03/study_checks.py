@@ -1,11 +1,10 @@
 """Named checks of L03's lecture and deeper pages: landings, clean slides, hops, second engine."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from robo_genesis.core.checks import (
     Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -21,7 +20,7 @@ from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics, aligned
 # Landings
 
 
-def time_constants(run: Experiment) -> Iterator[Finding]:
+def time_constants(run: Experiment) -> Findings:
     """The engine gives a contact a time constant of 10 ms, and never less than two solver steps."""
     for name, found in run.readings[study.GROUP].items():
         expected = theory.contact_seconds(study.case_of(name))
@@ -30,7 +29,7 @@ def time_constants(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def rebound_goes(run: Experiment) -> Iterator[Finding]:
+def rebound_goes(run: Experiment) -> Findings:
     """With the default time constant, all cubes rebound at the baseline's solver step;
     at all smaller steps studied, none does from any of the nine heights.
     """
@@ -43,7 +42,7 @@ def rebound_goes(run: Experiment) -> Iterator[Finding]:
             yield above(f"{name}.lowest_rebound_m", min(rebounds), CLEAR)
 
 
-def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
+def scatter_shrinks(run: Experiment) -> Findings:
     """Depths as shares of v T / e scatter widely at h = T / 2, and less at every smaller step."""
     limit = np.inf
     for name in sorted(study_spec.STEP_CASES, key=study.share_of_step, reverse=True):
@@ -58,7 +57,7 @@ def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
     yield at_most("scatter_left", limit, study_spec.SCATTER_FINE)
 
 
-def first_step_decides(run: Experiment) -> Iterator[Finding]:
+def first_step_decides(run: Experiment) -> Findings:
     """With solver steps of 5 ms and 10 ms, half the time constant in force, the first
     sample in the table is the deepest of each landing: its depth follows from the fall
     alone.
@@ -70,7 +69,7 @@ def first_step_decides(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def depth_by_hand(run: Experiment) -> Iterator[Finding]:
+def depth_by_hand(run: Experiment) -> Findings:
     """With fine steps, each cube sinks in by v T / e: within 10 % for a time constant
     of 10 ms, and within 20 % for 2 ms.
     """
@@ -80,7 +79,7 @@ def depth_by_hand(run: Experiment) -> Iterator[Finding]:
             yield within(f"{name}.depth_share", depth_share, 1.0, share)
 
 
-def release_speed(run: Experiment) -> Iterator[Finding]:
+def release_speed(run: Experiment) -> Findings:
     """With fine steps and time constants of 10, 5 and 2 ms, a contact releases a cube
     at e⁻² of its impact speed, within 10 %.
     """
@@ -89,7 +88,7 @@ def release_speed(run: Experiment) -> Iterator[Finding]:
         yield nearly(label, found.upward_speed, expected, study_spec.RELEASE_SHARE)
 
 
-def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
+def stiff_contacts_rebound(run: Experiment) -> Findings:
     """With 10 ms no cube rebounds; with 5 ms and 2 ms each rebounds as from a linear
     contact, within 25 %.
     """
@@ -102,7 +101,7 @@ def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
 # Slides with the elliptic cone
 
 
-def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
+def clean_slides_stay_down(run: Experiment) -> Findings:
     """With the engine's elliptic cone, cubes slide on four corners at every sample."""
     for name, _, found in study.clean(run):
         yield at_most(f"{name}.hop_m", found.hop, CLEAR)
@@ -111,7 +110,7 @@ def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{name}.most_contacts", contacts.max(), 4)
 
 
-def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
+def clean_slides_are_coulomb_s(run: Experiment) -> Findings:
     """With the elliptic cone, a cube stops at v² / (2 μ g) − v h / 2: Coulomb's law in steps."""
     for name, case, found in study.clean(run):
         expected, label = theory.stepped_distance(case), f"{name}.stop_distance_m"
@@ -119,14 +118,14 @@ def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
         yield within(label, found.stop_distance, expected, tolerance)
 
 
-def clean_slides_order(run: Experiment) -> Iterator[Finding]:
+def clean_slides_order(run: Experiment) -> Findings:
     """With less friction a cube with the elliptic cone travels farther; the smaller
     coefficient changes nothing.
     """
     return checks.orders_of_distances(run, "_elliptic")
 
 
-def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
+def larger_friction_rules(run: Experiment) -> Findings:
     """Clean slides show the larger of two coefficients, and fit no other rule."""
     for name, case, found in study.clean(run):
         distance = (found.stop_distance or np.nan) + case.speed * case.h / 2
@@ -141,7 +140,7 @@ def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
 # Pushes with the default cone
 
 
-def default_cone_hops(run: Experiment) -> Iterator[Finding]:
+def default_cone_hops(run: Experiment) -> Findings:
     """With the engine's default friction model, both cubes that are pushed to 2 m/s hop."""
     for name, case in study_spec.HOPPED.items():
         top = float(run.traces[name].link_pos[:, 0, 2].max())
@@ -155,7 +154,7 @@ def by_formula(run: Experiment, name: str) -> Finding:
     return nearly(f"{name}.hop_m", hop, expected, study_spec.HOP_SHARE)
 
 
-def hop_follows_step(run: Experiment) -> Iterator[Finding]:
+def hop_follows_step(run: Experiment) -> Findings:
     """From 10 ms to 2 ms the hop is that of the formula for one step, within 25 %; at
     smaller steps at most 15 % of the hop at 5 ms is left.
     """
@@ -167,7 +166,7 @@ def hop_follows_step(run: Experiment) -> Iterator[Finding]:
             yield by_formula(run, name) if step in study_spec.HOP_APPLIES else fine
 
 
-def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
+def hop_follows_speed(run: Experiment) -> Findings:
     """At a step of 5 ms the hop grows with the speed, and is below 1 mm up to 0.2 m/s."""
     previous = 0.0
     for name, case in study_spec.HOP_SPEED_CASES.items():
@@ -178,7 +177,7 @@ def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
         previous = found
 
 
-def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
+def stops_nearly_right(run: Experiment) -> Findings:
     """The cube with the friction of the surface still stops near v² / (2 μ g)."""
     name = study.LANES["low"]
     expected = theory.coulomb_distance(run.cases[name])
@@ -186,7 +185,7 @@ def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
     yield nearly(label, found, expected, study_spec.NEARLY)
 
 
-def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
+def hop_is_paid_by_friction(run: Experiment) -> Findings:
     """The first step reduces v_x by μ times the gain of v_z, far more than under the weight."""
     for name in study_spec.HOPPED:
         case, (lost, gained) = run.cases[name], study.first_impulses(run, name)
@@ -197,13 +196,13 @@ def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
         yield nearly(label, mu * gained, lost, study_spec.RATIO_TOLERANCE)
 
 
-def the_cone_alone_hops(run: Experiment) -> Iterator[Finding]:
+def the_cone_alone_hops(run: Experiment) -> Findings:
     """With the round cone and the pyramid's resolution cubes hop: the shape does not prevent it."""
     for name in study_spec.CONVEX_SLIDES:
         yield above(f"{name}.hop_m", run.metrics[name].hop, study_spec.HOP)
 
 
-def half_the_step_contradicts(run: Experiment) -> Iterator[Finding]:
+def half_the_step_contradicts(run: Experiment) -> Findings:
     """The stopping distance of the cube with the higher coefficient changes by more
     than 5 % of Coulomb's when the solver step of 5 ms is halved.
     """
@@ -215,7 +214,7 @@ def half_the_step_contradicts(run: Experiment) -> Iterator[Finding]:
     yield above("change_at_half_the_step_share", share, study_spec.UNSETTLED)
 
 
-def one_stop_converges(run: Experiment) -> Iterator[Finding]:
+def one_stop_converges(run: Experiment) -> Findings:
     """Over the steps of at most T / 10 the stopping distance of the cube with the low
     coefficient changes by at most 5 % of Coulomb's.
     """
@@ -230,7 +229,7 @@ def one_stop_converges(run: Experiment) -> Iterator[Finding]:
 # The second engine
 
 
-def engines_land_alike(run: Experiment) -> Iterator[Finding]:
+def engines_land_alike(run: Experiment) -> Findings:
     """With equal settings, cubes land in MuJoCo as in the engine, at every shared sample."""
     for name, other in study_spec.ENGINE_PAIRS.items():
         if name not in checks.measured(run, SlideMetrics):
@@ -242,7 +241,7 @@ def engines_land_alike(run: Experiment) -> Iterator[Finding]:
             yield at_most(label, apart, study_spec.ENGINES_APART)
 
 
-def engines_hop_alike(run: Experiment) -> Iterator[Finding]:
+def engines_hop_alike(run: Experiment) -> Findings:
     """With equal settings, pushed cubes make the same hop in MuJoCo, with either cone."""
     for name, other in study_spec.ENGINE_PAIRS.items():
         if name in checks.measured(run, SlideMetrics):

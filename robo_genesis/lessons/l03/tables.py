@@ -1,12 +1,12 @@
 """Tables of landings, slides and bounces: functions of the experiment."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.tables import as_table, metric_table
+from robo_genesis.core.tables import Rows, as_table, metric_table
 from robo_genesis.core.text import NOT_OBSERVED, format_value, readable
 from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
 from robo_genesis.lessons.l03.metrics import (
@@ -19,8 +19,6 @@ from robo_genesis.lessons.l03.text import millimetres, milliseconds
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 MEASURES = False
-
-Row = dict[str, str]
 
 
 def span(values: Sequence[float], digits: int = 2) -> str:
@@ -61,7 +59,7 @@ def stop(run: Experiment, name: str) -> str:
 
 
 @as_table
-def clean_slides(run: Experiment) -> Iterator[Row]:
+def clean_slides(run: Experiment) -> Rows:
     """Return the slides with the elliptic cone beside Coulomb's distance."""
     for name, case, found in study.clean(run):
         yield {
@@ -75,7 +73,7 @@ def clean_slides(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def hops_by_step(run: Experiment) -> Iterator[Row]:
+def hops_by_step(run: Experiment) -> Rows:
     """Return the hops by solver step for both coefficients, with the formula of one step."""
     for cases in study_spec.HOP_STEP_CASES.values():
         case = next(iter(cases.values()))
@@ -91,7 +89,7 @@ def hops_by_step(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def hops_by_speed(run: Experiment) -> Iterator[Row]:
+def hops_by_speed(run: Experiment) -> Rows:
     """Return the hops by the speed of the push at a solver step of 5 ms."""
     for name, case in study_spec.HOP_SPEED_CASES.items():
         yield {
@@ -105,7 +103,7 @@ def hops_by_speed(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def settings_of_cones(run: Experiment) -> Iterator[Row]:
+def settings_of_cones(run: Experiment) -> Rows:
     """Return the pushed cubes by what the setting of the cone switches."""
     kinds = (
         ("", "convex", "1"),
@@ -130,7 +128,7 @@ def settings_of_cones(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def stops_by_step(run: Experiment) -> Iterator[Row]:
+def stops_by_step(run: Experiment) -> Rows:
     """Return the stopping distances of both pushed cubes by solver step."""
     low, high = (study.stops_of_lane(run, lane) for lane in study.LANES)
     for one, other in zip(low, high, strict=True):
@@ -143,7 +141,7 @@ def stops_by_step(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def engines(run: Experiment) -> Iterator[Row]:
+def engines(run: Experiment) -> Rows:
     """Return how far each pair of runs is apart, and from when they are farther than 0.05 mm."""
     for pair in (
         *study_spec.ENGINE_PAIRS.items(),
@@ -175,7 +173,7 @@ def described(case: ContactCase, own_defaults: bool) -> str:
 
 
 @as_table
-def releases(run: Experiment) -> Iterator[Row]:
+def releases(run: Experiment) -> Rows:
     """Return release speed and rebound by time constant, beside the linear contact."""
     for scene in study_spec.RELEASE_CASES:
         runs, case = study.row(run, scene), study.case_of(scene)

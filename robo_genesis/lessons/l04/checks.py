@@ -1,6 +1,5 @@
 """Named checks of a step experiment, in the lab and in the lecture."""
 
-from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
@@ -9,6 +8,7 @@ from robo_genesis.core import checks
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE, READ_BACK
 from robo_genesis.core.checks import (
     Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -28,7 +28,7 @@ from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import kept
 
 
-def mapping(run: Experiment) -> Iterator[Finding]:
+def mapping(run: Experiment) -> Findings:
     """Seven arm joints and two finger joints are found by name, each with its own DOF."""
     model = run.readings["model"]
     yield from checks.model_counts(model, spec.EXPECTED_MODEL)
@@ -44,7 +44,7 @@ def mapping(run: Experiment) -> Iterator[Finding]:
         yield Finding(f"local_{what}", indices, bool(distinct and inside), expected)
 
 
-def target_limits(run: Experiment) -> Iterator[Finding]:
+def target_limits(run: Experiment) -> Findings:
     """Every start and target lies within the model's limits."""
     for case, name in product(spec.CASES, ("q_start", "q_target")):
         q = getattr(spec.CASES[case], name)
@@ -55,13 +55,13 @@ def target_limits(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def baseline_approaches(run: Experiment) -> Iterator[Finding]:
+def baseline_approaches(run: Experiment) -> Findings:
     """The baseline ends nearer to its target than it starts."""
     m = run.metrics["baseline"]
     yield below("baseline.final_error_rad", m.final_error, m.initial_error)
 
 
-def same_start(run: Experiment) -> Iterator[Finding]:
+def same_start(run: Experiment) -> Findings:
     """The compared cases start in the same state, at rest."""
     first = run.traces["G1"]
     for name in study_spec.COMPARED:
@@ -74,14 +74,14 @@ def same_start(run: Experiment) -> Iterator[Finding]:
             yield equal(f"{name}.{label}", np.abs(difference).max(), 0.0)
 
 
-def one_factor(run: Experiment) -> Iterator[Finding]:
+def one_factor(run: Experiment) -> Findings:
     """G1 and G2 differ in the stepped joint's KP alone, G2 and G3 in its KV alone."""
     for (one, other), expected in spec.ONE_FACTOR.items():
         found = differences(spec.CASES[one], spec.CASES[other], run.joints)
         yield equal(f"difference of {one} and {other}", found, expected, recorded=False)
 
 
-def control_law(run: Experiment) -> Iterator[Finding]:
+def control_law(run: Experiment) -> Findings:
     """Each control force is clip(KP (q_target − q) − KV q̇) with the gains of its own case."""
     for name, case in spec.CASES.items():
         trace = run.traces[name]
@@ -90,7 +90,7 @@ def control_law(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.distance_to_control_law", apart, laws.LAW)
 
 
-def measurements(run: Experiment) -> Iterator[Finding]:
+def measurements(run: Experiment) -> Findings:
     """No control force exceeds its limit."""
     for name in spec.CASES:
         trace = run.traces[name]
@@ -98,7 +98,7 @@ def measurements(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.control_force_above_limit", excess, spec.LIMIT_EXCESS)
 
 
-def saturation(run: Experiment) -> Iterator[Finding]:
+def saturation(run: Experiment) -> Findings:
     """The limit reads back as it was set; saturated samples are counted against it."""
     for name, case in spec.CASES.items():
         limit = run.traces[name].effort_limit
@@ -109,9 +109,7 @@ def saturation(run: Experiment) -> Iterator[Finding]:
 # The compared cases, gravity and a longer window
 
 
-def orders(
-    run: Experiment, engine: str, substeps: int = study.SUBSTEPS
-) -> Iterator[Finding]:
+def orders(run: Experiment, engine: str, substeps: int = study.SUBSTEPS) -> Findings:
     """Require every ordering that the lesson claims of an engine's runs."""
     finer = f", {substeps} substeps" * (substeps != study.SUBSTEPS)
     for relation in spec.RELATIONS:
@@ -121,12 +119,12 @@ def orders(
         yield Finding(label, state, state == HELD, f"{HELD}: {values}", recorded=False)
 
 
-def claimed_orders(run: Experiment) -> Iterator[Finding]:
+def claimed_orders(run: Experiment) -> Findings:
     """Every ordering that the lesson claims holds in the compared cases."""
     return orders(run, "Genesis")
 
 
-def clipped_start(run: Experiment) -> Iterator[Finding]:
+def clipped_start(run: Experiment) -> Findings:
     """G1 and G2 get the same clipped effort and move alike until G1 leaves its limit,
     which is before G2 does. G2 and G3 get the same clipped effort until G2 leaves the
     limit, and then G3 is slower. G2 also brakes at a limit. The effort of G3 first
@@ -156,7 +154,7 @@ def clipped_start(run: Experiment) -> Iterator[Finding]:
     yield above("G3.braking_error_rad", left[1], left[0])
 
 
-def gravity_support(run: Experiment) -> Iterator[Finding]:
+def gravity_support(run: Experiment) -> Findings:
     """Where a case ends nearly at rest, KP × final error agrees with the gravity effort."""
     for case in spec.CASES:
         if abs(run.metrics[case].final_velocity) <= study_spec.AT_REST:
@@ -164,7 +162,7 @@ def gravity_support(run: Experiment) -> Iterator[Finding]:
             yield nearly(f"{case}.support_Nm", *found, share)
 
 
-def ends_at_rest(run: Experiment) -> Iterator[Finding]:
+def ends_at_rest(run: Experiment) -> Findings:
     """The baseline and the compared cases end nearly at rest, inside the settling band."""
     for name in spec.CASES:
         m = run.metrics[name]
@@ -174,7 +172,7 @@ def ends_at_rest(run: Experiment) -> Iterator[Finding]:
         yield below(f"{name}.share_of_band", m.final_error / SETTLING_BAND, 1.0)
 
 
-def same_beginning(run: Experiment) -> Iterator[Finding]:
+def same_beginning(run: Experiment) -> Findings:
     """The longer run of G2 begins with exactly the samples of G2."""
     for name in ("q", "qd", "control_force"):
         short, long = (
@@ -184,7 +182,7 @@ def same_beginning(run: Experiment) -> Iterator[Finding]:
         yield equal(f"same_{name}", same, True, recorded=False)
 
 
-def same_metrics(run: Experiment) -> Iterator[Finding]:
+def same_metrics(run: Experiment) -> Findings:
     """The longer run of G2 has the metrics of G2, in the digits that are shown."""
     longer = run.metrics[study_spec.LONGER]
     for name, value, unit in run.metrics["G2"].items():
@@ -192,7 +190,7 @@ def same_metrics(run: Experiment) -> Iterator[Finding]:
         yield equal(name, found, format_value(value, unit), recorded=False)
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """At each sample links and control forces are those of the driven or assigned robot."""
     for name, case in run.cases.items():
         trace = run.traces[name]

@@ -3,7 +3,7 @@
 See `core/exercises.py`.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
@@ -11,8 +11,8 @@ from unittest.mock import patch
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, at_most, equal
-from robo_genesis.core.exercises import as_test, compared, refused, same_array
+from robo_genesis.core.checks import Findings, at_most, equal
+from robo_genesis.core.exercises import Written, as_test, compared, refused, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY
@@ -36,9 +36,7 @@ RESPONSE = ("rise_time", "overshoot", "settling_time")
 
 
 @as_test
-def resolver(
-    resolve: Callable[..., Any], robot: Any, joints: JointMap
-) -> Iterator[Finding]:
+def resolver(resolve: Written, robot: Any, joints: JointMap) -> Findings:
     """Check `resolve(robot, names)`: local DOFs in the order of the names, odd joints refused."""
     names = list(joints.names)
     yield equal("dofs", list(resolve(robot, names)), joints.dofs_idx_local.tolist())
@@ -71,13 +69,13 @@ def _joint(*dofs: int, qpos: int | None = None) -> SimpleNamespace:
 
 @as_test
 def control_loop(
-    record: Callable[..., Any],
+    record: Written,
     scene: Any,
     robot: Any,
     joints: JointMap,
     case: ControlCase,
     trace: Trace,
-) -> Iterator[Finding]:
+) -> Findings:
     """Check `record(scene, robot, dofs, q_target, steps)` against a run of the same case.
 
     Call it after a reset to the case. The function returns t (n+1,), q (n+1, d), qd (n,
@@ -95,9 +93,7 @@ def control_loop(
 
 
 @as_test
-def pd_law(
-    law: Callable[..., Any], traces: Iterable[tuple[Trace, ControlCase]]
-) -> Iterator[Finding]:
+def pd_law(law: Written, traces: Iterable[tuple[Trace, ControlCase]]) -> Findings:
     """Check `law(error, qd, kp, kv, limit)` with every recorded control force of joint4."""
     for number, (trace, case) in enumerate(traces):
         error, qd, force = case.q_target - trace.q[1:], trace.qd, trace.control_force
@@ -115,8 +111,8 @@ def pd_law(
 
 @as_test
 def step_response(
-    measure: Callable[..., Any], runs: Iterable[tuple[Trace, StepMetrics]]
-) -> Iterator[Finding]:
+    measure: Written, runs: Iterable[tuple[Trace, StepMetrics]]
+) -> Findings:
     """Check `measure(t, q, q_target)`: rise time, overshoot, settling time; None if not observed.
 
     The runs are measured ones; two invented responses never rise, and leave the band at
@@ -137,7 +133,7 @@ def step_response(
 
 
 @as_test
-def stepped(model: Callable[..., Any]) -> Iterator[Finding]:
+def stepped(model: Written) -> Findings:
     """Check `model(inertia, kp, kv, d, limit, g, step, h, n)`: n + 1 positions [rad]."""
     for name, arguments in INVENTED.items():
         inertia, kp, kv, d, limit, g, step, h, n = arguments

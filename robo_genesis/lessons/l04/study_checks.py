@@ -1,13 +1,12 @@
 """Named checks of L04's deeper pages: theory, solver step, second engine, grid."""
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.checks import (
-    Finding,
+    Findings,
     above,
     at_most,
     below,
@@ -23,7 +22,7 @@ from robo_genesis.lessons.l04.theory import overshoot_share
 from robo_genesis.sim.arm.joint_control import differences
 
 
-def study_factors(run: Experiment) -> Iterator[Finding]:
+def study_factors(run: Experiment) -> Findings:
     """Each study case differs from its compared case in one factor: target, substeps or window."""
     factors = {
         f"q_target[{spec.STEPPED_JOINT}]": study_spec.STEP_CASES,
@@ -39,14 +38,14 @@ def study_factors(run: Experiment) -> Iterator[Finding]:
             )
 
 
-def same_model(run: Experiment) -> Iterator[Finding]:
+def same_model(run: Experiment) -> Findings:
     """What the engines report of the stepped joint agrees with its model in MuJoCo."""
     expected = study.by_model(run.traces)
     for name, value in run.readings[study.GROUP].items():
         yield nearly(name, value, expected[name], study_spec.SAME_MODEL)
 
 
-def small_step_unsaturated(run: Experiment) -> Iterator[Finding]:
+def small_step_unsaturated(run: Experiment) -> Findings:
     """No effort of the small steps and of the hold runs reaches the saturation threshold."""
     for name in study_spec.STEP_CASES:
         trace = run.traces[name]
@@ -55,7 +54,7 @@ def small_step_unsaturated(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{name}.saturated_efforts", saturated.sum(), 0)
 
 
-def theory_small_step(run: Experiment) -> Iterator[Finding]:
+def theory_small_step(run: Experiment) -> Findings:
     """The overshoot of each small step agrees with the formula within the declared
     margin, and its curve is closer to the formula than that of the large step.
     """
@@ -72,7 +71,7 @@ def theory_small_step(run: Experiment) -> Iterator[Finding]:
         yield below(f"{case}_small.distance_to_theory", off_small, off_large)
 
 
-def stepped_model(run: Experiment) -> Iterator[Finding]:
+def stepped_model(run: Experiment) -> Findings:
     """The overshoots of a one-joint model with the solver step agree with Genesis
     within the declared margins.
     """
@@ -90,7 +89,7 @@ def stepped_model(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def model_predicts(run: Experiment) -> Iterator[Finding]:
+def model_predicts(run: Experiment) -> Findings:
     """The stepped model overshoots in the large steps in which Genesis does. In the
     small step of G1 it is nearer to Genesis than the ideal joint, in that of G2 it is
     not.
@@ -109,7 +108,7 @@ def model_predicts(run: Experiment) -> Iterator[Finding]:
         yield equal(f"{case}_small.model_nearer", bool(off_model < off_ideal), nearer)
 
 
-def clipped_before_parting(run: Experiment) -> Iterator[Finding]:
+def clipped_before_parting(run: Experiment) -> Findings:
     """Each compared case is too far from the ideal joint at the first sample after t =
     0, and its effort at t = 0 is clipped.
     """
@@ -122,7 +121,7 @@ def clipped_before_parting(run: Experiment) -> Iterator[Finding]:
         yield noted(f"{case}.largest_distance_rad", distance.max())
 
 
-def convergence(run: Experiment) -> Iterator[Finding]:
+def convergence(run: Experiment) -> Findings:
     """G2's overshoot in Genesis falls with each refinement of the solver's step."""
     overshoot = study.overshoot_by_substeps(run, "Genesis")
     for coarse, fine in pairwise(overshoot):
@@ -132,7 +131,7 @@ def convergence(run: Experiment) -> Iterator[Finding]:
         )
 
 
-def one_limit(run: Experiment) -> Iterator[Finding]:
+def one_limit(run: Experiment) -> Findings:
     """With a finer solver step, stable runs of both engines approach the same overshoot of G2."""
     steps = spec.G2.substeps, max(study_spec.SUBSTEPS_STUDIED)
     declared, finest = (study.spread(run, n) for n in steps)
@@ -142,14 +141,14 @@ def one_limit(run: Experiment) -> Iterator[Finding]:
     )
 
 
-def second_engine_order(run: Experiment) -> Iterator[Finding]:
+def second_engine_order(run: Experiment) -> Findings:
     """Every ordering that the lesson claims holds in Genesis and in the stable runs of MuJoCo."""
     for engine in study.ENGINES:
         if not study.unstable(run, engine):
             yield from checks.orders(run, engine)
 
 
-def order_at_finer_step(run: Experiment) -> Iterator[Finding]:
+def order_at_finer_step(run: Experiment) -> Findings:
     """Every ordering that the lesson claims also holds in Genesis with half the solver
     step, and with a tenth.
     """
@@ -157,7 +156,7 @@ def order_at_finer_step(run: Experiment) -> Iterator[Finding]:
         yield from checks.orders(run, "Genesis", substeps)
 
 
-def stable_engines(run: Experiment) -> Iterator[Finding]:
+def stable_engines(run: Experiment) -> Findings:
     """At the lesson's solver step, G1 to G3 are stable in Genesis and with
     implicitfast, and at least one of them is unstable with Euler.
     """
@@ -172,7 +171,7 @@ def stable_engines(run: Experiment) -> Iterator[Finding]:
         yield noted(f"{case}.Euler_clipped", study.unstable_joints(chattering))
 
 
-def first_step(run: Experiment) -> Iterator[Finding]:
+def first_step(run: Experiment) -> Findings:
     """G2 and G3 have the same clipped effort before and after the first outer step.
     They move alike in MuJoCo, while G3 is slower in Genesis.
     """
@@ -190,7 +189,7 @@ def first_step(run: Experiment) -> Iterator[Finding]:
         yield above(label, slower, noise) if engine == "Genesis" else alike
 
 
-def implicit_term(run: Experiment) -> Iterator[Finding]:
+def implicit_term(run: Experiment) -> Findings:
     """A commanded position adds h (d + KV) to the joint's entry in the engine's mass matrix."""
     inertia = run.readings[study.GROUP]["inertia_Genesis"]
     for kv in study.COMPARED_KV:
@@ -199,7 +198,7 @@ def implicit_term(run: Experiment) -> Iterator[Finding]:
         yield within(label, mass, inertia, study_spec.SAME_MODEL * inertia)
 
 
-def grid_matches_cases(run: Experiment) -> Iterator[Finding]:
+def grid_matches_cases(run: Experiment) -> Findings:
     """G1, G2 and G3 give the same results in the batch as alone, within the declared margins."""
     for name, point in study_spec.CASE_POINTS.items():
         results = [results_of(run, of) for of in (name, point.name)]

@@ -1,11 +1,10 @@
 """Tables of L04: the robot, the metrics, and what the studies of the stepped joint measured."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 from robo_genesis.core.comparison import BROKEN, HELD, WITHIN_MARGIN, Relation
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.tables import as_table, markdown
+from robo_genesis.core.tables import Rows, as_table, markdown
 from robo_genesis.core.tables import metric_table as by_case
 from robo_genesis.core.text import format_value
 from robo_genesis.lessons.l04 import spec, study, study_spec
@@ -18,7 +17,6 @@ ENGINE_LABELS = {
     for engine in study.ENGINES
 }
 
-Row = dict[str, Any]
 
 CLOSE = "too close to call"  # Two values differ by no more than the margin
 
@@ -57,7 +55,7 @@ def compared_metrics(run: Experiment) -> str:
 
 
 @as_table
-def force_ranges(run: Experiment) -> Iterator[Row]:
+def force_ranges(run: Experiment) -> Rows:
     """Return the gains and the force range of each joint in the baseline."""
     limits, joints = run.traces["baseline"].effort_limit, run.joints
     for k, name in enumerate(joints.names):
@@ -70,7 +68,7 @@ def force_ranges(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def first_demand(run: Experiment) -> Iterator[Row]:
+def first_demand(run: Experiment) -> Rows:
     """Compare for each case the demand of the PD law at t = 0 with the clipped effort."""
     k = spec.ENTRY
     for name, case in study_spec.COMPARED.items():
@@ -84,7 +82,7 @@ def first_demand(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def outcomes_of_predictions(run: Experiment) -> Iterator[Row]:
+def outcomes_of_predictions(run: Experiment) -> Rows:
     """Return the values and the outcome of each prediction of the lesson."""
     for relation in spec.RELATIONS:
         yield {
@@ -121,7 +119,7 @@ def _change(found: Mapping[str, StepMetrics], relation: Relation) -> str:
 
 
 @as_table
-def gravity_table(run: Experiment) -> Iterator[Row]:
+def gravity_table(run: Experiment) -> Rows:
     """Return for each case KP × final error beside the gravity effort, and how the case ended."""
     for name in spec.CASES:
         m, (support, effort) = run.metrics[name], study.supports(run, name)
@@ -136,7 +134,7 @@ def gravity_table(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def mass_table(run: Experiment) -> Iterator[Row]:
+def mass_table(run: Experiment) -> Rows:
     """Return the inertia of the stepped joint, and the masses with a commanded position."""
     readings = run.readings[study.GROUP]
     masses = {"without effort, less h · d": readings["inertia_Genesis"]}
@@ -149,7 +147,7 @@ def mass_table(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def ideal_table(run: Experiment) -> Iterator[Row]:
+def ideal_table(run: Experiment) -> Rows:
     """Return the linear joint's parameters and overshoot for each compared case."""
     for case in study_spec.COMPARED:
         ideal = study.ideal(run, case)
@@ -163,7 +161,7 @@ def ideal_table(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def stepped_table(run: Experiment) -> Iterator[Row]:
+def stepped_table(run: Experiment) -> Rows:
     """Return the overshoots of the ideal joint, of the stepped model and of the engine."""
     heads, small = ("ideal joint", "stepped model", "Genesis"), study_spec.SMALL_STEP
     for height, cases in (
@@ -181,7 +179,7 @@ def stepped_table(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def convergence_table(run: Experiment) -> Iterator[Row]:
+def convergence_table(run: Experiment) -> Rows:
     """Return for each solver step G2's overshoot in both engines; unstable runs are marked."""
     for n in study_spec.SUBSTEPS_STUDIED:
         row = {"substeps": n, "h": f"{1000 * spec.G2.dt / n:g} ms"}
@@ -193,7 +191,7 @@ def convergence_table(run: Experiment) -> Iterator[Row]:
 
 
 @as_table
-def relation_table(run: Experiment) -> Iterator[Row]:
+def relation_table(run: Experiment) -> Rows:
     """Return for each ordering that the lesson claims its state and values in each engine."""
     for relation in spec.RELATIONS:
         row = {"claim": _claim(relation)}

@@ -9,13 +9,13 @@ with KP, and so does their tolerance from `STIFF` on.
 | `POSE`, link positions and quaternions | 2.3e-7 m, 2.2e-7 | 2.5e-6 |
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE
-from robo_genesis.core.checks import Finding
+from robo_genesis.core.checks import Findings
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.joint_control import ControlCase
@@ -30,9 +30,7 @@ LAW, POSE = 4e-3, 2.5e-6
 STIFF = 1e4
 
 
-def driven_run(
-    trace: Trace, case: ControlCase, links: Sequence[str]
-) -> Iterator[Finding]:
+def driven_run(trace: Trace, case: ControlCase, links: Sequence[str]) -> Findings:
     """Yield what no run with a commanded target has, whatever engine steps.
 
     Of a robot whose base moves freely nothing is known about where its links are.
@@ -56,9 +54,7 @@ def driven_run(
         yield from poses(trace, links, case.model)
 
 
-def assigned_run(
-    trace: Trace, links: Sequence[str], model: RobotModel
-) -> Iterator[Finding]:
+def assigned_run(trace: Trace, links: Sequence[str], model: RobotModel) -> Findings:
     """Yield what no run of `joint_control.assign_postures` has: its states are assigned."""
     yield from apart("q [rad or m]", trace.q[1:], trace.target, LIMIT_TOLERANCE)
     yield from poses(trace, links, model)
@@ -70,7 +66,7 @@ def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
     return np.asarray(np.clip(effort, -case.effort_limit, case.effort_limit))
 
 
-def poses(trace: Trace, links: Sequence[str], model: RobotModel) -> Iterator[Finding]:
+def poses(trace: Trace, links: Sequence[str], model: RobotModel) -> Findings:
     """Yield a link that is not where the joints put it; further links may follow these."""
     from robo_genesis.sim.mujoco.kinematics import link_poses  # a page measures without
 

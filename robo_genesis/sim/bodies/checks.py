@@ -1,10 +1,9 @@
 """Named checks of lessons about free bodies."""
 
-from collections.abc import Iterator
 from itertools import chain
 
 from robo_genesis.core.check_spec import READ_BACK
-from robo_genesis.core.checks import Finding, model_counts, within
+from robo_genesis.core.checks import Findings, model_counts, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.bodies.contacts import SETTINGS
 from robo_genesis.sim.bodies.laws import repeated_steps, reported_depth
@@ -12,12 +11,12 @@ from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS
 from robo_genesis.sim.laws import kept
 
 
-def structure(run: Experiment) -> Iterator[Finding]:
+def structure(run: Experiment) -> Findings:
     """The scene has two entities; the body is one link, one geom, one joint, 6 DOFs and 7 qpos."""
     return model_counts(run.readings["model"], MODEL_COUNTS)
 
 
-def settings(run: Experiment) -> Iterator[Finding]:
+def settings(run: Experiment) -> Findings:
     """Frictions and substeps read back from the scenes are those of the cases."""
     for name in SETTINGS:
         for case, value in run.readings[name].items():
@@ -25,7 +24,7 @@ def settings(run: Experiment) -> Iterator[Finding]:
             yield within(f"{case}.{name}", value, asked, READ_BACK)
 
 
-def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+def laws_of_motion(run: Experiment) -> Findings:
     """Each reported depth is that of the body's shape, and MuJoCo repeats most steps of Genesis."""
     for name, case in run.cases.items():
         trace, in_mujoco = run.traces[name], run.page.runs[name].note

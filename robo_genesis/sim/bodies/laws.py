@@ -19,12 +19,11 @@ The engine's search for a contact ends where it gains less than 1e-5 m, in some 
 plus 1e-5 of a sum of coordinates, which is up to 3 m here; both together are `GRAZE`.
 """
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding
+from robo_genesis.core.checks import Findings
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace
 from robo_genesis.sim.arm.kinematics import quat_multiply
@@ -49,13 +48,13 @@ UNTURNED = np.array([1.0, 0, 0, 0])  # Quaternion of a body that has not turned
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
 
 
-def free_fall(run: Any) -> Iterator[Finding]:
+def free_fall(run: Any) -> Findings:
     """At each sample place, velocity and orientation are those of a body under gravity alone."""
     for name, case in run.cases.items():
         yield from kept(name, falling(run.traces[name], case))
 
 
-def falling(trace: BodyTrace, case: Drop) -> Iterator[Finding]:
+def falling(trace: BodyTrace, case: Drop) -> Findings:
     """Yield what no run of `rigid_bodies.run_drop` has that ends in the air, upright."""
     place, motion = np.zeros((2, trace.steps + 1, 3))
     place[:, 2] = case.height - predicted(trace, case)
@@ -65,7 +64,7 @@ def falling(trace: BodyTrace, case: Drop) -> Iterator[Finding]:
     yield from apart("link_quat", trace.link_quat[:, 0], UNTURNED, 0.0)
 
 
-def reported_depth(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
+def reported_depth(trace: ContactTrace, case: ContactCase) -> Findings:
     """Yield a penetration that is not that of the body's shape before the last solver step."""
     reported = trace.penetration[1:, 0]  # the first may be before any step
     depth = np.maximum(depth_before_last_step(trace, case)[1:], 0)
@@ -73,7 +72,7 @@ def reported_depth(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     yield from apart("penetration [m]", reported, depth, room)
 
 
-def repeated_steps(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
+def repeated_steps(trace: ContactTrace, case: ContactCase) -> Findings:
     """Yield the share of the steps that MuJoCo makes otherwise, if there are too many."""
     if case.cone == "elliptic" and case.resolution is None:
         return  # MuJoCo does not have this scheme

@@ -4,13 +4,13 @@ Each yields findings about one `View`; the label of a view keeps several apart. 
 without pictures passes the checks of pictures with the note SKIP.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, equal, noted
+from robo_genesis.core.checks import Findings, above, at_most, equal, noted
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.kinematics import rotate
 from robo_genesis.sim.camera import geometry as cameras
@@ -55,9 +55,7 @@ class Marker:
     radius: float
 
 
-def camera_matrix(
-    label: str, view: View, given: Mapping[str, Any]
-) -> Iterator[Finding]:
+def camera_matrix(label: str, view: View, given: Mapping[str, Any]) -> Findings:
     """Require the camera matrix of the vertical field of view, and the pose and the limits given.
 
     Args:
@@ -76,7 +74,7 @@ def camera_matrix(
 
 def mounted_camera(
     label: str, view: View, position: FloatArray, quat: FloatArray, offset: FloatArray
-) -> Iterator[Finding]:
+) -> Findings:
     """Require the pose of a camera on a link to be the pose of the link times the offset.
 
     Args:
@@ -100,7 +98,7 @@ def computed(view: View, marker: Marker) -> tuple[FloatArray, FloatArray]:
     return cameras.project(marker.centre, *camera), ellipse
 
 
-def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
+def projection(label: str, view: View, marker: Marker) -> Findings:
     """Require the centroid of a whole marker in the segmentation to be where a sphere's picture is.
 
     The picture of its centre is recorded too: perspective puts it nearer to the middle.
@@ -145,17 +143,17 @@ def from_plane(view: View, number: int) -> Residuals | None:
     return cameras.residuals(points[..., 2][mask])
 
 
-def sphere_surface(label: str, view: View, marker: Marker) -> Iterator[Finding]:
+def sphere_surface(label: str, view: View, marker: Marker) -> Findings:
     """Require the back-projected pixels of a marker, its edge included, to be on its surface."""
     return _surface(label, from_sphere(view, marker), MESH_SHARE * marker.radius)
 
 
-def plane_surface(label: str, view: View, number: int) -> Iterator[Finding]:
+def plane_surface(label: str, view: View, number: int) -> Findings:
     """Require the back-projected pixels of the ground to be at z = 0."""
     return _surface(label, from_plane(view, number), PLANE)
 
 
-def _surface(label: str, found: Residuals | None, most: float) -> Iterator[Finding]:
+def _surface(label: str, found: Residuals | None, most: float) -> Findings:
     """Require pixels within a distance [m] of a surface; without pictures, they pass."""
     if found is None:
         yield noted(f"{label}.depth", SKIP)
