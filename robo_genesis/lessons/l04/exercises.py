@@ -39,8 +39,8 @@ RESPONSE = ("rise_time", "overshoot", "settling_time")
 def resolver(resolve: Written, robot: Any, joints: JointMap) -> Findings:
     """Check `resolve(robot, names)`: local DOFs in the order of the names, odd joints refused."""
     names = list(joints.names)
-    yield equal("dofs", list(resolve(robot, names)), joints.dofs_idx_local.tolist())
-    backwards = joints.dofs_idx_local.tolist()[::-1]
+    yield equal("dofs", list(resolve(robot, names)), joints.dofs)
+    backwards = joints.dofs[::-1]
     yield equal("dofs_in_reverse", list(resolve(robot, names[::-1])), backwards)
     shifted = SimpleNamespace(get_joint=lambda name: _joint(5 + names.index(name)))
     expected = [5 + n for n in range(len(names))]
@@ -81,7 +81,7 @@ def control_loop(
     Call it after a reset to the case. The function returns t (n+1,), q (n+1, d), qd (n,
     d) and the control force (n, d).
     """
-    dofs, name = joints.dofs_idx_local.tolist(), "control_dofs_position"
+    dofs, name = joints.dofs, "control_dofs_position"
     with patch.object(robot, name, wraps=getattr(robot, name)) as command:
         found = list(record(scene, robot, dofs, case.q_target.copy(), case.steps))
     yield equal("number_of_commands", command.call_count, case.steps)

@@ -65,7 +65,7 @@ def of_joint(values: Mapping[str, FloatArray]) -> dict[str, float]:
 
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     """Read passive damping, inertia and gravity effort at the start, in Genesis."""
-    q, dofs = spec.BASELINE.q_start, joints.dofs_idx_local.tolist()
+    q, dofs = spec.BASELINE.q_start, joints.dofs
     return of_joint(
         {
             "passive_damping": dynamics.passive_damping(robot, dofs),
@@ -82,7 +82,7 @@ def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     found = {}
     for case in (spec.G1, spec.G3):
         run_case(scene, robot, joints, replace(case, q_target=case.q_start, steps=1))
-        masses = dynamics.mass_diagonal(robot, joints.dofs_idx_local.tolist())
+        masses = dynamics.mass_diagonal(robot, joints.dofs)
         found[f"mass_KV_{case.kv[ENTRY]:g}"] = float(masses[ENTRY])
     return found
 

@@ -41,7 +41,7 @@ class Batch:
             list(cases),
             bodies,
         )
-        self.dofs: list[int] = joints.dofs_idx_local.tolist()
+        self.dofs = joints.dofs
         batch = reset_batch(scene, robot, joints, self.cases)
         if begin:
             begin()
@@ -170,7 +170,7 @@ def reset_batch(
     for case in cases:
         require_built(scene, case)
         joint_control.validate(case, joints)
-    dofs = joints.dofs_idx_local.tolist()
+    dofs = joints.dofs
     arrays: dict[str, Any] = {
         name: np.stack(each) if scene.n_envs else each[0]
         for name in ("q_start", "q_target", "kp", "kv", "effort_limit")

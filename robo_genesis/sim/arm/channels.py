@@ -27,26 +27,26 @@ def runs(
     Raises:
         ValueError: the record has no such joint or link; as `Runs`.
     """
-    if replay.follows in links:
-        heights = followed(traces, links.index(replay.follows))
-        thing = f"the {replay.thing}"
-        moves = {case: f"**{case}**:" for case in traces}
-        return Runs(
-            replay, thing, traces=traces, links=links, channels=heights, moves=moves
-        )
-    joint, of_joint = replay.follows, channels(traces, joints, replay.follows)
-    reaching = distances(traces, links, replay.goal, replay.hand) if replay.goal else []
+    followed, described = replay.follows, dict.fromkeys(traces, "")
+    marks: list[Level] = []
+    if followed in links:
+        subject, drawn = f"the {replay.thing}", [height(traces, links.index(followed))]
+    else:
+        described = {n: f" {motion(of, joints, followed)}" for n, of in traces.items()}
+        if replay.goal:
+            subject = "the hand"
+            drawn = distances(traces, links, replay.goal, replay.hand)
+        else:
+            subject, drawn = followed, channels(traces, joints, followed)
+            marks = levels(traces, joints, followed, replay.band)
     return Runs(
         replay,
-        subject="the hand" if reaching else joint,
+        subject,
         traces=traces,
         links=links,
-        channels=reaching or of_joint,
-        levels=[] if reaching else levels(traces, joints, joint, replay.band),
-        moves={
-            case: f"**{case}**: {motion(trace, joints, joint)}"
-            for case, trace in traces.items()
-        },
+        channels=drawn,
+        levels=marks,
+        moves={case: f"**{case}**:{text}" for case, text in described.items()},
     )
 
 
@@ -76,12 +76,12 @@ def channels(
     ]
 
 
-def followed(traces: Mapping[str, Trace], link: int) -> list[Channel]:
+def height(traces: Mapping[str, Trace], link: int) -> Channel:
     """Return the height of the origin of a link of the robot, or of a body beside it."""
     heights = {
         case: 1000 * trace.link_pos[:, link, 2] for case, trace in traces.items()
     }
-    return [Channel("height", "z", "mm", 1, heights)]
+    return Channel("height", "z", "mm", 1, heights)
 
 
 def distances(

@@ -20,7 +20,7 @@ def let_go(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> list[int]
             would move.
     """
     require_whole(robot, joints)
-    dofs: list[int] = joints.dofs_idx_local.tolist()
+    dofs = joints.dofs
     scene.reset()
     robot.set_dofs_position(np.array(q, dtype=np.float64), dofs, zero_velocity=True)
     robot.control_dofs_force(np.zeros(len(dofs)), dofs)

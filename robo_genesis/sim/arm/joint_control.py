@@ -101,7 +101,7 @@ def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
     """
     require_built(scene, case)
     validate(case, joints)
-    dofs = joints.dofs_idx_local.tolist()
+    dofs = joints.dofs
     scene.reset()
     set_up(robot, dofs, case)
 
@@ -165,7 +165,7 @@ def run_case(
     reset(scene, robot, joints, case)
     if begin:
         begin()
-    dofs = joints.dofs_idx_local.tolist()
+    dofs = joints.dofs
     targets = np.broadcast_to(case.q_target, (case.steps, len(dofs))).copy()
     robot.control_dofs_position(targets[0], dofs)
     readings = [read(robot, dofs, bodies)]
@@ -198,7 +198,7 @@ def assign_postures(
         passed.
     """
     reset(scene, robot, joints, case)
-    dofs = joints.dofs_idx_local.tolist()
+    dofs = joints.dofs
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
     readings = [read(robot, dofs)]
     for q in postures:

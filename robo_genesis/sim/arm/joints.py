@@ -37,6 +37,11 @@ class JointMap:
     upper: FloatArray
 
     @property
+    def dofs(self) -> list[int]:
+        """`dofs_idx_local` as the calls of the engine take it."""
+        return [int(k) for k in self.dofs_idx_local]
+
+    @property
     def position_units(self) -> tuple[str, ...]:
         """Unit of each position: rad or m."""
         return tuple(POSITION_UNIT[kind] for kind in self.types)
@@ -155,7 +160,7 @@ def require_model(robot: Any, joints: JointMap, of: RobotModel) -> None:
         return
     from robo_genesis.sim.mujoco.kinematics import bare_robot
 
-    (model, _, _, dof_at), dofs = bare_robot(of=of), joints.dofs_idx_local.tolist()
+    (model, _, _, dof_at), dofs = bare_robot(of=of), joints.dofs
     for name in ("armature", "damping"):
         found = to_numpy(getattr(robot, f"get_dofs_{name}")(dofs)).reshape(
             -1, len(dofs)

@@ -84,9 +84,7 @@ def touches(robot: Any, joints: JointMap, fixed: Iterable[Any], q: FloatArray) -
 
     This assigns the state.
     """
-    robot.set_dofs_position(
-        np.array(q), joints.dofs_idx_local.tolist(), zero_velocity=True
-    )
+    robot.set_dofs_position(np.array(q), joints.dofs, zero_velocity=True)
     own = {geom.idx for geom in robot.geoms}
     others = {geom.idx for entity in fixed for geom in entity.geoms}
     pairs = np.reshape(robot.detect_collision(), (-1, 2)).tolist()

@@ -218,7 +218,7 @@ def pose(
     """Put robot and object of the first environment where they were: q (9,), (3,) and (4,)."""
     # Copies, because the engine's tensors cannot share arrays that are read-only.
     q, place, quat = (np.array(of)[None] for of in (q, place, quat))
-    world.robot.set_dofs_position(q, joints.dofs_idx_local.tolist(), envs_idx=[0])
+    world.robot.set_dofs_position(q, joints.dofs, envs_idx=[0])
     world.body.set_pos(place, envs_idx=[0])
     world.body.set_quat(quat, envs_idx=[0])
 

@@ -15,7 +15,7 @@ from robo_genesis.core.trace import BodyTrace
 GRAVITY = 9.81  # Magnitude of the engine's default acceleration of gravity [m/s²]
 
 
-def continuous_drop(t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
+def continuous_drop(t: ArrayLike, gravity: float) -> FloatArray:
     """Return g t² / 2, the distance fallen from rest after times `t` (k,) [s]: (k,) [m]."""
     return 0.5 * gravity * np.asarray(t, dtype=np.float64) ** 2
 
@@ -30,7 +30,7 @@ def summed_drop(h: float, steps: ArrayLike, gravity: float = GRAVITY) -> FloatAr
     return gravity * h**2 * n * (n + 1) / 2
 
 
-def ahead_of_continuous(h: float, t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
+def ahead_of_continuous(h: float, t: ArrayLike, gravity: float) -> FloatArray:
     """Return g h t / 2: how much farther the stepped body is than g t² / 2 after times `t` [m].
 
     With t = n h, g h² n (n + 1) / 2 is g t² / 2 + g h t / 2. The second term goes to

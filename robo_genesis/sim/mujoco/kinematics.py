@@ -41,7 +41,7 @@ def bare_robot(
     return model, *found
 
 
-def bare_spec(of: RobotModel = FRANKA) -> Any:
+def bare_spec(of: RobotModel) -> Any:
     """Return the specification of the model without actuators, and with the shapes that weigh.
 
     Raises:
@@ -89,9 +89,7 @@ def _unreadable(of: RobotModel, error: Exception) -> ModelError:
     return ModelError(f"MuJoCo cannot read {of.file}: {error}.{advice}")
 
 
-def with_data(
-    model: Any, of: RobotModel = FRANKA
-) -> tuple[Any, Any, list[int], list[int]]:
+def with_data(model: Any, of: RobotModel) -> tuple[Any, Any, list[int], list[int]]:
     """Return a compiled model, its data, and the indices of the robot's joints in qpos and qvel.
 
     Raises:

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.engine
 
 def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
     first = {name: run(spec.CASES[name]) for name in ("G1", "G2")}
-    dofs = lab.joints.dofs_idx_local.tolist()
+    dofs = lab.joints.dofs
     lab.franka.set_dofs_kp(spec.BASELINE.kp * 3, dofs)
     lab.franka.set_dofs_force_range(np.full(9, -50.0), np.full(9, 60.0), dofs)
     lab.franka.control_dofs_velocity(np.full(7, 0.5), dofs[:7])

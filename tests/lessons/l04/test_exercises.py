@@ -109,7 +109,7 @@ CASES = {  # of each exercise the right solution, then wrong ones
 )
 def test_only_the_right_solution_passes(experiment, name, k):
     joints, traces = experiment.joints, experiment.traces
-    dofs = dict(zip(joints.names, joints.dofs_idx_local.tolist(), strict=True))
+    dofs = dict(zip(joints.names, joints.dofs, strict=True))
     robot = SimpleNamespace(get_joint=lambda name: exercises._joint(dofs[name]))
     playback = Playback(traces["baseline"])
     more = {

@@ -188,7 +188,7 @@ def test_any_arm_is_the_same_in_both_engines(robots, case):
     joints = describe(page, robot, of)
     trace = run_case(robots.scene, robot, joints, case)
     assert [*laws.driven_run(trace, case, page.links)] == []
-    dofs, hand = joints.dofs_idx_local.tolist(), robot.get_link(of.hand)
+    dofs, hand = joints.dofs, robot.get_link(of.hand)
     robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)
     position, quat = (
         value.cpu().numpy() for value in (hand.get_pos(), hand.get_quat())
