@@ -4,9 +4,8 @@ import gc
 import importlib
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -99,8 +98,7 @@ def used_memory() -> float:
     return pages * os.sysconf("SC_PAGESIZE") / MIB
 
 
-@dataclass(frozen=True, slots=True)
-class Model:
+class Model(NamedTuple):
     """The time of one step of B environments: `fixed` + B · `each` [s]."""
 
     fixed: float

@@ -50,14 +50,7 @@ def test_memory_grows_by_what_is_kept():
     assert kept.all()
 
 
-def test_a_fit_finds_the_model_that_made_the_times_and_minimises_relative_errors():
+def test_a_fit_finds_the_model_that_made_the_times():
     sizes, model = np.array([1, 16, 256]), throughput.Model(0.002, 3e-5)
     found = throughput.fit(sizes, model.step_time(sizes))
     assert (found.fixed, found.each) == pytest.approx((model.fixed, model.each))
-    sizes, times = np.array([1, 1, 1000]), np.array([0.9, 1.1, 1000])
-    found = throughput.fit(sizes, times)
-    near = [
-        throughput.Model(found.fixed * k, found.each * (1.01 / k)) for k in (1, 1.01)
-    ]
-    errors = [((m.step_time(sizes) / times - 1) ** 2).sum() for m in (found, *near)]
-    assert errors[0] < min(errors[1:])

@@ -103,8 +103,6 @@ TOLERANCES = check_spec.TOLERANCES | {
     "m": (1e-4, 1e-3),
 }
 
-LIMIT_EXCESS = 1e-3  # Tolerance of a control force above its limit [N·m or N]
-
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lesson as JSON values, for the evidence key.

@@ -12,8 +12,7 @@ from robo_genesis.lessons.l04.metrics import (
     SETTLING_BAND,
     StepMetrics,
 )
-from robo_genesis.lessons.l04.study_spec import AT_REST, COMPARED
-from robo_genesis.sim.arm.joint_control import differences
+from robo_genesis.lessons.l04.study_spec import COMPARED
 
 MEASURES = False
 
@@ -65,26 +64,15 @@ def conclusions(run: Experiment) -> str:
 
 def pair_sentences(run: Experiment, names: tuple[str, str]) -> Iterator[str]:
     """Compare two cases that should differ in one entry, and judge the predictions about them."""
-    first, second = (run.cases[name] for name in names)
-    yield factor_sentence(names, differences(first, second, run.joints))
+    (entry,) = spec.ONE_FACTOR[names]
+    yield (
+        f"Between {names[0]} and {names[1]} only `{entry}` differs; every other entry of "
+        "the two configurations is equal, compared field by field."
+    )
     for metric in COMPARED_METRICS:
         yield comparison_sentence(names, compared(run, names, metric))
     for metric, order in (of[1:3] for of in spec.RELATIONS if of[0] == names):
         yield prediction_sentence(names, compared(run, names, metric), order, INSPECT)
-
-
-def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:
-    """Name the entries in which two configurations differ."""
-    if len(changed) == 1:
-        return (
-            f"Between {names[0]} and {names[1]} only `{changed[0]}` differs; every other entry of "
-            "the two configurations is equal, compared field by field."
-        )
-    found = ", ".join(f"`{entry}`" for entry in changed) or "nothing"
-    return (
-        f"{names[0]} and {names[1]} differ in {found}, so no difference below can be attributed "
-        "to one factor."
-    )
 
 
 def compared(run: Experiment, names: tuple[str, str], metric: str) -> Comparison:
@@ -97,8 +85,6 @@ def final_error_sentences(name: str, m: StepMetrics) -> Iterator[str]:
     """Describe the end of one run: its final error with final velocity and settling."""
     speed = format_value(m.final_velocity, "rad/s")
     yield f"{name} ends {format_value(m.final_error, 'rad')} from its target at {speed}."
-    if abs(m.final_velocity) > AT_REST:
-        yield f"{name} is faster than {AT_REST:g} rad/s at the end, so its error is not final."
     if m.settling_time is None:
         yield (
             f"Settling of {name} into ±{SETTLING_BAND:g} rad was not observed. Only a longer "
@@ -113,8 +99,6 @@ def actuator_sentence(name: str, m: StepMetrics, limit: float) -> str:
     """Report the saturation of one run; `limit` is read back from the engine [N·m]."""
     share = f"{100 * SATURATION_THRESHOLD:.0f} % of its limit"
     peak = f"{format_value(m.peak_control, 'N·m')} of {format_value(limit, 'N·m')}"
-    if not m.saturation_samples:
-        return f"{name} has no sample at or above {share}; its peak control is {peak}."
     return (
         f"{name} has {format_value(m.saturation_samples, '1')} "
         f"({format_value(m.saturation_duration, 's')}) at or above {share}; its peak control is "

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,8 +44,7 @@ class IkSettings:
         return self.position_tolerance, self.rotation_tolerance
 
 
-@dataclass(frozen=True, slots=True)
-class IkAnswer:
+class IkAnswer(NamedTuple):
     """What the engine's solver returned, accepted or not.
 
     `q` (…, d) has the order of the joint map. `error` (…, 6) leads from the pose of the

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, Literal, TypeVar
+from typing import Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -126,8 +126,7 @@ class ContactCase(ContactRun):
         return TOP + self.size / 2
 
 
-@dataclass(frozen=True, slots=True)
-class World:
+class World(NamedTuple):
     """A built scene with the surface, one body for each case, and a camera or None."""
 
     scene: Any

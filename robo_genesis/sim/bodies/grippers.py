@@ -3,7 +3,7 @@
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -86,8 +86,7 @@ def pads(case: HeldCase) -> str:
     return f'<body name="frame">{left}{right}</body>'
 
 
-@dataclass(frozen=True, slots=True)
-class World:
+class World(NamedTuple):
     """A built scene, and by case its pads and its box."""
 
     scene: Any
@@ -154,13 +153,10 @@ def read(hand: Any, box: Any) -> tuple[FloatArray, ...]:
 
 def step_times(worlds: Mapping[str, World]) -> dict[str, float]:
     """Return times of an outer step of worlds that hold their boxes, as `throughput.in_turn`."""
-    hands = {
-        name: next(iter(world.grippers.values()))[0] for name, world in worlds.items()
-    }
-    timed = {
-        name: throughput.calls_of(worlds[name].scene, hand)
-        for name, hand in hands.items()
-    }
+    timed = {}
+    for name, world in worlds.items():
+        hand, _ = next(iter(world.grippers.values()))
+        timed[name] = throughput.calls_of(world.scene, hand)
     return throughput.in_turn(
         timed, warm_up=5, steps=10, repeats=5, clock=time.perf_counter
     )

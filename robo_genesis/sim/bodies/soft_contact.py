@@ -5,8 +5,7 @@ the force that they need, it gives the share d, the impedance, which grows with 
 a body sinks in, and it creeps along a surface while friction carries a load.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 # Default of Genesis for contacts, unless two solver steps are longer [s].
 DEFAULT_TIME_CONSTANT = 0.01
@@ -35,8 +34,7 @@ def impedance(depth: float) -> float:
     return float(least + (most - least) * (low if x < middle else 1 - high))
 
 
-@dataclass(frozen=True, slots=True)
-class Load:
+class Load(NamedTuple):
     """What one of the equal contacts of a body carries.
 
     `normal` and `friction` are its forces [N]; `inverse_mass` is that of both bodies at

@@ -5,7 +5,7 @@ The base of the robot is at the world's origin, on the table, so z = 0 is its su
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -108,8 +108,7 @@ class SceneCase(Controlled):
         return np.asarray(centre) + np.vstack(levels) * np.array(self.size) / 2
 
 
-@dataclass(frozen=True, slots=True)
-class World:
+class World(NamedTuple):
     """A built scene: its robot, object, ball or None, cameras by name, and what does not move."""
 
     scene: Any

@@ -1,8 +1,7 @@
 """Camera frames and the OpenGL renderer that draws them."""
 
 import importlib
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,8 +12,7 @@ class FrameError(ValueError):
     """A camera returned something else than a usable RGB frame."""
 
 
-@dataclass(frozen=True, slots=True)
-class Renderer:
+class Renderer(NamedTuple):
     """The OpenGL implementation that renders."""
 
     vendor: str

@@ -9,7 +9,7 @@ right, y up, z backwards (OpenGL) [m]. The computation uses x right, y down, z f
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -114,8 +114,7 @@ def centroid(mask: np.ndarray) -> FloatArray:
     return np.array([columns.mean() + 0.5, rows.mean() + 0.5])
 
 
-@dataclass(frozen=True, slots=True)
-class Residuals:
+class Residuals(NamedTuple):
     """Distances of points from a surface [m]: their number, mean, and largest size."""
 
     count: int

@@ -96,12 +96,6 @@ def test_each_check_has_a_run_that_fails_it(run):
     assert fails == {check.__name__ for check in run.page.checks}
 
 
-def test_tables_have_words_units_and_signs(run):
-    assert "| continuous, g t² / 2 | 0.196200 | −4.9050 |" in text.three_drops(run)
-    assert "| 10 | 1 | 0.197181 | 0.981 | 0.981 |" in text.substep_table(run)
-    assert "| metric | 2 substeps of 5 ms |" in text.metric_table(run)
-
-
 def test_figures_without_a_camera_show_what_was_measured(run):
     without = replace(run, rendered=False, frames={})
     (heights,) = plots.trays(without).axes

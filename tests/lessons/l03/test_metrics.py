@@ -1,6 +1,5 @@
 """Known answers: theory, energy, clearance, metrics, and the tables and figures of them."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -126,14 +125,6 @@ def test_a_stop_takes_a_hold():
         metrics.stopped_at(speed[:13], 0.01) is None
     )  # the window ends before the hold does
     assert metrics.stopped_at(np.full(40, 0.01), 0.01) is None  # slower, not as slow
-
-
-def test_the_table_of_both_engines_says_when_runs_separate(experiments):
-    rows = tables.engines(experiments["contact"]).splitlines()[2:]
-    assert re.fullmatch(r"\| landing, h = 5 ms \|.*\| never \| – and – \|", rows[0])
-    assert re.match(
-        r"\| landing, h = 5 ms, MuJoCo's own contact \|(?!.*never)", rows[-1]
-    )
 
 
 def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):

@@ -32,15 +32,6 @@ def test_poses_and_jacobian_of_many_postures_agree_with_mujoco_and_with_differen
         assert of.pose_error(*ends) / (2 * h) == pytest.approx(rows.T, abs=1e-7)
 
 
-def test_manipulability_is_the_root_of_the_determinant_and_vanishes_at_a_singularity():
-    rows = of.jacobian(Q_START)
-    assert of.manipulability(rows) == pytest.approx(
-        np.sqrt(np.linalg.det(rows @ rows.T))
-    )
-    rows[2] = rows[1]
-    assert of.manipulability(rows) == pytest.approx(0, abs=1e-12)
-
-
 def test_a_pose_error_leads_to_the_target():
     pose = of.hand_pose(Q_START)
     error = of.pose_error(DOWN, pose)

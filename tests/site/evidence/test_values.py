@@ -20,9 +20,9 @@ ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
         ("model.links episodes", "11 episodes", "from "),
         ("engine", project.engine_pin(), ""),
         (
-            "control_law:G1.distance_to_control_law N·m",
-            r"\S+ N·m",
-            "found by the check control_law",
+            "baseline_approaches:baseline.final_error_rad rad",
+            r"\S+ rad",
+            "found by the check baseline_approaches",
         ),
     ],
 )
@@ -42,7 +42,10 @@ def test_a_value_comes_with_unit_and_origin(outputs, experiment, name, text, sou
             "G2.overshoot episodes",
             "is in rad, so it does not count episodes. Valid: rad",
         ),
-        ("control_law:x", "no finding 'control_law:x'. Known: .*control_law:G1"),
+        (
+            "baseline_approaches:x",
+            "no finding 'baseline_approaches:x'. Known: .*baseline_approaches:baseline",
+        ),
     ],
 )
 def test_an_unknown_value_names_those_there_are(outputs, name, said):
@@ -51,13 +54,14 @@ def test_an_unknown_value_names_those_there_are(outputs, name, said):
 
 
 def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
-    require_passed("l04/lab", "control_law")
+    require_passed("l04/lab", "baseline_approaches")
     with pytest.raises(
-        LookupError, match=r"no check 'control_lav'\. Choices: .*control_law"
+        LookupError,
+        match=r"no check 'baseline_approached'\. Choices: .*baseline_approaches",
     ):
-        require_passed("l04/lab", "control_lav")
+        require_passed("l04/lab", "baseline_approached")
     with pytest.raises(ValueError, match=r"manifest\.json cannot be read"):
-        require_passed("l04/elsewhere", "control_law")
+        require_passed("l04/elsewhere", "baseline_approaches")
     failed = SimpleNamespace(name="sag", passed=False, found={"sag_m": 0.1})
     manifest = SimpleNamespace(checks=[failed])
     monkeypatch.setattr(values, "read_manifest", lambda folder: manifest)
