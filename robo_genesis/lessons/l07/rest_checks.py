@@ -1,16 +1,13 @@
 """Named checks of boxes at rest; the docstring of each is its claim."""
 
-from itertools import chain
-
 from robo_genesis.core.checks import Findings, above, at_most, below, nearly, within
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, runs_of
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l07 import rest
+from robo_genesis.sim.bodies.checks import laws_of_motion, settings
 from robo_genesis.sim.bodies.contacts import SETTINGS
-from robo_genesis.sim.bodies.laws import repeated_steps, reported_depth
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
-from robo_genesis.sim.common_checks import read_back, stamps
-from robo_genesis.sim.laws import kept
+from robo_genesis.sim.common_checks import stamps
 
 SHARE, DEPTH = (
     0.02,
@@ -29,19 +26,6 @@ HELD, DEEPER = (
     5.0,
 )  # Largest share of a creep and least of a depth, against the pyramid
 SLIDES = 5e-3  # Speed from which a box slides [m/s]
-
-
-def settings(run: Experiment) -> Findings:
-    """Frictions and substeps read back from the scenes are those of the cases."""
-    return read_back(run, *SETTINGS)
-
-
-def laws_of_motion(run: Experiment) -> Findings:
-    """Each reported depth is that of the body's shape, and MuJoCo repeats most steps of Genesis."""
-    for name, case in run.cases.items():
-        trace = run.traces[name]
-        steps = () if name in rest.TWINS else repeated_steps(trace, case)
-        yield from kept(name, chain(reported_depth(trace, case), steps))
 
 
 def creeps_as_computed(run: Experiment) -> Findings:

@@ -2,12 +2,12 @@
 
 from itertools import chain
 
-from robo_genesis.core.check_spec import READ_BACK
-from robo_genesis.core.checks import Findings, model_counts, within
+from robo_genesis.core.checks import Findings, model_counts
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.bodies.contacts import SETTINGS
 from robo_genesis.sim.bodies.laws import repeated_steps, reported_depth
 from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS
+from robo_genesis.sim.common_checks import read_back
 from robo_genesis.sim.laws import kept
 
 
@@ -18,10 +18,7 @@ def structure(run: Experiment) -> Findings:
 
 def settings(run: Experiment) -> Findings:
     """Frictions and substeps read back from the scenes are those of the cases."""
-    for name in SETTINGS:
-        for case, value in run.readings[name].items():
-            asked = getattr(run.cases[case], name)
-            yield within(f"{case}.{name}", value, asked, READ_BACK)
+    return read_back(run, *SETTINGS)
 
 
 def laws_of_motion(run: Experiment) -> Findings:
