@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal
 
 import numpy as np
 
@@ -212,11 +212,8 @@ STEPS: tuple[Callable[[Bench], str], ...] = (
 )
 
 
-Subject = TypeVar("Subject")
-
-
 def run_steps(
-    steps: Sequence[Callable[[Subject], str]], subject: Subject
+    steps: Sequence[Callable[[Any], str]], subject: Any
 ) -> Iterator[StepResult]:
     """Run steps in order and yield the result of each; after a broken one, run none.
 
@@ -231,7 +228,7 @@ def run_steps(
         yield StepResult(step.__name__, state, found)
 
 
-def outcome(step: Callable[[Subject], str], subject: Subject) -> tuple[State, str]:
+def outcome(step: Callable[[Any], str], subject: Any) -> tuple[State, str]:
     """Run a step; return its state and what it found."""
     try:
         return "ok", step(subject)

@@ -1,6 +1,6 @@
 """Named checks of landings, slides and bounces: all pass, or the invariant that failed is named."""
 
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -20,10 +20,8 @@ from robo_genesis.sim.bodies.checks import laws_of_motion, settings, structure
 from robo_genesis.sim.bodies.contacts import TOP
 from robo_genesis.sim.common_checks import posture, stamps
 
-Metrics = TypeVar("Metrics", bound=CaseMetrics)
 
-
-def measured(run: Experiment, metrics: type[Metrics]) -> dict[str, Metrics]:
+def measured(run: Experiment, metrics: type[CaseMetrics]) -> dict[str, Any]:
     """Return the metrics of the runs of one kind, by run."""
     return {name: of for name, of in run.metrics.items() if isinstance(of, metrics)}
 

@@ -1,14 +1,13 @@
 """The measuring pages of L03, and its declaration."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from robo_genesis.core.channels import Replay
-from robo_genesis.core.checks import Finding
+from robo_genesis.core.checks import Findings
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import (
-    Experiment,
     MeasuringPage,
     Readings,
     Run,
@@ -58,9 +57,7 @@ CUBE = MeasuringPage(
 )
 
 
-def further(
-    name: str, *own: Callable[[Experiment], Iterable[Finding]]
-) -> MeasuringPage:
+def further(name: str, *own: Callable[..., Findings]) -> MeasuringPage:
     """Return a page with runs in Genesis and checks of its own, and without a camera."""
     cases = study_spec.CASES_OF[name]
     return replace(

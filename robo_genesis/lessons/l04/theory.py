@@ -7,8 +7,6 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 
-CRITICAL = 1e-9  # A damping ratio this close to one counts as critical
-
 
 @dataclass(frozen=True, slots=True)
 class IdealJoint:
@@ -43,13 +41,11 @@ class IdealJoint:
         return float(np.exp(-np.pi * self.zeta / np.sqrt(1 - self.zeta**2)))
 
     def response(self, t: FloatArray) -> FloatArray:
-        """Return the response (n,) to a unit step from rest at times `t` (n,) [s].
+        """Return the response (n,) to a unit step from rest at times `t` (n,) [s], for ζ ≠ 1.
 
         Åström and Murray, Feedback Systems, section on second-order systems.
         """
         omega, zeta, t = self.omega, self.zeta, np.asarray(t, dtype=np.float64)
-        if abs(zeta - 1) < CRITICAL:
-            return 1 - np.exp(-omega * t) * (1 + omega * t)
         root = np.sqrt(complex(zeta**2 - 1))  # imaginary for an underdamped joint
         slow, fast = omega * (zeta - root), omega * (zeta + root)  # both decay
         decay = (fast * np.exp(-slow * t) - slow * np.exp(-fast * t)) / (fast - slow)

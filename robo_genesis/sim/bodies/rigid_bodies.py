@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -11,8 +11,6 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.session import require_built
-
-Read = TypeVar("Read")
 
 # The engine's counts of a scene with a ground and one free body; all but `entities` are
 # those of the body.
@@ -89,8 +87,8 @@ def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
 
 
 def record_states(
-    step: Callable[[], object], steps: int, read: Callable[[], Read]
-) -> list[Read]:
+    step: Callable[[], object], steps: int, read: Callable[[], Any]
+) -> list[Any]:
     """Read the state, then step and read again, `steps` times; return the steps + 1 states.
 
     Args:

@@ -9,7 +9,7 @@ right, y up, z backwards (OpenGL) [m]. The computation uses x right, y down, z f
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -114,7 +114,8 @@ def centroid(mask: np.ndarray) -> FloatArray:
     return np.array([columns.mean() + 0.5, rows.mean() + 0.5])
 
 
-class Residuals(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Residuals:
     """Distances of points from a surface [m]: their number, mean, and largest size."""
 
     count: int

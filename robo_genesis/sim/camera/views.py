@@ -60,17 +60,12 @@ def look(camera: Any, render: bool = True) -> View:
             "segmentation": to_numpy(segmentation).astype(np.int32),
         }
     return View(
-        intrinsics=read_intrinsics(camera),
+        intrinsics=to_numpy(camera.intrinsics).astype(np.float64),
         transform=read_transform(camera),
         size=(int(camera.res[0]), int(camera.res[1])),
         limits=(float(camera.near), float(camera.far)),
         **pictures,
     )
-
-
-def read_intrinsics(camera: Any) -> FloatArray:
-    """Return the camera matrix (3, 3) [pixel]."""
-    return to_numpy(camera.intrinsics).astype(np.float64)
 
 
 def read_transform(camera: Any) -> FloatArray:

@@ -21,13 +21,6 @@ def test_response_and_overshoot_are_those_of_the_transfer_function(damping):
     assert 100 * joint.overshoot == pytest.approx(overshoot, abs=1e-3)
 
 
-@pytest.mark.parametrize("off", [0.0, -1e-7, 1e-7])
-def test_the_regimes_meet_at_critical_damping(off):
-    near = IdealJoint(inertia=1.0, damping=20.0 * (1 + off), kp=100.0)
-    assert near.response(np.array([0.1])) == pytest.approx([1 - 2 / np.e])
-    assert near.overshoot == pytest.approx(0.0)
-
-
 def test_what_acts_on_both_runs_is_gone_from_the_share(make_trace):
     response, sag = np.array([0.0, 0.2, 0.5, 0.8, 1.0]), -0.02 * np.arange(5)
     share = step_share(make_trace(0.5 * response + sag, 0.5), make_trace(sag, 0.0), 0)
