@@ -30,7 +30,7 @@ from robo_genesis.sim.arm.kinematics import quat_multiply
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 from robo_genesis.sim.bodies.free_fall import predicted
 from robo_genesis.sim.bodies.rigid_bodies import Drop
-from robo_genesis.sim.laws import apart, kept
+from robo_genesis.sim.laws import apart, each_run
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MEASURES = False
@@ -50,8 +50,7 @@ CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)
 
 def free_fall(run: Any) -> Findings:
     """At each sample place, velocity and orientation are those of a body under gravity alone."""
-    for name, case in run.cases.items():
-        yield from kept(name, falling(run.traces[name], case))
+    return each_run(run, falling)
 
 
 def falling(trace: BodyTrace, case: Drop) -> Findings:
