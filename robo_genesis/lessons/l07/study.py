@@ -146,6 +146,26 @@ class Facts:
         )
 
 
+def approach(
+    world: table.World, joints: JointMap, case: table.SceneCase
+) -> tuple[FloatArray, FloatArray, np.ndarray, int]:
+    """Ask for pregrasp and grasp, and assign postures on the way to the answers.
+
+    Returns:
+        Residuals, heights of the fingertips and contacts as in `Facts`, and how many
+        answers are accepted.
+    """
+    points = lifting.waypoints(case.place, case.size[2])[:2]
+    answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
+    residuals = np.array([answer.error for answer in answers], dtype=float)
+    tips = [kinematics.fingertip(kinematics.hand_pose(a.q))[2] for a in answers]
+    within = spec.ONE_START.tolerances
+    accepted = sum(int(kinematics.accepted(a.q, a.error, *within)) for a in answers)
+    way = lifting.line([case.q_start, *(answer.q for answer in answers)])
+    touches = [lifting.touches(world.robot, joints, world.fixed, q) for q in way]
+    return residuals, np.array(tips), np.array(touches), accepted
+
+
 def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     """Build a scene, give a page its robot, and return what the scene shows."""
     world = table.build(gs, case, spec.VIEW, spec.WRIST)
@@ -155,28 +175,13 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
     world.cameras["wrist"].move_to_attach()
     views = {name: look(camera, page.render) for name, camera in world.cameras.items()}
     corners = case.corners(rest.link_pos[-1, OBJECT])
-    pregrasp, grasp, _ = lifting.waypoints(case.place, case.size[2])
-    asked = case.q_start, spec.ONE_START, (pregrasp, grasp)
-    answers = lifting.ask(world.robot, joints, *asked)
-    poses = [kinematics.hand_pose(answer.q) for answer in answers]
-    tips = np.array([kinematics.fingertip(pose)[2] for pose in poses])
-    good = [
-        kinematics.accepted(a.q, a.error, *spec.ONE_START.tolerances) for a in answers
-    ]
-    way = lifting.line([case.q_start, *(a.q for a in answers)])
-    touches = np.array(
-        [lifting.touches(world.robot, joints, world.fixed, q) for q in way]
-    )
+    residuals, tips, touches, accepted = approach(world, joints, case)
     lifted, contacts = lift(world, joints, spec.lift_of(case))
+    reach = accepted, *tips.tolist(), int((touches > 0).sum())
     readings: dict[str, dict[str, float]] = {
         "object": {"mass": float(world.body.get_mass()), "depth": depth},
         "outline": {name: rungs.outline(corners, of) for name, of in views.items()},
-        "reach": {
-            "accepted": sum(map(int, good)),
-            "pregrasp": float(tips[0]),
-            "grasp": float(tips[1]),
-            "touches": int((touches > 0).sum()),
-        },
+        "reach": dict(zip(GROUPS["reach"], reach, strict=True)),
         "contacts": {**contacts},
     }
     number = 0
@@ -186,7 +191,6 @@ def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
             name: float(np.sum(view.segmentation == number))
             for name, view in views.items()
         }
-    residuals = np.array([answer.error for answer in answers], dtype=float)
     return Facts(
         case, world, rest, lifted, views, number, residuals, tips, touches, readings
     )
