@@ -44,7 +44,7 @@ def readings(*scenes: str) -> dict[str, Readings]:
     """Return the groups of readings of a page with these scenes."""
     found = {name: group(name, *scenes) for name in GROUPS}
     others = {"fails": counts(scenes[1:])} if scenes[1:] else {}
-    return found | others | {"model": counts(MODEL_COUNTS)}
+    return found | {"model": counts(MODEL_COUNTS)} | others
 
 
 def note(page: Any, group: str, scene: str, **values: float) -> None:
