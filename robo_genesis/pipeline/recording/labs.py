@@ -81,14 +81,14 @@ def record(recording: Recording) -> int:
         labs, progress = _labs(recording, pages), Progress(build.say)
         backend = _found_backend(recording, progress)
         for page in labs:
+            shutil.rmtree(build.cache / project.RECORDING, ignore_errors=True)
             try:
                 if recording.lesson or not _is_kept(recording, page, backend, progress):
                     _record_lab(recording, page, into, progress)
             except (ProjectError, OSError) as error:
                 build.say(f"\n{error}\n\nFailed: {page.lesson}\n")
                 failed = True
-            finally:  # nothing is ever reused
-                shutil.rmtree(build.cache / project.RECORDING, ignore_errors=True)
+        shutil.rmtree(build.cache / project.RECORDING, ignore_errors=True)
     build.say(
         f"Before you commit: look at both pictures in {recording.evidence}/*/{backend}/frames, "
         "read log.txt, and check that manifest.json names nothing private of your machine."

@@ -65,7 +65,8 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
         if not (texts or is_picture or is_table):
             continue
         if cell is not None and keys and page is None:
-            logger.warning(UNBOUND, location=env.docname)
+            if not texts:
+                logger.warning(UNBOUND, location=env.docname)
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
         item = describe(holder, node, env, texts)
