@@ -172,8 +172,8 @@ def execute(
     def accept(result: PageResult) -> None:
         name = result.page.docname
         try:
-            if result.bundle:
-                manifests[name] = verify_result(verify, result, progress)
+            if bundle := result.bundle:
+                manifests[name] = verify_result(verify, result, bundle, progress)
         except BundleRefused as error:
             progress("verify", name, f"refused: {error}")
             refusals.append(f"{name}: the bundle {result.bundle} is refused: {error}")
@@ -203,7 +203,7 @@ def _require_evidence(
     labs = {
         str(result.page.lesson): result.bundle
         for result in results
-        if result.page.page == RECORDED_PAGE
+        if result.page.page == RECORDED_PAGE and result.bundle
     }
     if refused := refused_records(build.book):
         raise BuildError("\n".join(refused))

@@ -1,6 +1,7 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.files import derived_value
@@ -17,7 +18,9 @@ from robo_genesis.pipeline.pages.store import Verify
 from robo_genesis.pipeline.pages.values import prints
 
 
-def verify_result(verify: Verify, result: PageResult, progress: Progress) -> Any:
+def verify_result(
+    verify: Verify, result: PageResult, bundle: Path, progress: Progress
+) -> Any:
     """Verify the bundle of a page, compare what the page shows with it; return its manifest.
 
     A refused page of the store loses its record, so that it is executed again. One that was
@@ -25,16 +28,17 @@ def verify_result(verify: Verify, result: PageResult, progress: Progress) -> Any
 
     Args:
         verify: verifies one bundle.
-        result: of a page that left a bundle.
+        result: of the page.
+        bundle: that the page left.
         progress: prints a line.
 
     Raises:
         BundleRefused: by `verify`; `backend` and `frames`, see `require_contract`; `shown`.
     """
     try:
-        manifest = verify(result.bundle)
+        manifest = verify(bundle)
         require_contract(manifest, environment_contract())
-        compared = outputs_compared(result, manifest)
+        compared = outputs_compared(result, bundle, manifest)
     except BundleRefused:
         if result.status == "reused":
             (result.folder / RECORD).unlink()
@@ -43,7 +47,7 @@ def verify_result(verify: Verify, result: PageResult, progress: Progress) -> Any
     return manifest
 
 
-def outputs_compared(result: PageResult, manifest: Manifest) -> int:
+def outputs_compared(result: PageResult, bundle: Path, manifest: Manifest) -> int:
     """Compare the outputs of a page with its bundle, and return their number.
 
     A page is compared once: the result is kept for the record of its files with their
@@ -52,8 +56,7 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> int:
     Raises:
         BundleRefused: `shown`.
     """
-    folder, bundle = result.folder, result.bundle
-    assert bundle is not None
+    folder = result.folder
     code = [
         path.read_text("utf8") for path in Tree().closure([outputs.__name__]).values()
     ]

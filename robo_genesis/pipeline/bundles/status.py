@@ -163,7 +163,7 @@ def not_shown(folder: Path, manifest: Manifest) -> list[str]:
 
 def why_stale(refusal: BundleRefused) -> str:
     """Return, for a reader of the site, what changed since a stale bundle was recorded."""
-    texts = {}
+    texts: dict[str, str] = {}
     for path, here, there in refusal.differing:
         for start in filter(path.startswith, CHANGES):
             texts.setdefault(start, CHANGES[start].format(here, there))

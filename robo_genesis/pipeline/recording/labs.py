@@ -162,6 +162,7 @@ def _record_lab(
             f"and Torch build, or record {actual} on purpose with BACKEND={actual}."
         )
     place = recording.evidence / lesson / actual
+    assert result.bundle is not None  # a lab without a bundle has failed
     put(result.bundle, place)
     passed = sum(check.passed for check in manifest.checks)
     checks = f"{passed} of {len(manifest.checks)} checks"

@@ -24,16 +24,15 @@ def test_an_accepted_page_is_compared_again_when_its_record_changed(
     (tmp_path / RECORD).write_text(os.urandom(16).hex())
     monkeypatch.setattr(page_bundles, "executed_cells", lambda folder: None)
     page = SimpleNamespace(notebook=new_notebook())
-    (tmp_path / "outputs/cpu").mkdir(parents=True)
-    (tmp_path / "outputs/cpu/manifest.json").touch()
+    bundle = tmp_path / "outputs/cpu"
     result = PageResult(page, "reused", tmp_path)
     compare = Mock(side_effect=[7, BundleRefused("shown", "other"), 8])
     monkeypatch.setattr(outputs, "require_shown", compare)
-    assert [outputs_compared(result, None) for _ in range(2)] == [7, 7]
+    assert [outputs_compared(result, bundle, None) for _ in range(2)] == [7, 7]
     (tmp_path / RECORD).write_text(os.urandom(16).hex())
     with pytest.raises(BundleRefused, match="other"):  # a refusal is not kept
-        outputs_compared(result, None)
-    assert outputs_compared(result, None) == 8
+        outputs_compared(result, bundle, None)
+    assert outputs_compared(result, bundle, None) == 8
 
 
 @pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])

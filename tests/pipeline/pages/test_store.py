@@ -94,9 +94,10 @@ def test_a_stored_page_whose_bundle_is_refused_is_executed_by_the_next_build(
     monkeypatch.setattr(page_bundles, "require_contract", lambda *given: None)
     [page] = find_pages(sound / "book")
     result = store.stored_result(page, place)
-    page_bundles.verify_result(accept, result, lambda *_: None)
+    bundle = result.bundle
+    page_bundles.verify_result(accept, result, bundle, lambda *_: None)
     with pytest.raises(BundleRefused):
-        page_bundles.verify_result(refuse, result, lambda *_: None)
+        page_bundles.verify_result(refuse, result, bundle, lambda *_: None)
     with pytest.raises(PageRefused):
         store.stored_result(page, place)
 
