@@ -25,11 +25,8 @@ measures. It may have a `tag` and a `state`, and one cell `opens`.
 """
 
 import base64
-import pickle
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -40,7 +37,6 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.files import derived
 from robo_genesis.core.markup import filled
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
@@ -80,59 +76,38 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        recorded = Recorded(
-            lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND
-        )
-        return [explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)]
-
-
-class Recorded:
-    """The bundle of a page, judged when its experiment is needed: most builds need it not."""
-
-    def __init__(self, lesson: str, folder: Path) -> None:
-        self.lesson, self.folder = lesson, folder
-
-    @cached_property
-    def experiment(self) -> Experiment:
-        """The experiment of the accepted bundle."""
-        return accepted_experiment(self.folder, bundle.read_manifest(self.folder))
-
-    def explored(self, *name: str) -> dict[str, Any]:
-        """Return the data of an explorer of the lesson; see the module's table.
-
-        Raises:
-            ShownError: the lesson has no explorer.
-        """
-        found = find(f"robo_genesis.lessons.{self.lesson}.explorer.explored")
-        inputs = [
-            repr((self.lesson, name)).encode(),
-            *replays.bundle_inputs(self.folder),
-        ]
-        made = derived(
-            "explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name))
-        )
-        return pickle.loads(made)
+        lesson, folder = lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND
+        run = accepted_experiment(folder, bundle.read_manifest(folder))
+        explored = find(f"robo_genesis.lessons.{lesson}.explorer.explored")
+        key = f"{lesson_page}/{BACKEND}"
+        file = "-".join((*key.split("/"), *name))
+        return [explorer_block(self, key, file, folder, run, explored(run, *name))]
 
 
 def explorer_block(
-    directive: SphinxDirective, key: str, recorded: Recorded, *name: str
+    directive: SphinxDirective,
+    key: str,
+    file: str,
+    folder: Path,
+    run: Experiment,
+    data: dict[str, Any],
 ) -> nodes.Node:
     """Return an explorer with all that it shows without a script.
 
     Args:
         directive: the directive that shows it.
         key: names the run, as in the ledger.
-        recorded: its bundle.
-        name: what the lesson calls the data, if it has several.
+        file: how the names of its files end.
+        folder: of the bundle.
+        run: the accepted bundle.
+        data: see the module's table.
     """
-    data = recorded.explored(*name)
     block = nodes.container(classes=["explorer-block"], evidence_runs=(key,))
     if "picture" in data:
-        block += picture(directive, key, recorded.folder / "frames", data)
+        block += picture(directive, f"picture-{file}", folder / "frames", data)
     elif "postures" in data:
         block["classes"].append("replay-block")
-        files = "-".join(("postures", *key.split("/"), *name))
-        block += postures(directive, files, recorded, data)
+        block += postures(directive, f"postures-{file}", folder, run, data)
     else:
         block += [opening("", data), panel(data)]
     return block
@@ -140,14 +115,8 @@ def explorer_block(
 
 def opening(kind: str, data: Data, **words: str) -> nodes.Node:
     """Return the start of an explorer, with what `_static/explorer.js` needs to know."""
-    start = controls.opening(
-        f"explorer {kind}".strip(), {"explorer": controls.as_json(data)} | words
-    )
-    sentence = data.get("without_script")
-    return html(
-        start
-        + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else "")
-    )
+    words |= {"explorer": controls.as_json(data)}
+    return html(controls.opening(f"explorer {kind}".strip(), words))
 
 
 def panel(data: Data, loads: str = "") -> nodes.Node:
@@ -173,7 +142,7 @@ def fold(
 
 
 def picture(
-    directive: SphinxDirective, key: str, folder: Path, data: dict[str, Any]
+    directive: SphinxDirective, file: str, folder: Path, data: dict[str, Any]
 ) -> list[nodes.Node]:
     """Return a recorded view, the cross that marks a pixel, and what reads its values.
 
@@ -186,7 +155,6 @@ def picture(
         return [nodes.paragraph("", "SKIP: this run has no camera.")]
     texts = (base64.b64encode(frame.read_bytes()).decode() for frame in numbers)
     data["frames"] = dict(zip(FRAMES[1:], texts, strict=True))
-    file = "-".join(("picture", *key.split("/"), view["name"]))
     shown = image(directive.env, f"{file}.png", rgb.read_bytes(), view["alt"])
     cross = '<span class="cross" hidden></span>'
     figure = replays.stage(shown, cross, view["caption"], file)
@@ -194,33 +162,39 @@ def picture(
 
 
 def postures(
-    directive: SphinxDirective, name: str, recorded: Recorded, data: dict[str, Any]
+    directive: SphinxDirective,
+    name: str,
+    folder: Path,
+    run: Experiment,
+    data: dict[str, Any],
 ) -> Iterator[nodes.Node]:
     """Yield the answers of a page in 3D, and leave one model with an animation for each map.
 
     Args:
         directive: the directive that shows them.
         name: of the model's files.
-        recorded: the bundle of the page.
+        folder: of the bundle.
+        run: the accepted bundle.
         data: see the module's table.
     """
     from robo_genesis.site.replay import model  # these load slowly
     from robo_genesis.site.replay.scenery import fitted
 
-    replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
+    env, lesson = directive.env, name.split("-")[1]
+    replay = find_replay(lesson)
     runs = {**run.traces, **data.pop("traces", {})}
     traces = {
         run: with_target(runs[run], of) for run, of in data.pop("postures").items()
     }
     tables_below = data.pop("tables", {})
-    shape = replays.shape_file(recorded.lesson, replay.thing)
+    shape = replays.shape_file(lesson, replay.thing)
     camera = fitted(
         np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()])
     )
     inputs = [
         name.encode(),
         shape.read_bytes(),
-        *replays.bundle_inputs(recorded.folder),
+        *replays.bundle_inputs(folder),
     ]
     drawn = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
     what = with_cross(drawn, camera), [*run.links, CROSS], traces, replay.credit
@@ -241,7 +215,7 @@ def postures(
     yield panel(data, f"Show in 3D loads the robot: {weight} kB.")
     if tables_below:
         yield from fold(directive, tables_below)
-    yield html(replays.origin_html(name, recorded.folder, env, replay.credit))
+    yield html(replays.origin_html(name, folder, env, replay.credit))
 
 
 def with_target(trace: Trace | BodyTrace, targets: FloatArray) -> Trace | BodyTrace:

@@ -40,10 +40,11 @@ from sphinx.application import Sphinx
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
+from robo_genesis.evidence import bundle
+from robo_genesis.pipeline.pages.outputs import accepted_experiment
 from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.site.evidence.plain_nodes import bullets, html
 from robo_genesis.site.evidence.runs import BACKEND
-from robo_genesis.site.figures.explorer import Recorded
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.takeaways.directive import folder, links
 from robo_genesis.site.takeaways.files import writer_of
@@ -52,7 +53,15 @@ from robo_genesis.site.takeaways.plain_markdown import plain
 FILE = "chunk-000/file-000"  # The only file of each kind
 CHUNK = "chunk-{chunk_index:03d}/file-{file_index:03d}"
 CAMERA = "observation.images.world"
-QUANTILES = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
+QUANTILES = {
+    "min": 0.0,
+    "max": 1.0,
+    "q01": 0.01,
+    "q10": 0.1,
+    "q50": 0.5,
+    "q90": 0.9,
+    "q99": 0.99,
+}
 
 PIXELS = "yuv420p"
 # Of the encoder: few frames depend on others, and equal pictures give equal bytes.
@@ -72,7 +81,8 @@ class DatasetDownload(PageDirective):
         writer = writer_of(source, self.env.docname)
         title = f"> {self.config.html_title}. © {self.config.author}. {writer.address}"
         readme = f"{title.rstrip()}\n\n{plain(source.read_text('utf8'), writer)}"
-        run = Recorded(lesson, page_outputs(lesson_page) / BACKEND).experiment
+        bundle_folder = page_outputs(lesson_page) / BACKEND
+        run = accepted_experiment(bundle_folder, bundle.read_manifest(bundle_folder))
         recorded = find(f"robo_genesis.lessons.{lesson}.dataset.recorded")
         content = archive(recorded(run), readme)
         name = f"{lesson_page.replace('/', '-')}-lerobot.zip"
@@ -235,14 +245,9 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
     if values.ndim == 4:
         values, shape = values.reshape(-1, values.shape[-1]) / 255, [-1, 1, 1]
     values = values.astype(np.float64).reshape(len(values), -1)
-    measures = {
-        "min": values.min(0),
-        "max": values.max(0),
-        "mean": values.mean(0),
-        "std": values.std(0),
-    }
     levels = np.quantile(values, [*QUANTILES.values()], axis=0)
-    measures |= zip(QUANTILES, levels, strict=True)
+    measures = dict(zip(QUANTILES, levels, strict=True))
+    measures |= {"mean": values.mean(0), "std": values.std(0)}
     lists = {name: value.reshape(shape).tolist() for name, value in measures.items()}
     return lists | {"count": [count]}
 

@@ -21,7 +21,7 @@ from robo_genesis.sim.camera.views import View
 from robo_genesis.site.figures import explorer
 from robo_genesis.site.figures.explorer import CROSS
 
-NAME = "postures-l99-answers-cpu-reach"
+KEY, NAME = "l99/answers/cpu", "postures-l99-answers-cpu-reach"
 TARGETS = np.array([[0.1 * k, 0.0, 0.5] for k in range(40)])
 K = intrinsics(42.0, CAMERA_RES)
 TRANSFORM = np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]])
@@ -31,16 +31,10 @@ BALL = (0.2, 0.1, 0.3, 0.1)
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
 
 
-def block_of(tmp_path, folder, data, *name, **experiment) -> nodes.Node:
-    recorded = SimpleNamespace(
-        lesson="l99",
-        folder=folder,
-        experiment=SimpleNamespace(**experiment),
-        explored=lambda *_: data,
-    )
-    return explorer.explorer_block(
-        Panel(tmp_path / "book"), "l99/answers/cpu", recorded, *name
-    )
+def block_of(tmp_path, folder, data, name, **experiment) -> nodes.Node:
+    directive, run = Panel(tmp_path / "book"), SimpleNamespace(**experiment)
+    file = f"l99-answers-cpu-{name}"
+    return explorer.explorer_block(directive, KEY, file, folder, run, data)
 
 
 def texts(page, selector: str) -> list[str]:
@@ -110,7 +104,7 @@ def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
 def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(
     postures, tmp_path
 ):
-    assert postures["evidence_runs"] == ("l99/answers/cpu",)
+    assert postures["evidence_runs"] == (KEY,)
     rows = rows_of([postures])
     assert (rows[2], len(rows)) == (["2", "20"], 2 + 5 + 3)
     file = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
