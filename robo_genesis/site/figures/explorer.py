@@ -177,8 +177,7 @@ def postures(
         run: the accepted bundle.
         data: see the module's table.
     """
-    from robo_genesis.site.replay import model  # these load slowly
-    from robo_genesis.site.replay.scenery import fitted
+    from robo_genesis.site.replay.scenery import fitted  # it loads slowly
 
     env, lesson = directive.env, name.split("-")[1]
     replay = find_replay(lesson)
@@ -191,24 +190,16 @@ def postures(
     camera = fitted(
         np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()])
     )
-    inputs = [
-        name.encode(),
-        shape.read_bytes(),
-        *replays.bundle_inputs(folder),
-    ]
-    drawn = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
-    what = with_cross(drawn, camera), [*run.links, CROSS], traces, replay.credit
+    parts = [p for p in load_shape(shape) if p.link != WORLD or data.get("around")]
     files, weight, still = replays.leave_model(
         env,
         name,
-        inputs,
-        lambda: model.glb(*what),
-        camera,
+        [folder, shape],
+        (with_cross(parts, camera), [*run.links, CROSS], traces, replay.credit),
         "The robot at the start, drawn from the recorded poses.",
     )
-    view = {"orbit": camera.orbit, "target": camera.target}
     alt = "The robot in 3D, in the chosen posture."
-    yield opening("with-model", data, alt=alt, **files, **view)
+    yield opening("with-model", data, alt=alt, **files)
     over = controls.over_the_picture("Show in 3D")
     caption = "Recorded postures of the robot. Yellow cross: the target."
     yield replays.stage(still, over, caption, f"{name}-model")

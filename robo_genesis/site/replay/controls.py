@@ -14,7 +14,7 @@ from robo_genesis.core.text import time_digits
 from robo_genesis.site.figures.case_labels import MARKS
 
 if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
+    from robo_genesis.site.replay.scenery import Scenery  # loads slowly
 
 PANEL = Path(__file__).with_name("panel.html")  # The template of the controls
 
@@ -106,7 +106,7 @@ def panel(name: str, runs: Runs, weight: int) -> str:
     )
 
 
-def data(runs: Runs, camera: "Camera") -> dict[str, str]:
+def data(runs: Runs) -> dict[str, str]:
     """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
     names = ("name", "unit", "digits", "top")
     channels = [
@@ -119,8 +119,6 @@ def data(runs: Runs, camera: "Camera") -> dict[str, str]:
         "thing": runs.replay.thing,
         "alt": runs.replay.view
         or f"The {runs.replay.thing} in 3D at the sample that is shown.",
-        "orbit": camera.orbit,
-        "target": camera.target,
     }
 
 

@@ -11,7 +11,7 @@ writes to a file.
 
 import base64
 import gzip
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,11 +23,13 @@ from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
-from robo_genesis.core.files import derived, write_whole
+from robo_genesis.core.channels import Run
+from robo_genesis.core.files import derived, files_below, write_whole
 from robo_genesis.core.markup import filled
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.page_index import page_outputs
+from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.plain_nodes import (
     bullets,
@@ -45,7 +47,7 @@ from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICEN
 from robo_genesis.site.text.questions import question
 
 if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Camera
+    from robo_genesis.site.replay.scenery import Scenery
 
 SHAPE_PAGE = "lecture"
 
@@ -94,8 +96,7 @@ def replay_block(
         ValueError: its runs cannot be played together, or no page of this build wrote
             the shape of these links.
     """
-    from robo_genesis.site.replay import model as replay_model  # these load slowly
-    from robo_genesis.site.replay.scenery import scenery, side_by_side
+    from robo_genesis.site.replay.scenery import scenery, side_by_side  # loads slowly
 
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
@@ -106,21 +107,14 @@ def replay_block(
     if replay.places:
         runs, parts = side_by_side(runs, parts)
     around = scenery(parts, runs)
-    drawn_by = repr((list(runs.traces), list(runs.links), replay.credit)).encode()
-    inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
-    what = around, runs.links, runs.traces, replay.credit
+    drawn = around, runs.links, runs.traces, replay.credit
     files, weight, still = leave_model(
-        env,
-        name,
-        inputs,
-        lambda: replay_model.glb(*what),
-        around.camera,
-        controls.alt(runs),
+        env, name, [folder, shape], drawn, controls.alt(runs)
     )
     shown, (first, *_) = runs, runs.channels
     if brief:  # the model is the same
         shown = replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
-    opening = controls.opening("replay", files | controls.data(shown, around.camera))
+    opening = controls.opening("replay", files | controls.data(shown))
     samples = f"samples of {', '.join(runs.traces)} as a table"
     summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
@@ -151,9 +145,8 @@ def replay_folder(env: BuildEnvironment) -> str:
 def leave_model(
     env: BuildEnvironment,
     name: str,
-    inputs: Sequence[bytes],
-    make: Callable[[], bytes],
-    camera: "Camera",
+    sources: Iterable[Path],
+    drawn: tuple["Scenery", Sequence[str], Mapping[str, Run], str | None],
     alt: str,
 ) -> tuple[dict[str, str], int, nodes.image]:
     """Write a model for the page that is read, as GLB and as a classic script.
@@ -163,18 +156,27 @@ def leave_model(
     Args:
         env: of the page.
         name: of the model.
-        inputs: everything that decides it.
-        make: returns it.
-        camera: that sees its start.
+        sources: the files and folders that decide it, besides the package.
+        drawn: what to draw, the links, the runs and the copyright; see `model.glb`.
         alt: text of the picture that it replaces.
 
     Returns:
-        Name and addresses of what loads on a reader's request, its compressed size
-        [kB], and the still picture.
+        Name, addresses and camera of what loads on a reader's request, its compressed
+        size [kB], and the still picture.
     """
-    from robo_genesis.site.replay.poster import picture  # it loads slowly
+    from robo_genesis.site.replay.model import glb  # these load slowly
+    from robo_genesis.site.replay.poster import picture
 
-    model = derived("replay", inputs, make)
+    around, links, traces, credit = drawn
+    camera = around.camera
+    inputs = [repr((name, *links, *traces, credit)).encode()]
+    for source in (project.ROOT / PACKAGE, *sources):
+        inputs += [
+            f.read_bytes()
+            for f in (source, *sorted(files_below(source)))
+            if f.is_file()
+        ]
+    model = derived("replay", inputs, lambda: glb(*drawn))
     still = derived("poster", inputs, lambda: picture(model, camera))
     text = base64.b64encode(model).decode()
     script = f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
@@ -186,11 +188,9 @@ def leave_model(
     )
     shown = image(env, f"{name}.webp", still, alt)
     shown["kind"], shown["classes"] = "model", ["still"]
-    return (
-        {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"},
-        weight,
-        shown,
-    )
+    addresses = {"model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"}
+    view = {"orbit": camera.orbit, "target": camera.target}
+    return {"name": name} | addresses | view, weight, shown
 
 
 def stage(picture: nodes.image, over: str, caption: str, anchor: str) -> nodes.figure:
@@ -212,14 +212,6 @@ def shape_file(lesson: str, thing: str) -> Path:
             f"page.write_shape({lesson}.read_shape(entity)) after scene.build()."
         )
     return shape
-
-
-def bundle_inputs(folder: Path) -> Iterator[bytes]:
-    """Yield everything that determines what is made of a bundle."""
-    sources = (project.ROOT / "robo_genesis").rglob("*.py")
-    files = (path for path in folder.rglob("*") if path.is_file())
-    for path in sorted([*files, *sources]):
-        yield path.read_bytes()
 
 
 def origin_html(

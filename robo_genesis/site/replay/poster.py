@@ -48,7 +48,8 @@ def picture(model: bytes, camera: Camera) -> bytes:
     window.Render()
     window.GetRGBACharPixelData(0, 0, WIDTH - 1, HEIGHT - 1, 0, pixels)
     # A translucent surface is stored multiplied by its opacity; rows begin at the bottom.
-    image = Image.frombytes("RGBa", SIZE, bytes(pixels), "raw", "RGBa", 0, -1)
+    data = bytes(pixels)  # type: ignore[call-overload] # a buffer, which its stubs omit
+    image = Image.frombytes("RGBa", SIZE, data, "raw", "RGBa", 0, -1)
     content = BytesIO()
     image.convert("RGBA").save(content, "WEBP", quality=70, method=6)
     return content.getvalue()

@@ -22,12 +22,11 @@ CAMERA = Camera(np.array([0.2, 0.5, 0.0]), 1.5)
 
 
 def test_the_controls_name_parts_and_levels_and_have_the_script_s_data(joint):
-    words = controls.opening("replay", controls.data(joint, CAMERA))
+    words = controls.opening("replay", controls.data(joint))
     html = words + controls.panel("replay-x", joint, 560)
     root = BeautifulSoup(html, "html.parser").div
     terms = ["time", "position", "velocity", "control force", "target", "force limit"]
     assert [term.get_text() for term in root.select("dt")] == terms
-    assert (root["data-orbit"], root["data-target"]) == (CAMERA.orbit, CAMERA.target)
     target, limit = json.loads(root.select_one("input[type=radio]")["data-levels"])
     assert target == {
         "channel": "position",
