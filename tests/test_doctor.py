@@ -199,9 +199,7 @@ def test_the_report_has_stable_fields_and_names_no_user(steps_run, capsys, monke
     [
         (f"{project.ROOT}/book/x.md", "book/x.md"),
         (f"{sys.prefix}/bin/python", "…/bin/python"),
-        ("'/data/alice/x.xml' is gone", "'…/x.xml' is gone"),
         ("cannot open /home/alice", "cannot open ~"),
-        ("file:///home/bob/x", "file://~/x"),
         ("-I/home/bob/inc", "-I~/inc"),
         ("see https://host/a/b and N·m/rad", "see https://host/a/b and N·m/rad"),
         ("xml/franka_emika_panda/panda.xml", "xml/franka_emika_panda/panda.xml"),

@@ -4,13 +4,15 @@ Text of a bundle is escaped: it cannot control a terminal, begin a line or becom
     markup.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.core import tables
+from jinja2 import Environment
+
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.text import bullets, printable
+from robo_genesis.core.text import printable
 
 Cells = tuple[str, ...]
 
@@ -41,29 +43,17 @@ class Document:
 
     def markdown(self) -> str:
         """Return the report as a Markdown page."""
-        remarks = bullets(map(_plain, self.remarks))
-        blocks = [f"# {_plain(self.title)}", f"**{self.verdict}**", remarks]
-        for part in self.parts:
-            state = f": {part.state}" if part.state else ""
-            blocks += [
-                f"## {_plain(part.heading)}{state}",
-                bullets(map(_plain, part.remarks)),
-            ]
-            blocks.append(
-                _markdown_table(part.rows) if len(part.rows) > 1 else part.empty
-            )
-        return "\n\n".join(block for block in blocks if block) + "\n"
+        environment = Environment(trim_blocks=True, lstrip_blocks=True)
+        environment.filters["plain"] = _plain
+        template = Path(__file__).with_suffix(".md").read_text("utf8")
+        text = environment.from_string(template).render(document=self)
+        return re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
 
     def write(self, folder: Path) -> Path:
         """Write the page and return its path."""
         path = folder / "report.md"
         write_whole(path, self.markdown().encode())
         return path
-
-
-def _markdown_table(rows: Sequence[Cells]) -> str:
-    head, *body = ([_plain(cell) for cell in row] for row in rows)
-    return tables.markdown([dict(zip(head, row, strict=True)) for row in body]).strip()
 
 
 def _plain(text: str) -> str:

@@ -45,17 +45,6 @@ def test_a_page_s_size(tmp_path):
     }
 
 
-@pytest.mark.parametrize(
-    ("kind", "name", "limit"),
-    [(kind, *item) for kind, limits in sizes.LIMITS.items() for item in limits.items()],
-)
-def test_each_limit_is_kept_exactly(kind, name, limit):
-    found = dict.fromkeys(sizes.MEASURES, 0) | {name: limit}
-    assert sizes.excess(found, kind) == []
-    (phrase,) = sizes.excess(found | {name: limit + 1}, kind)
-    assert phrase.endswith(f"(at most {limit:,})")
-
-
 def test_a_large_page_is_named(tmp_path):
     large = new_notebook(cells=[new_markdown_cell("word " * 3400)])
     pages = [
