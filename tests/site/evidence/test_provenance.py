@@ -18,7 +18,7 @@ from robo_genesis.pipeline.pages.book import find_pages
 IMPORTS = """\
 from IPython.display import HTML, SVG, Markdown
 def drawn(name):
-    size = "xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'"
+    size = "xmlns='http://www.w3.org/2000/svg' width='3' height='2'"
     return SVG(f"<svg {size}><title>{name}</title></svg>")
 def table(name):
     return Markdown(f"| {name} |\\n| --- |\\n| 7 |")
