@@ -1,4 +1,4 @@
-"""Files to download from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
+"""Files to download from a lab, and the commands that run it: ```` ```{takeaways} ````.
 
 ```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` all
 but the last. The files are written into the site while the page is read, so that the page can
@@ -16,7 +16,7 @@ from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.markup import filled
 from robo_genesis.core.project import solutions_shown
-from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.takeaways.files import run_commands, system, write_takeaways
 
@@ -25,14 +25,12 @@ GITHUB = "https://github.com/"
 
 
 class TakeawaysBox(PageDirective):
-    """Show how to run a lab at home, and list its measured files for download."""
-
-    required_arguments = 1
+    """Show how to run this lab at home, and list its measured files for download."""
 
     def shown(self) -> list[nodes.Node]:
         """Return the box and the list."""
-        page = self.page(self.arguments[0])
-        self.env.note_dependency(self.env.doc2path(page.docname, base=False))
+        pages = find_pages(Path(self.env.srcdir))
+        page = next(page for page in pages if page.docname == self.env.docname)
         files = write_takeaways(page, folder(self.env), self.config)
         repository = self.config.course_repository
         text = filled(
@@ -44,14 +42,6 @@ class TakeawaysBox(PageDirective):
             codespace=repository.startswith(GITHUB) and repository.removeprefix(GITHUB),
         )
         return self.parse_text_to_nodes(text)
-
-    def page(self, name: str) -> Page:
-        """Return the page that `lesson/page` names."""
-        pages = {f"{p.lesson}/{p.page}": p for p in find_pages(Path(self.env.srcdir))}
-        if name not in pages:
-            known = ", ".join(sorted(pages.keys() - {"None/None"}))
-            raise LookupError(f"there is no page {name!r}. Choices: {known}.")
-        return pages[name]
 
 
 class RunCommands(PageDirective):
