@@ -113,16 +113,15 @@ def describe(
         ]
         word, suffix, data = "table", ".csv", ledger_data.csv_bytes(rows)
         title = ", ".join(filter(None, rows[0]))
-    anchor, kind, kept = _anchor(holder, f"{word}-{section['ids'][0]}"), word, data
+    anchor, kind = _anchor(holder, f"{word}-{section['ids'][0]}"), word
     file = f"{env.docname}-{anchor}{suffix}".replace("/", "-")
     if word == "picture":
-        kind, kept = node.get("kind") or ledger_data.picture_kind(path), None
-        file = node["uri"]
+        kind, file = node.get("kind") or ledger_data.picture_kind(path), node["uri"]
     else:
         title = f"{heading}: {title}"
     title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
     title = textwrap.shorten(title, TITLE, placeholder=" …")
-    digest = ledger_data.sha256(data)
+    digest, kept = ledger_data.sha256(data), None if word == "picture" else data
     return Item(kind, title, env.docname, anchor, (), digest, file, kept)
 
 

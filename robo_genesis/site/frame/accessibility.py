@@ -64,12 +64,12 @@ def make_accessible(page: BeautifulSoup) -> None:
 def stack_tables(page: BeautifulSoup) -> None:
     """Mark the wide tables of an article in place, and give each cell the head of its column."""
     for table in page.select("article table:has(thead):not(.scroll-box table)"):
-        columns = table.thead.find_all("th")
+        columns = table.select("thead th")
         heads = [head.get_text(" ", strip=True) for head in columns]
         rows = [row.find_all(["td", "th"]) for row in table.select("tbody tr")]
         if {len(row) for row in rows} != {len(heads)} or len(rows) > MOST_ROWS:
             continue
-        whole = table.thead.find(class_="case-mark") is not None
+        whole = table.select_one("thead .case-mark") is not None
         widths = (
             max(narrowest(cell, whole) for cell in column)
             for column in zip(columns, *rows, strict=True)

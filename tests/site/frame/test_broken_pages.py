@@ -13,7 +13,7 @@ from robo_genesis.site.course import course_map
 
 # What stands alone on the page, and what is said of its line.
 TEXT = {
-    r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
+    r"$\foo{x}$": r"shows \\, which the site's font for formulas does not have",
     "{py:func}`module`": "reference target not found: module",
     "{term}`gain`": "term not in glossary: 'gain'",
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
