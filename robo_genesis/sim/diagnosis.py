@@ -221,10 +221,10 @@ def run_steps(
         steps: each returns what it found, or raises an error that says what to do.
         subject: what all steps look at, and where they leave what later steps need.
     """
-    broken = False
+    state: State = "ok"
     for step in steps:
-        state, found = ("not run", "") if broken else outcome(step, subject)
-        broken |= state == "broken"
+        ended = state in ("broken", "not run")
+        state, found = ("not run", "") if ended else outcome(step, subject)
         yield StepResult(step.__name__, state, found)
 
 
