@@ -1,13 +1,20 @@
 """Functions that students write: tests of what they return, and the check that demands them."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from traceback import extract_tb
 from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, CheckFailed, Finding, at_most, equal
+from robo_genesis.core.checks import (
+    Check,
+    CheckFailed,
+    Finding,
+    Findings,
+    at_most,
+    equal,
+)
 from robo_genesis.core.experiment import Experiment, MeasuringPage, counts
 from robo_genesis.core.scene import FloatArray
 
@@ -27,7 +34,7 @@ def refused(call: Callable[[], Any]) -> Exception | None:
 FUNCTIONS = "functions"
 
 
-def functions(run: Experiment) -> Iterator[Finding]:
+def functions(run: Experiment) -> Findings:
     """Each function that the page leaves to write passed its test."""
     for name, passed in run.readings[FUNCTIONS].items():
         yield equal(name, passed, 1)
@@ -124,9 +131,7 @@ def as_test(
     return judge
 
 
-def same_array(
-    label: str, found: Any, expected: np.ndarray, tiny: float
-) -> Iterator[Finding]:
+def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Findings:
     """Require an array of the shape of the expected one, which differs from it by rounding.
 
     If some differ, the first such number, or the first row of them along the last axis,
@@ -165,7 +170,7 @@ def compared(
     found: Sequence[Any],
     expected: Sequence[Any],
     tiny: float,
-) -> Iterator[Finding]:
+) -> Findings:
     """Require returned values that are None, or differ by rounding, as the expected ones.
 
     Args:

@@ -174,7 +174,7 @@ def _claims(tree: ast.AST | None) -> Iterator[tuple[str, str]]:
         if (
             isinstance(node, ast.FunctionDef)
             and node.returns
-            and ast.unparse(node.returns) in ("Findings", "Iterator[Finding]")
+            and ast.unparse(node.returns) == "Findings"
         ):
             yield node.name, ast.get_docstring(node) or ""
 
