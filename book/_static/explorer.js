@@ -6,22 +6,15 @@
 document.addEventListener("DOMContentLoaded", () => {
   const KEYS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
   const UNKNOWN = "this record cannot tell";
+  const { add, draw, write } = globalThis.timePlot;
   const HEIGHT = 210;
-
-  function make(parent, name, text = "", attributes = {}) {
-    const element = document.createElement(name);
-    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-    element.textContent = text;
-    parent.append(element);
-    return element;
-  }
 
   /* Writes the values beside their names, and those of the last choice if there are any. */
   function writeValues(root, values, last) {
     root.querySelectorAll("dl div").forEach((row, k) => {
       row.replaceChildren(row.firstElementChild);
-      make(row, "dd", values[k]);
-      if (last) make(row, "dd", `last run: ${last[k]}`, { class: "last" });
+      add(row, "dd", {}, values[k]);
+      if (last) add(row, "dd", { class: "last" }, `last run: ${last[k]}`);
     });
   }
 
@@ -34,10 +27,10 @@ document.addEventListener("DOMContentLoaded", () => {
     table.setAttribute("role", "grid");
     table.createCaption();
     map.rows.forEach(({ label, cells }, row) => {
-      const line = make(table, "tr");
-      make(line, "th", label, { scope: "row" });
+      const line = add(table, "tr");
+      add(line, "th", { scope: "row" }, label);
       cells.forEach((cell, column) => {
-        const place = make(line, "td", "", { role: "gridcell" });
+        const place = add(line, "td", { role: "gridcell" });
         found.set(cell, place);
         place.addEventListener("click", () => choose(cell));
         place.addEventListener("keydown", (event) => {
@@ -49,20 +42,18 @@ document.addEventListener("DOMContentLoaded", () => {
         });
       });
     });
-    const foot = make(table, "tr");
-    make(foot, "td");
-    for (const label of map.columns) make(foot, "th", label, { scope: "col" });
+    const foot = add(table, "tr");
+    add(foot, "td");
+    for (const label of map.columns) add(foot, "th", { scope: "col" }, label);
     return found;
   }
 
   /* The curves of a run over those of the last one. */
   function curvesOf(root, { of, dt, until, drawn }) {
-    const { add, draw } = globalThis.timePlot;
     const plots = root.querySelector(".plots");
     const svgs = drawn.map(({ key }) => add(plots, "svg", { role: "img", "data-curve": key }));
     let pair = [];
 
-    /* Draws one curve; the label of the last run is where the two differ most. */
     function drawOne({ key, name, title, unit, zero, first }, svg) {
       const [run, last] = pair;
       const line = (cell, mark) => ({
@@ -70,28 +61,17 @@ document.addEventListener("DOMContentLoaded", () => {
         values: cell[key].map((value) => zero + value * unit),
         mark,
       });
-      const ghost = last && line(last, "ghost");
-      const now = {
-        ...line(run, run.tag ? `case-${run.tag.toLowerCase()}` : "further"), chosen: true,
-      };
+      const mark = run.tag ? `case-${run.tag.toLowerCase()}` : "further";
+      const now = { ...line(run, mark), chosen: true };
       const axes = pair.filter(Boolean).map((cell) => cell.map.axes[key]);
-      const { x, y, top, floor } = draw(svg, {
-        title, height: HEIGHT, end: until, curves: ghost ? [ghost, now] : [now],
+      draw(svg, {
+        title: last ? `${title}; thin: ${last.name}` : title, height: HEIGHT, end: until,
+        curves: last ? [line(last, "ghost"), now] : [now],
         ticks: axes[0].ticks, levels: axes[0].levels,
         low: Math.min(...axes.map(({ low }) => low)), high: Math.max(...axes.map(({ high }) => high)),
       });
       const grey = last ? ` Grey: the last run, ${last.name}, ${last.map.setting}.` : "";
       svg.setAttribute("aria-label", `${name} of ${of} over time. ${run.sentence}${grey}`);
-      if (!last) return;
-      const apart = now.values.map((value, k) => Math.abs(value - ghost.values[k]));
-      const at = apart.indexOf(Math.max(...apart));
-      const late = ghost.times[at] > until / 3;
-      const beside = y(ghost.values[at]) + (ghost.values[at] > now.values[at] ? -6 : 14);
-      add(svg, "text", {
-        class: late ? "ghost-label end" : "ghost-label",
-        x: x(ghost.times[at]) + (late ? -6 : 6),
-        y: Math.min(Math.max(beside, top + 26), floor - 16), // clear of the limits
-      }, `last run: ${last.name}`);
     }
 
     const redraw = () => drawn.forEach((curve, k) => drawOne(curve, svgs[k]));
@@ -104,11 +84,8 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* The chosen posture in 3D, once a reader asks for it. Where that fails, map and values remain. */
   function modelOf(root, dt) {
-    const { Scene, draws3D } = globalThis.stage;
-    const [button, status, shown] = [".play", "[role=status]", ".shown"].map((name) =>
-      root.querySelector(name),
-    );
-    const scene = new Scene(root);
+    const [button, shown] = [".play", ".shown"].map((name) => root.querySelector(name));
+    const scene = new globalThis.stage.Scene(root);
     let chosen;
 
     function pose(cell) {
@@ -119,22 +96,11 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     button.addEventListener("click", async () => {
-      if (!draws3D()) {
-        status.textContent = "This browser draws no 3D: its WebGL 2 is missing or turned off. The map and its values do not need it.";
-        return;
-      }
       button.disabled = true;
-      button.textContent = status.textContent = "Loading …";
-      try {
-        await scene.load();
-        button.hidden = true;
-        status.textContent = "Turn the view with the mouse, a finger or the arrow keys. The yellow cross is at the target.";
-        pose(chosen);
-      } catch {
-        button.textContent = "Show in 3D";
-        status.textContent = "The robot cannot be shown: a file is missing or cannot be read. The map and its values do not need it.";
-      }
+      await scene.open("robot", "The map and its values do not need it.");
       button.disabled = false;
+      button.hidden = Boolean(scene.viewer);
+      pose(chosen);
     });
     button.hidden = false;
     return pose;
@@ -144,14 +110,14 @@ document.addEventListener("DOMContentLoaded", () => {
     const find = (name) => root.querySelector(name);
     const [which, measure, predict] = ["map", "measure", "predict"].map((n) => find(`[name=${n}]`));
     const [question, output] = [".question", "output"].map(find);
-    const table = make(find(".cells"), "table", "", { class: "map" });
+    const table = add(find(".cells"), "table", { class: "map" });
     const view = data.curves ? curvesOf(root, data.curves) : modelOf(root, data.dt);
     for (const map of data.maps) for (const cell of cellsOf(map)) cell.map = map;
     const all = data.maps.flatMap(cellsOf);
     let open; // the map that the table shows
     let places; // its cells in the table
     let chosen = all.find((cell) => cell.opens) ?? all[0];
-    let shown = chosen; // it differs from `chosen` while a question is open
+    let shown = null; // it differs from `chosen` while a question is open
     let last = null; // the run before, drawn as a ghost
     let asked = 0; // how many questions were answered or skipped
 
@@ -170,7 +136,7 @@ document.addEventListener("DOMContentLoaded", () => {
         const { name, tag, state, texts, numbers } = cell;
         const before = cell === compared;
         place.textContent = texts[k];
-        if (tag) place.prepend(make(place, "b", tag), " ");
+        if (tag) place.prepend(add(place, "b", {}, tag), " ");
         place.setAttribute( // it begins with the text of the cell
           "aria-label",
           `${tag ? `${tag} ` : ""}${texts[k]} ${data.measures[k].label}` +
@@ -220,7 +186,7 @@ document.addEventListener("DOMContentLoaded", () => {
       legend.textContent = `From ${from} to ${to}: what happens to the ${about.noun}?`;
       question.replaceChildren(legend);
       for (const [key, word] of [...Object.entries(words), ["", "Skip"]]) {
-        make(question, "button", word, { type: "button" }).addEventListener("click", () => {
+        add(question, "button", { type: "button" }, word).addEventListener("click", () => {
           answer(about, at, key, words);
         });
       }
@@ -246,10 +212,6 @@ document.addEventListener("DOMContentLoaded", () => {
       question.hidden = true;
       writeMap();
       output.textContent = feedback + shown.sentence;
-      writeShown();
-    }
-
-    function writeShown() {
       writeValues(root, shown.values, last?.values);
       view(shown, last);
     }
@@ -265,9 +227,7 @@ document.addEventListener("DOMContentLoaded", () => {
     predict?.addEventListener("change", () => {
       if (!question.hidden) show("");
     });
-    writeMap();
-    output.textContent = shown.sentence;
-    writeShown();
+    show("");
   }
 
   /* Bytes of a PNG, four for each pixel. */
@@ -275,18 +235,13 @@ document.addEventListener("DOMContentLoaded", () => {
     const image = new Image();
     image.src = `data:image/png;base64,${text}`;
     await image.decode();
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+    const canvas = new OffscreenCanvas(image.width, image.height);
     const brush = canvas.getContext("2d", { willReadFrequently: true });
     brush.drawImage(image, 0, 0);
-    return brush.getImageData(0, 0, canvas.width, canvas.height).data;
+    return brush.getImageData(0, 0, image.width, image.height).data;
   }
 
   const dot = (a, b) => a.reduce((sum, value, k) => sum + value * b[k], 0);
-  const write = (value, digits) => {
-    const rounded = Number(value.toFixed(digits)) + 0; // without the sign of a negative zero
-    return rounded.toFixed(digits).replace("-", "−");
-  };
 
   /* Reads depth, point and closed form of a pixel from the arrays of a recorded view. */
   async function startPicture(root, { size, K, pose, unit, names, planes, spheres, frames }) {

@@ -5,25 +5,16 @@
 globalThis.memory = (() => {
   const STORE = "robo-genesis";
   const page = location.pathname.split("/").slice(-3).join("/");
-
-  function read() {
-    try {
-      return JSON.parse(localStorage.getItem(STORE)) ?? {};
-    } catch {
-      return {};
-    }
+  let store; // undefined where the browser keeps nothing
+  try {
+    store = localStorage;
+  } catch {
+    // it is turned off
   }
 
-  /* Returns whether the browser keeps it. */
-  function write(all) {
-    try {
-      localStorage.setItem(STORE, JSON.stringify(all));
-      return true;
-    } catch {
-      return false;
-    }
-  }
-
+  const read = () => JSON.parse(store?.getItem(STORE) ?? "{}");
+  const write = (all) => store?.setItem(STORE, JSON.stringify(all));
+  const forget = () => store?.removeItem(STORE);
   const ofPage = (all) => ((all.pages ??= {})[page] ??= {});
 
   /* A value of this page by its name. */
@@ -35,21 +26,14 @@ globalThis.memory = (() => {
     write(all);
   }
 
-  function forget() {
-    try {
-      localStorage.removeItem(STORE);
-    } catch {
-      // nothing was kept
-    }
-  }
-
-  return { read, write, kept, keep, forget, page };
+  return { read, write, kept, keep, forget, keeps: Boolean(store) };
 })();
 
 document.addEventListener("DOMContentLoaded", () => {
-  const { read, write, kept, keep, forget, page } = globalThis.memory;
+  const { read, write, kept, keep, forget, keeps } = globalThis.memory;
   const article = document.querySelector("article");
   const title = article?.querySelector("h1")?.firstChild?.textContent;
+  const make = (name, properties) => Object.assign(document.createElement(name), properties);
 
   /* Answers by the text of their question, which stays when questions move: the number of the option,
      or what was typed. The scripts of questions and replays treat them as given, without a word. */
@@ -57,10 +41,9 @@ document.addEventListener("DOMContentLoaded", () => {
   const asked = (question) => question.querySelector("legend").textContent.trim();
   for (const question of document.querySelectorAll("fieldset.choice")) {
     const answer = kept(asked(question));
-    if (answer === undefined) continue;
     const inputs = inputsOf(question);
     const input = inputs[0].type === "number" ? inputs[0] : inputs[answer];
-    if (!input) continue;
+    if (answer === undefined || !input) continue;
     if (input.type === "radio") input.checked = true;
     else input.value = answer;
     const given = new CustomEvent("change", { bubbles: true, detail: "kept" });
@@ -75,11 +58,10 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* The home page: where to go on, what is finished, and how to forget it. */
   const place = document.querySelector(".memory");
-  const all = read();
-  if (place) {
-    if (!all.last) return;
-    const go = Object.assign(document.createElement("a"), { href: all.last.href, textContent: all.last.title });
-    const away = Object.assign(document.createElement("button"), { type: "button", textContent: "Forget all" });
+  const { last, pages } = read();
+  if (place && last) {
+    const go = make("a", { href: last.href, textContent: last.title });
+    const away = make("button", { type: "button", textContent: "Forget all" });
     away.addEventListener("click", () => {
       forget();
       place.replaceChildren("Forgotten.");
@@ -89,31 +71,26 @@ document.addEventListener("DOMContentLoaded", () => {
     place.append("Continue where you left off: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
     for (const link of document.querySelectorAll(".course-map .time a")) {
       const name = new URL(link.href).pathname.split("/").slice(-3).join("/");
-      if (!all.pages?.[name]?.finished) continue;
-      link.after(Object.assign(document.createElement("span"), { className: "finished", textContent: " ✓ finished" }));
+      if (!pages?.[name]?.finished) continue;
+      link.after(make("span", { className: "finished", textContent: " ✓ finished" }));
     }
-    return;
   }
 
   /* The link to the form for feedback names the section at the top of the window. */
   const report = document.querySelector(".report a");
-  const address = report && new URL(report.href);
-  const reported = address?.searchParams.get("page");
+  const address = report?.href; // it ends with the page
   report?.addEventListener("click", () => {
-    const above = [...article.querySelectorAll("h2, h3")].filter((one) => one.getBoundingClientRect().top < 200);
-    const section = above.at(-1)?.firstChild.textContent ?? title;
-    address.searchParams.set("page", `${reported}, "${section}"`);
-    report.href = address;
+    const headings = [...article.querySelectorAll("h1, h2, h3")];
+    const above = headings.findLast((one) => one.getBoundingClientRect().top < 200) ?? headings[0];
+    report.href = address + encodeURIComponent(`, "${above.firstChild.textContent}"`);
   });
 
   /* A page of a lesson: it is the last one, and its end offers to mark it. */
-  if (!article || !/\/lessons\//.test(location.pathname)) return;
-  if (!write({ ...all, last: { href: location.href.split("#")[0], title } })) return;
-  const box = Object.assign(document.createElement("input"), { type: "checkbox", id: "finished" });
-  box.checked = Boolean(kept("finished"));
+  if (!article || !keeps || !/\/lessons\//.test(location.pathname)) return;
+  write({ ...read(), last: { href: location.href.split("#")[0], title } });
+  const box = make("input", { type: "checkbox", id: "finished", checked: kept("finished") });
   box.addEventListener("change", () => keep("finished", box.checked || undefined));
-  const label = Object.assign(document.createElement("label"), { htmlFor: box.id, textContent: " I have finished this page" });
-  const line = Object.assign(document.createElement("p"), { className: "finish-page" });
-  line.append(box, label);
+  const line = make("p", { className: "finish-page" });
+  line.append(box, make("label", { htmlFor: box.id, textContent: " I have finished this page" }));
   article.append(line);
 });

@@ -1,4 +1,4 @@
-/* Curves over time in an SVG, for the replay and the explorer. */
+/* Curves over time in an SVG, and what else adds elements, for the replay and the explorer. */
 "use strict";
 
 globalThis.timePlot = (() => {
@@ -6,31 +6,25 @@ globalThis.timePlot = (() => {
   const EDGE = { left: 52, right: 18, top: 24, bottom: 22 };
   const APART = 12; // from a name to the nearest other curve, at least [px]
   const TRIED = 60; // places for a name along a curve
-  let clips = 0; // how many plots were drawn
 
-  function add(parent, name, attributes, text = "") {
-    const element = document.createElementNS(SVG, name);
+  /* Adds an element with attributes and a text; in an SVG it is one of its own. */
+  function add(parent, name, attributes = {}, text = "") {
+    const element = document.createElementNS(name === "svg" ? SVG : parent.namespaceURI, name);
     for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
     element.textContent = text;
     parent.append(element);
     return element;
   }
 
-  /* A number as text, with a typographic minus sign. */
-  const write = (value, digits) => value.toFixed(digits).replace("-", "−");
+  /* A number as text, with a typographic minus sign, which a zero has not. */
+  const write = (value, digits) => (Number(value.toFixed(digits)) + 0).toFixed(digits).replace("-", "−");
 
   /* How far a curve is from a height, where it is below or above a name: 0 if it crosses the height. */
-  function distance(points, [from, to], height) {
-    let least = Infinity;
-    points.forEach(([x, y], k) => {
-      const [before, beside] = points[k - 1] ?? [x, y];
-      if (x < from || before > to) return;
-      const at = (place) => (x === before ? y : beside + ((y - beside) * (place - before)) / (x - before));
-      const [one, other] = [Math.max(before, from), Math.min(x, to)].map((place) => at(place) - height);
-      least = Math.min(least, one * other <= 0 ? 0 : Math.min(Math.abs(one), Math.abs(other)));
-    });
-    return least;
-  }
+  const distance = (points, [from, to], height) => Math.min(...points.map(([x, y], k) => {
+    const [before, beside] = points[k - 1] ?? [x, y];
+    if (x < from || before > to) return Infinity;
+    return Math.max(Math.min(y, beside) - height, height - Math.max(y, beside), 0);
+  }));
 
   /* Writes the name of a curve beside it, where the others are farthest and none of `names` is; adds
      the text, its place and its sample to them. Where all curves lie close together, no name would say
@@ -58,7 +52,7 @@ globalThis.timePlot = (() => {
       }
     }
     if (!best.weight) return;
-    const place = { x: best.middle, y: best.height + 4, class: `name middle ${mark}` };
+    const place = { x: best.middle, y: best.height + 4, "text-anchor": "middle", class: `name ${mark}` };
     names.push({ ...best, text: add(svg, "text", place, name) });
   }
 
@@ -85,24 +79,21 @@ globalThis.timePlot = (() => {
       const at = x(share * end);
       add(svg, "line", { x1: at, x2: at, y1: EDGE.top, y2: floor, class: "grid" });
       const label = write(share * end, digits) + (share === 0 ? " s" : "");
-      add(svg, "text", { x: at, y: height - 6, class: "middle" }, label);
+      add(svg, "text", { x: at, y: height - 6, "text-anchor": "middle" }, label);
     }
     for (const { value, label } of ticks) {
       if (!value) add(svg, "line", { x1: x(0), x2: x(end), y1: y(0), y2: y(0), class: "grid" });
-      add(svg, "text", { x: EDGE.left - 6, y: y(value) + 4, class: "end" }, label);
+      add(svg, "text", { x: EDGE.left - 6, y: y(value) + 4, "text-anchor": "end" }, label);
     }
     for (const { value, mark } of levels) {
       add(svg, "line", { x1: x(0), x2: x(end), y1: y(value), y2: y(value), class: `level ${mark}` });
     }
-    clips += 1;
-    const clip = `clip-${clips}`; // what is above the axis is not drawn
-    add(add(svg, "clipPath", { id: clip }), "rect", { x: 0, y: EDGE.top - 2, width, height });
     const placed = curves.map(({ times, values, ...curve }) => (
       { ...curve, points: values.map((v, k) => [x(times[k]), y(v)]) }
     ));
     const lines = placed.map(({ mark, chosen, points }) => {
       const pairs = points.map((pair) => pair.map((pixels) => pixels.toFixed(1)).join());
-      const line = { "clip-path": `url(#${clip})`, class: `curve ${mark}${chosen ? " chosen" : ""}`, points: pairs.join(" ") };
+      const line = { class: `curve ${mark}${chosen ? " chosen" : ""}`, points: pairs.join(" ") };
       return { line: add(svg, "polyline", line), points: pairs };
     });
     const names = [];

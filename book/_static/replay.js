@@ -6,7 +6,7 @@
 /* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const { add, write } = globalThis.timePlot;
-  const { Scene, draws3D } = globalThis.stage;
+  const { Scene } = globalThis.stage;
   const { kept, keep } = globalThis.memory;
   const HEIGHT = 150;
   const STRIDE = 5; // samples that one press advances where reduced motion is preferred
@@ -41,19 +41,16 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* Draws one plot of all cases; returns the function that moves its cursor, and shows the part of
      the curves that was seen. */
-  function draw(svg, { curves, chosen, levels, title, top: highest }) {
+  function draw(svg, { curves, levels, title, top: highest }) {
     const drawn = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
-    const all = [...Object.values(curves).flatMap((c) => c.values), ...drawn.map((l) => l.value)]
+    const all = [...curves.flatMap((c) => c.values), ...drawn.map((l) => l.value)]
       .filter((value) => value <= (highest ?? Infinity));
     const [least, most] = [Math.min(...all), Math.max(...all)];
     const margin = 0.08 * (most - least || 1); // a constant value also needs a range
-    const { times, values, mark } = curves[chosen];
+    const { times, values, mark } = curves.find(({ chosen }) => chosen);
     const { x, y, floor, top, share, grow } = globalThis.timePlot.draw(svg, {
-      title, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
+      title, curves, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
       end: times.at(-1),
-      curves: Object.entries(curves).map(([name, curve], k, { length }) => (
-        { ...curve, name: length > 1 ? name : "", chosen: name === chosen }
-      )),
       ticks: tickValues(least, most).map((value) => ({
         value, label: value ? value.toPrecision(3).replace("-", "−") : "0",
       })),
@@ -77,26 +74,6 @@ document.addEventListener("DOMContentLoaded", () => {
   const questionAbove = (root) => [...document.querySelectorAll("fieldset.choice")]
     .findLast((one) => one.compareDocumentPosition(root) & Node.DOCUMENT_POSITION_FOLLOWING);
 
-  const veils = new Map(); // explorer → number of the replays above it that wait for an answer
-
-  /* Hides a later explorer of the same runs, and says why. */
-  function veil(explorer) {
-    veils.set(explorer, (veils.get(explorer) ?? 0) + 1);
-    if (veils.get(explorer) > 1) return;
-    explorer.classList.add("veiled");
-    const note = document.createElement("p");
-    note.className = "veil";
-    note.textContent = "This shows the runs of the replays above. Answer their questions and play them first.";
-    explorer.before(note);
-  }
-
-  function unveil(explorer) {
-    veils.set(explorer, veils.get(explorer) - 1);
-    if (veils.get(explorer)) return;
-    explorer.classList.remove("veiled");
-    explorer.previousElementSibling.remove();
-  }
-
   function start(root) {
     const { subject, thing } = root.dataset;
     const channels = JSON.parse(root.dataset.channels);
@@ -104,8 +81,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const radios = [...root.querySelectorAll("input[type=radio]")];
     const runs = read(root, radios, channels);
     const [slider, speed] = ["input[type=range]", "select"].map((name) => root.querySelector(name));
-    const [play, status, shown] = [".play", "[role=status]", ".shown"]
-      .map((name) => root.querySelector(name));
+    const [play, shown] = [".play", ".shown"].map((name) => root.querySelector(name));
     const scene = new Scene(root);
     const [terms, texts, places] = ["dt", "dd", ".plot"].map((name) => root.querySelectorAll(name));
     const svgs = [...places].map((place) => add(place, "svg", { role: "img" }));
@@ -118,9 +94,8 @@ document.addEventListener("DOMContentLoaded", () => {
     const blind = block.classList.contains("growing") && !kept(root.dataset.name);
     const question = blind && questionAbove(root);
     let seen = blind ? 0 : last;
-    const veiled = []; // explorers of the same runs
     let cursors = [];
-    let began = null; // {clock, time}: when playing started [ms], and at which time of the run [s]
+    let playing = null; // {clock, time}: of the last frame [ms], and the time of the run there [s]
     let frame = 0; // the request for the next frame while playing
     let loading = false;
 
@@ -174,14 +149,15 @@ document.addEventListener("DOMContentLoaded", () => {
       if (!places[0].clientWidth) return showSample(); // they are hidden, and drawn when they show
       const { levels } = run();
       cursors = channels.map(({ name, unit, top }, k) => {
-        const curves = Object.fromEntries(Object.entries(runs).map(([one, { time, values, mark }]) => [
-          one, { times: time.slice(0, last + 1), values: values[k].slice(0, last + 1), mark },
-        ]));
+        const curves = Object.entries(runs).map(([one, { time, values, mark }]) => ({
+          times: time.slice(0, last + 1), values: values[k].slice(0, last + 1), mark,
+          name: radios.length > 1 ? one : "", chosen: one === chosen(),
+        }));
         const title = `${capital(name)} [${unit}]`;
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
         svgs[k].setAttribute("aria-label", about);
         const drawn = levels.filter(({ channel }) => channel === name);
-        return draw(svgs[k], { curves, chosen: chosen(), levels: drawn, title, top });
+        return draw(svgs[k], { curves, levels: drawn, title, top });
       });
       showSample();
     }
@@ -194,12 +170,11 @@ document.addEventListener("DOMContentLoaded", () => {
       question?.classList.remove("waits");
       question?.querySelector("input:checked, input[type=number]")
         ?.dispatchEvent(new Event("change", { bubbles: true }));
-      veiled.splice(0).forEach(unveil);
       drawPlots();
     }
 
     function stop() {
-      began = null;
+      playing = null;
       cancelAnimationFrame(frame);
       label();
       showSample(); // back onto a sample of the record
@@ -207,60 +182,48 @@ document.addEventListener("DOMContentLoaded", () => {
 
     function label() {
       const step = `Next ${(STRIDE * run().time[1]).toFixed(timeDigits)} s`;
-      play.textContent = calm.matches ? step : began ? "Pause" : "Play";
+      play.textContent = calm.matches ? step : playing ? "Pause" : "Play";
       speed.closest("p").hidden = calm.matches;
     }
 
     function advance(clock) {
       const { time } = run();
-      began.clock ??= clock;
-      const now = began.time + ((clock - began.clock) / 1000) * Number(speed.value);
-      slider.value = Math.min(Math.floor(now / time[1] + 1e-6), last);
-      if (now >= time[last]) return stop();
-      showSample(now);
+      playing.time += ((clock - (playing.clock ?? clock)) / 1000) * Number(speed.value);
+      playing.clock = clock;
+      slider.value = Math.min(Math.floor(playing.time / time[1] + 1e-6), last);
+      if (playing.time >= time[last]) return stop();
+      showSample(playing.time);
       frame = requestAnimationFrame(advance);
     }
 
     /* Loads the model. Where that fails, the plots play alone. */
     async function load() {
-      if (!draws3D()) {
-        status.textContent = "This browser draws no 3D: its WebGL 2 is missing or turned off. The plots show the same runs.";
-        return;
-      }
       loading = true;
-      play.textContent = status.textContent = "Loading …";
-      try {
-        await scene.load();
-        nameCase();
-        status.textContent = "Turn the view with the mouse, a finger or the arrow keys.";
-      } catch {
-        status.textContent = `The ${thing} cannot be shown: a file is missing or cannot be read. The plots show the same runs.`;
-      }
+      play.textContent = "Loading …";
+      await scene.open(thing, "The plots show the same runs.");
       loading = false;
+      nameCase();
       label();
     }
 
     play.addEventListener("click", async () => {
       if (loading) return;
-      if (!scene.viewer && !began) await load();
+      if (!scene.viewer && !playing) await load();
       if (sample() === last) slider.value = 0;
       else if (calm.matches) slider.value = sample() + STRIDE;
       if (calm.matches) return showSample();
-      if (began) return stop();
-      began = { clock: null, time: run().time[sample()] };
+      if (playing) return stop();
+      playing = { time: run().time[sample()] };
       label();
       frame = requestAnimationFrame(advance);
     });
 
     function jump() {
-      if (began) stop();
+      if (playing) stop();
       showSample();
       if (!scene.viewer && !loading) load(); // the picture shows the start
     }
     slider.addEventListener("input", jump);
-    speed.addEventListener("change", () => {
-      if (began) began = { clock: null, time: run().time[sample()] };
-    });
     rest?.addEventListener("click", () => {
       slider.max = last = all;
       seen = all;
@@ -273,7 +236,7 @@ document.addEventListener("DOMContentLoaded", () => {
       jump();
     });
     for (const radio of radios) radio.addEventListener("change", drawPlots);
-    calm.addEventListener("change", () => (began ? stop() : label()));
+    calm.addEventListener("change", () => (playing ? stop() : label()));
 
     slider.max = last;
     for (const part of [play, root.querySelector(".panel")]) part.hidden = false;
@@ -282,17 +245,12 @@ document.addEventListener("DOMContentLoaded", () => {
     if (question) {
       question.classList.add("waits");
       question.addEventListener("change", ({ target }) => {
-        if (!target.value) return;
-        block.classList.remove("veiled");
-        drawPlots();
+        if (target.value) block.classList.remove("veiled");
       });
       root.querySelector(".veil button").addEventListener("click", () => {
         reveal();
         play.focus({ preventScroll: true });
       });
-      veiled.push(...[...document.querySelectorAll(".explorer:has(.plots)")]
-        .filter((one) => block.compareDocumentPosition(one) & Node.DOCUMENT_POSITION_FOLLOWING));
-      veiled.forEach(veil);
     }
     label();
     new ResizeObserver(drawPlots).observe(root.querySelector(".plots"));

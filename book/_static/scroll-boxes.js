@@ -8,7 +8,6 @@
     pre: "Code",
     ".pst-scrollable-table-container": "Table",
     ".cell_output > .output": "Output",
-    figure: null, // its caption is its name
   };
   const BOXES = Object.keys(NAMES).map((kind) => `main :is(${kind})`).join(", ");
 
@@ -22,14 +21,10 @@
 
   function mark(box) {
     const name = NAMES[Object.keys(NAMES).find((kind) => box.matches(kind))];
-    if (scrolls(box)) {
-      box.tabIndex = 0;
-      if (name) {
-        box.setAttribute("role", "group");
-        box.setAttribute("aria-label", name);
-      }
-    } else {
-      for (const attribute of ["tabindex", "role", "aria-label"]) box.removeAttribute(attribute);
+    const scrolling = scrolls(box);
+    for (const [key, value] of [["tabindex", 0], ["role", "group"], ["aria-label", name]]) {
+      if (scrolling) box.setAttribute(key, value);
+      else box.removeAttribute(key);
     }
   }
 

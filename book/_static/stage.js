@@ -4,20 +4,19 @@
 
 globalThis.stage = (() => {
   /* Adds a script once for all replays of the page; a script that failed is added again. */
-  const requested = new Map();
+  const requested = {};
   function script(source) {
-    const adding = () => new Promise((resolve, reject) => {
+    requested[source] ??= new Promise((resolve, reject) => {
       const element = document.createElement("script");
       element.src = source;
       element.onload = resolve;
-      element.onerror = () => {
-        requested.delete(source);
-        reject(new Error(source));
+      element.onerror = (event) => {
+        delete requested[source];
+        reject(event);
       };
       document.head.append(element);
     });
-    if (!requested.has(source)) requested.set(source, adding());
-    return requested.get(source);
+    return requested[source];
   }
 
   /* The viewer needs WebGL 2: without it, the viewer would report success and show nothing. */
@@ -43,6 +42,22 @@ globalThis.stage = (() => {
       this.viewer = null;
     }
 
+    /* Loads the model, and tells the reader how that went: without it there are `others`. */
+    async open(what, others) {
+      const status = this.root.querySelector("[role=status]");
+      if (!draws3D()) {
+        status.textContent = `This browser draws no 3D: its WebGL 2 is missing or turned off. ${others}`;
+        return;
+      }
+      status.textContent = "Loading …";
+      try {
+        await this.load();
+        status.textContent = "Turn the view with the mouse, a finger or the arrow keys.";
+      } catch {
+        status.textContent = `The ${what} cannot be shown: a file is missing or cannot be read. ${others}`;
+      }
+    }
+
     async load() {
       const { viewer, model, name, alt, orbit, target } = this.root.dataset;
       await Promise.all([script(viewer), script(model)]);
@@ -58,17 +73,14 @@ globalThis.stage = (() => {
         src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
       };
       for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);
-      const loaded = new Promise((resolve, reject) => {
-        element.addEventListener("load", resolve, { once: true });
-        element.addEventListener("error", (event) => reject(event.detail), { once: true });
+      await new Promise((resolve, reject) => {
+        element.addEventListener("load", resolve);
+        element.addEventListener("error", (event) => {
+          element.remove();
+          reject(event.detail);
+        });
+        stage.append(element);
       });
-      stage.append(element);
-      try {
-        await loaded;
-      } catch (error) {
-        element.remove();
-        throw error;
-      }
       stage.classList.add("loaded");
       this.viewer = element;
     }
@@ -93,5 +105,5 @@ globalThis.stage = (() => {
     }
   }
 
-  return { Scene, draws3D };
+  return { Scene };
 })();

@@ -29,10 +29,6 @@ VARIABLES = {
     },
 }
 
-# Width above which a drawing is not made for a phone: it scrolls sideways there [CSS
-# px].
-WIDE = 480
-
 DRAWING = re.compile(r"\.svg$")
 
 # What a page gets no part of; a style sheet, for example, would apply to all of it.
@@ -69,7 +65,7 @@ def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
         if "<image" not in text:
             width, height = image_size(file)
             attributes = {
-                "class": "drawing wide" if width > WIDE else "drawing",
+                "class": "drawing",
                 "role": "img",
                 "aria-label": str(image.get("alt", "")),
                 "data-file": address,

@@ -15,7 +15,7 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.markup import filled
-from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, css_name
+from robo_genesis.core.palette import MARKS, PARTS, css_name
 from robo_genesis.lessons import course_marks
 from robo_genesis.site.evidence.origin import above
 from robo_genesis.site.figures import case_labels
@@ -40,7 +40,7 @@ def css() -> str:
     """Return the style sheet of the palette."""
     marks = {css_name(name): mark for name, mark in MARKS.items()}
     colours = marks | {f"figure-{name}": part for name, part in PARTS.items()}
-    return filled(SHEET, marks=marks, colours=colours, cases=CASE_CLASSES.values())
+    return filled(SHEET, marks=marks, colours=colours)
 
 
 class MarkCases(SphinxPostTransform):

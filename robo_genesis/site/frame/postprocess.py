@@ -26,7 +26,7 @@ NEEDED_BY: dict[str, set[str]] = {
     "explorer.js": {"explorer"},
     "fontawesome.js": set(),
     "language_data.js": {"search-results"},
-    "plot.js": {"plots", "replay"},
+    "plot.js": {"explorer", "replay"},
     "replay.js": {"replay"},
     "search-from-disk.js": {"search-results"},
     "searchindex.js": {"search-results"},

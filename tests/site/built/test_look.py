@@ -106,7 +106,7 @@ def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, ad
     page = browser.new_page(viewport={"width": 390, "height": 800})
     page.goto(f"{address}/{LECTURE}")
     sizes = page.eval_on_selector_all(
-        "article svg.drawing:not(.wide)",
+        "article svg.drawing",
         """drawings => drawings.filter(one => one.checkVisibility()).map(one => {
           const { left, right, width } = one.getBoundingClientRect();
           const texts = [...one.querySelectorAll("text")];

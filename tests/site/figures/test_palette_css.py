@@ -7,9 +7,8 @@ from docutils.utils import new_document
 from robo_genesis.site.figures import palette_css
 
 
-def test_the_line_in_a_table_has_the_colour_of_the_plot():
-    rule = "{\n  background: var(--case-g2);\n}"
-    assert f".case-mark.case-g2::before {rule}" in palette_css.css()
+def test_a_mark_has_one_colour_everywhere():
+    assert ".case-g2 {\n  --ink: var(--case-g2);\n}" in palette_css.css()
 
 
 def marked(*children: nodes.Node) -> tuple[str, list[tuple[str, list[str]]]]:
