@@ -30,6 +30,11 @@ def test_channels_are_position_and_velocity_of_the_record_along_each_axis():
     assert (list(found.levels), found.subject) == ([], "the box")
 
 
+def test_runs_with_other_times_are_refused():
+    with pytest.raises(ValueError, match="take one grid"):
+        runs(high=HIGH, low=falling(1.0, dt=0.02))
+
+
 DROP = G * 0.3**2 / 2
 
 
