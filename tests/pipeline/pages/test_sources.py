@@ -247,11 +247,10 @@ CHANGES = [
 CHANGES += [  # a lesson can be removed with the folder of its tests alone
     (file, CONSTANT, run_again, using)
     for file, run_again, using in (
-        # The laws of all bodies import it; only these lessons measure with it.
         (
             "sim/bodies/contacts",
             ("l01", "l02", "l03", "l07", "l08"),
-            ("l03", "l07", "l08"),
+            ("l01", "l02", "l03", "l07", "l08"),
         ),
         ("lessons/l03/metrics", ("l03",), ("l03",)),
     )
