@@ -87,7 +87,8 @@ globalThis.stage = (() => {
 
     /* Shows a share of the copies at the target, whose material alone is translucent. */
     fade(share) {
-      const copies = this.viewer?.model?.materials.find((one) => one.getAlphaMode() === "BLEND");
+      const copies = this.viewer?.model?.materials
+        .find((one) => one.isLoaded && one.getAlphaMode() === "BLEND");
       const look = copies?.pbrMetallicRoughness;
       this.opacity ??= look?.baseColorFactor[3];
       look?.setBaseColorFactor([...look.baseColorFactor.slice(0, 3), this.opacity * share]);
