@@ -27,10 +27,6 @@ from robo_genesis.pipeline import npm
 
 LOGGER = logging.getLogger(__name__)
 
-# latex2mathml knows `split` and `align*`, which align the same way; the numbers are
-# Sphinx's own.
-ENVIRONMENTS = {"aligned": "split", "align": "align*", "equation": "equation*"}
-
 # MathML Core, which browsers implement, has neither `columnalign` nor bold variants.
 FOR_BROWSERS = {
     r'columnalign="(left|right|center)"': r'style="text-align: \1"',
@@ -82,8 +78,7 @@ def to_mathml(latex: str, display: str) -> str:
         ValueError: the formula is not balanced, uses an unknown command, or a character
             that the site's math font lacks.
     """
-    for name, known in ENVIRONMENTS.items():
-        latex = re.sub(rf"\\(begin|end)\{{{name}\}}", rf"\\\1{{{known}}}", latex)
+    latex = latex.replace("{aligned}", "{split}")  # which latex2mathml knows
     try:
         tree = ElementTree.fromstring(
             convert(latex, display=display).replace(NAMESPACE, "")
