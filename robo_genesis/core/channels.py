@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.trace import BodyTrace, Trace
+from .scene import FloatArray
+from .trace import BodyTrace, Trace
 
 MEASURES = False
 

@@ -14,8 +14,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from robo_genesis.core.check_spec import MASS_SHARE
-from robo_genesis.core.text import quoted
+from .check_spec import MASS_SHARE
+from .text import quoted
 
 Subject = TypeVar("Subject")
 Value = bool | int | float | str | None

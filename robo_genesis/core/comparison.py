@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.text import six_digits
+from .metrics import CaseMetrics
+from .text import six_digits
 
 HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"
 

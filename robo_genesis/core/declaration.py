@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
-from robo_genesis.core.channels import Replay
-from robo_genesis.core.experiment import MeasuringPage
-from robo_genesis.core.metrics import CaseMetrics
+from .channels import Replay
+from .experiment import MeasuringPage
+from .metrics import CaseMetrics
 
 MEASURES = False
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from jinja2 import Environment
 
-from robo_genesis.core.files import write_whole
-from robo_genesis.core.text import printable
+from .files import write_whole
+from .text import printable
 
 Cells = tuple[str, ...]
 

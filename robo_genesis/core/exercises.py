@@ -7,7 +7,7 @@ from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 
-from robo_genesis.core.checks import (
+from .checks import (
     Check,
     CheckFailed,
     Finding,
@@ -15,8 +15,8 @@ from robo_genesis.core.checks import (
     at_most,
     equal,
 )
-from robo_genesis.core.experiment import Experiment, MeasuringPage, counts
-from robo_genesis.core.scene import FloatArray
+from .experiment import Experiment, MeasuringPage, counts
+from .scene import FloatArray
 
 MEASURES = False
 

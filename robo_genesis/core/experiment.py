@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, evaluate
-from robo_genesis.core.metrics import ENGINE, CaseMetrics, Kind, Record, record
-from robo_genesis.core.trace import TimeSeries
+from .checks import Check, Finding, evaluate
+from .metrics import ENGINE, CaseMetrics, Kind, Record, record
+from .trace import TimeSeries
 
 
 @dataclass(frozen=True, slots=True)

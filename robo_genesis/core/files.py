@@ -16,7 +16,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.project import CACHE, ProjectError, installed, lock_digest
+from .project import CACHE, ProjectError, installed, lock_digest
 
 NEXT, OLD = ".next", ".old"
 KEPT = 30 * 24 * 3600  # Seconds until an unused file is removed

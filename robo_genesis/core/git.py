@@ -4,8 +4,8 @@ import os
 import subprocess
 from pathlib import Path
 
-from robo_genesis.core.project import ProjectError
-from robo_genesis.core.text import quoted
+from .project import ProjectError
+from .text import quoted
 
 
 def git(root: Path, *arguments: str, **variables: str) -> str:

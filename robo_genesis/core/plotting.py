@@ -16,11 +16,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.rcsetup import cycler
 
-from robo_genesis.core.channels import Channel, Level
-from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.palette import MARKS, PARTS, marks_of
-from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.trace import BodyTrace, Trace
+from .channels import Channel, Level
+from .experiment import Experiment
+from .palette import MARKS, PARTS, marks_of
+from .scene import FloatArray
+from .trace import BodyTrace, Trace
 
 MEASURES = False
 

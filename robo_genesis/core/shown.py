@@ -12,7 +12,7 @@ from importlib import import_module
 from inspect import isfunction
 from typing import TYPE_CHECKING, Any
 
-from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
+from .palette import VALID_COLOURS, outside_the_palette
 
 if TYPE_CHECKING:  # a build without new runs draws nothing
     from matplotlib.figure import Figure
@@ -102,7 +102,7 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
     """
     from matplotlib.figure import Figure
 
-    from robo_genesis.core import plotting
+    from . import plotting
 
     function = find(name)
     with plotting.course_style():

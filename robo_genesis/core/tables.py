@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from typing import Any
 
-from robo_genesis.core import text
-from robo_genesis.core.checks import Check
-from robo_genesis.core.comparison import HELD_BY, Comparison
-from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.text import decimal, format_value
+from . import text
+from .checks import Check
+from .comparison import HELD_BY, Comparison
+from .experiment import Experiment
+from .metrics import CaseMetrics
+from .text import decimal, format_value
 
 MEASURES = False
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from robo_genesis.core.metrics import Stored, array
-from robo_genesis.core.scene import FloatArray
+from .metrics import Stored, array
+from .scene import FloatArray
 
 
 class TraceError(ValueError):

@@ -20,7 +20,8 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from robo_genesis.core.files import json_digest
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
+
+from .refusals import AGAIN, BundleRefused, expect
 
 SCHEMA_VERSION = 3
 MANIFEST, METRICS, ARRAYS = "manifest.json", "metrics.json", "arrays.json"

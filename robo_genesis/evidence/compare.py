@@ -10,12 +10,13 @@ from pathlib import Path
 
 from robo_genesis.core.comparison import Relation, differences
 from robo_genesis.core.text import quoted
-from robo_genesis.evidence import bundle, rows
-from robo_genesis.evidence.bundle import Manifest
-from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.rows import Section, Side, worst
-from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_lesson, find_page
+
+from . import bundle, rows
+from .bundle import Manifest
+from .refusals import BundleRefused
+from .rows import Section, Side, worst
+from .trace_files import read_any_trace
 
 SAME = "Both have the same cases, metrics, checks, labels and joints."
 NO_ORDERING = "The lesson claims no ordering."

@@ -8,17 +8,18 @@ from PIL import Image, UnidentifiedImageError
 
 from robo_genesis.core.experiment import Experiment, MeasuringPage
 from robo_genesis.core.trace import TraceError
-from robo_genesis.evidence.bundle import (
+from robo_genesis.lessons import find_page
+from robo_genesis.sim.camera.frames import FrameError, require_frame
+
+from .bundle import (
     ARRAYS,
     METRICS,
     Manifest,
     Metric,
     read_arrays,
 )
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
-from robo_genesis.evidence.trace_files import describe, read_joints, read_run
-from robo_genesis.lessons import find_page
-from robo_genesis.sim.camera.frames import FrameError, require_frame
+from .refusals import AGAIN, BundleRefused, expect, expect_equal
+from .trace_files import describe, read_joints, read_run
 
 
 def from_bundle(

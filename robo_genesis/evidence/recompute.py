@@ -3,16 +3,17 @@
 from pathlib import Path
 
 from robo_genesis.core.checks import FAILED
-from robo_genesis.evidence.bundle import (
+from robo_genesis.sim.backends import contradictions
+
+from .bundle import (
     MANIFEST,
     METRICS,
     Manifest,
     evidence_key,
     read_metrics,
 )
-from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, expect_equal
-from robo_genesis.sim.backends import contradictions
+from .reader import from_bundle
+from .refusals import AGAIN, BundleRefused, expect, expect_equal
 
 RELABEL = "Name the folder after the backend that computed."
 TORCH = (

@@ -18,13 +18,14 @@ from robo_genesis.core import project
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import replaced
 from robo_genesis.core.git import git_or_none
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.reader import write_frame
-from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.sim import session
 from robo_genesis.sim.backends import driver_version
 from robo_genesis.sim.camera.frames import Renderer
 from robo_genesis.sim.visual_shape import Part, write_shape
+
+from . import bundle
+from .reader import write_frame
+from .trace_files import write_traces
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"

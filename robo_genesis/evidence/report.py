@@ -9,9 +9,10 @@ from pathlib import Path
 from robo_genesis.core.comparison import differences
 from robo_genesis.core.document import Cells, Document, Part
 from robo_genesis.core.text import printable
-from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.evidence.rows import (
+
+from .compare import BundleComparison, compare
+from .refusals import BundleRefused
+from .rows import (
     DIFFERS,
     EQUAL,
     INCONCLUSIVE,

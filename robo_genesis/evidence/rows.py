@@ -18,7 +18,8 @@ from robo_genesis.core.comparison import (
 )
 from robo_genesis.core.text import quoted, six_digits
 from robo_genesis.core.trace import TimeSeries
-from robo_genesis.evidence.bundle import (
+
+from .bundle import (
     Arrays,
     Manifest,
     Metric,

@@ -21,7 +21,9 @@ from robo_genesis.core.trace import (
     Trace,
     TraceError,
 )
-from robo_genesis.evidence.bundle import (
+from robo_genesis.sim.arm.joints import JointMap
+
+from .bundle import (
     ARRAYS,
     Arrays,
     CaseArrays,
@@ -29,8 +31,7 @@ from robo_genesis.evidence.bundle import (
     Variable,
     write_json,
 )
-from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect_equal
-from robo_genesis.sim.arm.joints import JointMap
+from .refusals import AGAIN, BundleRefused, expect_equal
 
 Kind = TypeVar("Kind", bound=TimeSeries)
 

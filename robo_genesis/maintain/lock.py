@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robo_genesis.core.project import ROOT
-from robo_genesis.maintain.environment import LOCK, uv_environment
 from robo_genesis.pipeline.command import output_of
+
+from .environment import LOCK, uv_environment
 
 
 def write_lock(root: Path = ROOT, upgrade: Sequence[str] = ()) -> None:

@@ -15,10 +15,11 @@ from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.git import git
 from robo_genesis.core.project import ENGINE, PUBLISHED
-from robo_genesis.maintain import report as refresh
-from robo_genesis.maintain.lock import LOCK, write_lock
 from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.release import environment, worktree
+
+from . import report as refresh
+from .lock import LOCK, write_lock
 
 # What a change of the pin changes: measured results are never kept in the tree.
 FILES = ("pyproject.toml", LOCK)

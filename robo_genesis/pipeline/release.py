@@ -13,12 +13,13 @@ from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import BOOK, COMPILED, ROOT, ProjectError
 from robo_genesis.lessons import find_lesson
-from robo_genesis.pipeline.bundles.status import (
+
+from .bundles.status import (
     bundle_status,
     recorded_folders,
     recorded_status,
 )
-from robo_genesis.pipeline.command import end_with_parent
+from .command import end_with_parent
 
 # Variables of a surrounding make, which a make in a worktree must not get.
 OUTER = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "PYTHON", "GENESIS", "RELEASE")

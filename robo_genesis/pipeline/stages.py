@@ -13,21 +13,22 @@ from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle, settle_below
 from robo_genesis.core.git import require_history
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline import npm, up_to_date
-from robo_genesis.pipeline.bundles.page_bundles import verify_result
-from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, refused_records
-from robo_genesis.pipeline.bundles.verify import verify_bundle
-from robo_genesis.pipeline.command import TIMEOUT, Progress, say
-from robo_genesis.pipeline.html.address import described, site_address, site_root
-from robo_genesis.pipeline.html.checks import run_checks
-from robo_genesis.pipeline.html.publish import publish
-from robo_genesis.pipeline.html.render import LOG, render
-from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
-from robo_genesis.pipeline.pages.page_index import PageIndex
-from robo_genesis.pipeline.pages.results import PageResult, failure_report
-from robo_genesis.pipeline.pages.store import Verify, forget, places
-from robo_genesis.pipeline.release import missing_for_release
+
+from . import npm, up_to_date
+from .bundles.page_bundles import verify_result
+from .bundles.status import RECORDED_PAGE, refused_records
+from .bundles.verify import verify_bundle
+from .command import TIMEOUT, Progress, say
+from .html.address import described, site_address, site_root
+from .html.checks import run_checks
+from .html.publish import publish
+from .html.render import LOG, render
+from .pages.book import Page, find_pages
+from .pages.execute import execute_pages, kernel_environment
+from .pages.page_index import PageIndex
+from .pages.results import PageResult, failure_report
+from .pages.store import Verify, forget, places
+from .release import missing_for_release
 
 
 class BuildError(project.ProjectError):

@@ -16,9 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.text import ended
-from robo_genesis.sim import torch_probe
-from robo_genesis.sim.backends import DRIVERS, driver_version
-from robo_genesis.sim.diagnosis import DoubtError, StepError, StepResult, run_steps
+
+from . import torch_probe
+from .backends import DRIVERS, driver_version
+from .diagnosis import DoubtError, StepError, StepResult, run_steps
 
 PROBE_SECONDS = 180  # Until Torch must have answered
 

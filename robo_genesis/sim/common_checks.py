@@ -13,8 +13,9 @@ from robo_genesis.core.checks import (
     within,
 )
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.sim.arm.franka import JOINT_NAMES, MODEL_COUNTS
-from robo_genesis.sim.camera.frames import FrameError, require_frame
+
+from .arm.franka import JOINT_NAMES, MODEL_COUNTS
+from .camera.frames import FrameError, require_frame
 
 
 def structure(run: Experiment) -> Findings:

@@ -14,10 +14,11 @@ from robo_genesis.core import project, scene
 from robo_genesis.core.project import RENDER
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import TraceError
-from robo_genesis.sim import session
-from robo_genesis.sim.arm import franka, joint_control, model
-from robo_genesis.sim.arm import joints as robot_model
-from robo_genesis.sim.camera import frames as camera
+
+from . import session
+from .arm import franka, joint_control, model
+from .arm import joints as robot_model
+from .camera import frames as camera
 
 STEPPED_JOINT, ANGLE = (
     "joint4",

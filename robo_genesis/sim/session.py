@@ -17,8 +17,9 @@ import numpy as np
 from robo_genesis.core import project
 from robo_genesis.core.project import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
-from robo_genesis.sim.backends import contradictions
-from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
+
+from .backends import contradictions
+from .engine_log import EngineLog, remove_private_paths
 
 # Valid values of the variables of the contract; the first is the default.
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}

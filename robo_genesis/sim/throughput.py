@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from robo_genesis.sim.arm.joints import to_numpy
+from .arm.joints import to_numpy
 
 MIB = 2**20  # Bytes of one MiB
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.arm.kinematics import rotate
+
+from .arm.joints import to_numpy
+from .arm.kinematics import rotate
 
 FILE = "shape.npz"
 

@@ -2,10 +2,11 @@
 
 from robo_genesis.core.checks import Findings, at_most, equal
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l01 import machine, spec
 from robo_genesis.sim.bodies.checks import structure
 from robo_genesis.sim.bodies.laws import free_fall
 from robo_genesis.sim.common_checks import posture, stamps, start
+
+from . import machine, spec
 
 
 def computed_height(run: Experiment) -> Findings:

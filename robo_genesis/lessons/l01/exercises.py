@@ -4,8 +4,9 @@ from typing import Any
 
 from robo_genesis.core.checks import Findings, within
 from robo_genesis.core.exercises import Written, as_test
-from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim.bodies.free_fall import summed_drop
+
+from . import spec
 
 MEASURES = False
 

@@ -11,9 +11,10 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.experiment import Readings, counts
-from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim import diagnosis
 from robo_genesis.sim.fresh_process import last_value, run_python
+
+from . import spec
 
 # The doctor's steps in their order.
 STEPS = tuple(step.__name__ for step in diagnosis.STEPS)

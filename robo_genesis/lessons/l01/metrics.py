@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l01.spec import ASKED_STEPS
 from robo_genesis.sim.bodies.free_fall import continuous_gap, fallen, formula_error
 from robo_genesis.sim.bodies.rigid_bodies import Drop
+
+from .spec import ASKED_STEPS
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,9 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l01 import checks, machine, spec
-from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
+
+from . import checks, machine, spec
+from .metrics import FallMetrics, fall_metrics
 
 MEASURES = False
 

@@ -6,8 +6,9 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import look
-from robo_genesis.lessons.l01 import machine
 from robo_genesis.sim.bodies.free_fall import summed_drop
+
+from . import machine
 
 MEASURES = False
 

@@ -4,7 +4,8 @@ import textwrap
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l01 import spec
+
+from . import spec
 
 MEASURES = False
 

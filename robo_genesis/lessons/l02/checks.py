@@ -18,11 +18,12 @@ from robo_genesis.core.checks import (
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.checks import structure
 from robo_genesis.sim.bodies.free_fall import ahead_of_continuous, fallen
 from robo_genesis.sim.bodies.laws import free_fall
 from robo_genesis.sim.common_checks import posture, stamps, start
+
+from . import spec
 
 
 def speeds(trace: BodyTrace) -> FloatArray:

@@ -8,10 +8,11 @@ from robo_genesis.core.checks import Findings, equal, within
 from robo_genesis.core.exercises import Written, as_test, same_array
 from robo_genesis.core.scene import FRAME_SHAPE
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.bodies.rigid_bodies import Drop
+
+from . import spec
 
 MEASURES = False
 

@@ -8,8 +8,9 @@ from typing import Any
 
 from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l02 import spec
-from robo_genesis.lessons.l02.spec import AFTER, BEFORE
+
+from . import spec
+from .spec import AFTER, BEFORE
 
 # Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused
 # it.

@@ -7,8 +7,9 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l02 import checks, life_cycle, spec, trials
-from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
+
+from . import checks, life_cycle, spec, trials
+from .metrics import DropMetrics, drop_metrics
 
 MEASURES = False
 

@@ -6,8 +6,9 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import body_schematic, look
-from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.sim.bodies.free_fall import continuous_drop, fallen, predicted
+
+from . import spec, trials
 
 MEASURES = False
 

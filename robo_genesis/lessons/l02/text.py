@@ -3,8 +3,9 @@
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import bullets, decimal, readable, signed
-from robo_genesis.lessons.l02 import checks, spec
 from robo_genesis.sim.bodies.free_fall import continuous_drop, summed_drop
+
+from . import checks, spec
 
 MEASURES = False
 

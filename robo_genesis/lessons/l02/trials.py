@@ -5,9 +5,10 @@ from typing import Any
 
 from robo_genesis.core.checks import Findings, above, below, equal, within
 from robo_genesis.core.experiment import Experiment, Readings, counts
-from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.common_checks import usable_frame
+
+from . import spec
 
 # Groups of a bundle's metrics: counts of geometry, heights of balls, distances fallen.
 SHAPES, TRAYS, FURTHER = "shapes", "trays", "further"

@@ -8,17 +8,18 @@ from robo_genesis.core import checks
 from robo_genesis.core.checks import Findings, above, at_most, nearly, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.lessons.l03 import spec, theory
-from robo_genesis.lessons.l03.metrics import (
+from robo_genesis.sim.bodies.checks import laws_of_motion, settings, structure
+from robo_genesis.sim.bodies.contacts import TOP
+from robo_genesis.sim.common_checks import posture, stamps
+
+from . import spec, theory
+from .metrics import (
     BounceMetrics,
     LandingMetrics,
     SlideMetrics,
     aligned,
     of_body,
 )
-from robo_genesis.sim.bodies.checks import laws_of_motion, settings, structure
-from robo_genesis.sim.bodies.contacts import TOP
-from robo_genesis.sim.common_checks import posture, stamps
 
 
 def measured(run: Experiment, metrics: type[CaseMetrics]) -> dict[str, Any]:

@@ -9,14 +9,15 @@ import numpy as np
 from robo_genesis.core.checks import Findings, at_most, equal, within
 from robo_genesis.core.exercises import Written, as_test, compared
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03.metrics import (
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
+
+from .metrics import (
     LandingMetrics,
     SlideMetrics,
     clearance,
     of_body,
 )
-from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 
 MEASURES = False
 

@@ -15,7 +15,9 @@ from robo_genesis.core.experiment import (
     runs_of,
 )
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import (
+from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
+
+from . import (
     checks,
     metrics,
     spec,
@@ -23,7 +25,6 @@ from robo_genesis.lessons.l03 import (
     study_checks,
     study_spec,
 )
-from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 
 MEASURES = False
 

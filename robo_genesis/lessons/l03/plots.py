@@ -14,8 +14,9 @@ from robo_genesis.core.plotting import (
     log_axis,
     look,
 )
-from robo_genesis.lessons.l03 import checks, metrics, spec, study, study_spec, theory
 from robo_genesis.sim.bodies.contacts import TOP
+
+from . import checks, metrics, spec, study, study_spec, theory
 
 MEASURES = False
 

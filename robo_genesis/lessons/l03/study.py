@@ -5,14 +5,15 @@ import numpy as np
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import study_spec, theory
-from robo_genesis.lessons.l03.metrics import (
+from robo_genesis.sim.bodies.contacts import ContactCase
+
+from . import study_spec, theory
+from .metrics import (
     LandingMetrics,
     SlideMetrics,
     aligned,
     of_body,
 )
-from robo_genesis.sim.bodies.contacts import ContactCase
 
 # Group of a bundle's metrics: the engine's time constant of a contact by scene [s].
 GROUP = "time_constant"

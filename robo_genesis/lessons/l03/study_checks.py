@@ -14,8 +14,9 @@ from robo_genesis.core.checks import (
     within,
 )
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics, aligned
+
+from . import checks, spec, study, study_spec, theory
+from .metrics import CLEAR, SlideMetrics, aligned
 
 # Landings
 

@@ -4,7 +4,9 @@ from dataclasses import replace
 from typing import Any
 
 from robo_genesis.core.experiment import case_inputs
-from robo_genesis.lessons.l03.spec import (
+from robo_genesis.sim.bodies.contacts import ContactCase
+
+from .spec import (
     BASELINE,
     BESIDE,
     BOUNCES,
@@ -12,7 +14,6 @@ from robo_genesis.lessons.l03.spec import (
     PUSHED,
     SLIDES,
 )
-from robo_genesis.sim.bodies.contacts import ContactCase
 
 MEASURES = False
 

@@ -8,15 +8,16 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.tables import Rows, as_table, metric_table
 from robo_genesis.core.text import NOT_OBSERVED, format_value, readable
-from robo_genesis.lessons.l03 import checks, spec, study, study_spec, theory
-from robo_genesis.lessons.l03.metrics import (
+from robo_genesis.sim.bodies.contacts import ContactCase
+
+from . import checks, spec, study, study_spec, theory
+from .metrics import (
     CLEAR,
     BounceMetrics,
     LandingMetrics,
     SlideMetrics,
 )
-from robo_genesis.lessons.l03.text import millimetres, milliseconds
-from robo_genesis.sim.bodies.contacts import ContactCase
+from .text import millimetres, milliseconds
 
 MEASURES = False
 

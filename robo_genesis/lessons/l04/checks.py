@@ -19,13 +19,14 @@ from robo_genesis.core.checks import (
 from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import format_value
-from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.metrics import SETTLING_BAND, is_saturated
 from robo_genesis.sim.arm import laws
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import differences
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.laws import kept
+
+from . import spec, study, study_spec
+from .metrics import SETTLING_BAND, is_saturated
 
 
 def mapping(run: Experiment) -> Findings:

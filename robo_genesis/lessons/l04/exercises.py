@@ -14,12 +14,13 @@ import numpy as np
 from robo_genesis.core.checks import Findings, at_most, equal
 from robo_genesis.core.exercises import Written, as_test, compared, refused, same_array
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import ENTRY
-from robo_genesis.lessons.l04.theory import IdealJoint, stepped_joint
 from robo_genesis.sim.arm.joint_control import ControlCase
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.laws import LAW
+
+from .metrics import StepMetrics
+from .spec import ENTRY
+from .theory import IdealJoint, stepped_joint
 
 MEASURES = False
 

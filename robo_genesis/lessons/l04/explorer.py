@@ -13,9 +13,10 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.tables import as_table
 from robo_genesis.core.text import decimal, format_value
-from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, STEPPED_JOINT
-from robo_genesis.lessons.l04.study_spec import (
+
+from .metrics import StepMetrics
+from .spec import ENTRY, MARGINS, STEPPED_JOINT
+from .study_spec import (
     CASE_POINTS,
     KP,
     KV,
@@ -23,7 +24,7 @@ from robo_genesis.lessons.l04.study_spec import (
     STEP_SIZES,
     GridPoint,
 )
-from robo_genesis.lessons.l04.tables import NOUNS, UNITS, margin_text, share_text
+from .tables import NOUNS, UNITS, margin_text, share_text
 
 MEASURES = False
 

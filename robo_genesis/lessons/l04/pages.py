@@ -8,9 +8,10 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import checks, spec, study, study_checks, study_spec
-from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
+
+from . import checks, spec, study, study_checks, study_spec
+from .metrics import SETTLING_BAND, StepMetrics
 
 MEASURES = False
 

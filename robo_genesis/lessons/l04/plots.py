@@ -13,12 +13,13 @@ from robo_genesis.core.plotting import BAND, LIMIT, LINE, log_axis, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT
-from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED, EXAMPLE
-from robo_genesis.lessons.l04.tables import ENGINE_LABELS
 from robo_genesis.sim.arm.franka import LINK_PARENTS
+
+from . import spec, study, study_spec
+from .metrics import SETTLING_BAND
+from .spec import CASE_MARKS, ENTRY, STEPPED_JOINT
+from .study_spec import ASSIGNED, COMPARED, EXAMPLE
+from .tables import ENGINE_LABELS
 
 MEASURES = False
 

@@ -13,14 +13,15 @@ import numpy as np
 from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import DT
-from robo_genesis.lessons.l04.metrics import (
+from robo_genesis.sim.arm import franka
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import ControlCase
+
+from .metrics import (
     RISE_FRACTION,
     SATURATION_THRESHOLD,
     SETTLING_BAND,
 )
-from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.joint_control import ControlCase
 
 MEASURES = False
 

@@ -10,20 +10,21 @@ from robo_genesis.core.comparison import Relation, Value, outcome
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import spec, study_spec
-from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
-from robo_genesis.lessons.l04.spec import ENTRY
-from robo_genesis.lessons.l04.theory import (
-    IdealJoint,
-    overshoot_share,
-    step_share,
-    stepped_joint,
-)
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, run_case
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+from . import spec, study_spec
+from .metrics import StepMetrics, is_saturated, step_metrics
+from .spec import ENTRY
+from .theory import (
+    IdealJoint,
+    overshoot_share,
+    step_share,
+    stepped_joint,
+)
 
 # Genesis, and MuJoCo by its integrator.
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)

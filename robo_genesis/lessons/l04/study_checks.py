@@ -16,10 +16,11 @@ from robo_genesis.core.checks import (
     within,
 )
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l04 import checks, spec, study, study_spec
-from robo_genesis.lessons.l04.metrics import is_saturated
-from robo_genesis.lessons.l04.theory import overshoot_share
 from robo_genesis.sim.arm.joint_control import differences
+
+from . import checks, spec, study, study_spec
+from .metrics import is_saturated
+from .theory import overshoot_share
 
 
 def study_factors(run: Experiment) -> Findings:

@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 
 from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
-from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import (
+
+from .metrics import SETTLING_BAND
+from .spec import (
     ENTRY,
     G1,
     G2,

@@ -7,8 +7,9 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import Rows, as_table, markdown
 from robo_genesis.core.tables import metric_table as by_case
 from robo_genesis.core.text import format_value
-from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.metrics import StepMetrics
+
+from . import spec, study, study_spec
+from .metrics import StepMetrics
 
 MEASURES = False
 

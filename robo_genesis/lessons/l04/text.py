@@ -6,13 +6,14 @@ from robo_genesis.core.comparison import Comparison, compare
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import comparison_sentence, prediction_sentence
 from robo_genesis.core.text import blocks, format_value
-from robo_genesis.lessons.l04 import spec
-from robo_genesis.lessons.l04.metrics import (
+
+from . import spec
+from .metrics import (
     SATURATION_THRESHOLD,
     SETTLING_BAND,
     StepMetrics,
 )
-from robo_genesis.lessons.l04.study_spec import COMPARED
+from .study_spec import COMPARED
 
 MEASURES = False
 

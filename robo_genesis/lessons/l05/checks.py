@@ -16,8 +16,6 @@ from robo_genesis.core.checks import (
 )
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.run import SolveCase, command_path
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.kinematics import ARM, CHAIN, HAND, Pose, measured_hand
 from robo_genesis.sim.arm.laws import assigned_run, driven_run
@@ -28,6 +26,9 @@ from robo_genesis.sim.camera.record import SEGMENTS, view_of
 from robo_genesis.sim.common_checks import posture, stamps, structure
 from robo_genesis.sim.laws import kept
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+from . import spec, study
+from .run import SolveCase, command_path
 
 # The links of the chain among those of the arrays.
 OF_CHAIN = slice(HAND - ARM, HAND + 1)

@@ -7,11 +7,12 @@ import numpy as np
 from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.exercises import Examples, Written, as_test, same_array
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05 import spec
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.kinematics import ARM, CHAIN, Pose, measured_hand
 from robo_genesis.sim.arm.reaching import ANSWERS
 from robo_genesis.sim.camera import geometry as cameras
+
+from . import spec
 
 MEASURES = False
 

@@ -5,10 +5,11 @@ from typing import Any
 from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT
-from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.text import QUANTITIES, TIP, records
 from robo_genesis.sim.camera.geometry import other_axes
 from robo_genesis.sim.camera.record import DEPTH_UNIT, SEGMENTS, view_of
+
+from . import spec, study
+from .text import QUANTITIES, TIP, records
 
 MEASURES = False
 

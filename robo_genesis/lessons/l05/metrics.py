@@ -11,7 +11,6 @@ import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05.run import ReachCase
 from robo_genesis.sim.arm.kinematics import (
     Pose,
     distance_and_angle,
@@ -20,6 +19,8 @@ from robo_genesis.sim.arm.kinematics import (
     measured_hand,
     passed_by,
 )
+
+from .run import ReachCase
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 

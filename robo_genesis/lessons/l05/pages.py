@@ -7,10 +7,11 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05 import checks, spec, study
-from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record as view_record
+
+from . import checks, spec, study
+from .metrics import ReachMetrics, reach_metrics
 
 MEASURES = False
 

@@ -5,12 +5,13 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import HAND
 from robo_genesis.sim.camera import geometry as cameras
 from robo_genesis.sim.camera.record import view_of
+
+from . import spec
+from .checks import marker
 
 MEASURES = False
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from robo_genesis.core.experiment import case_inputs, inputs
 from robo_genesis.core.scene import CAMERA, read_only
-from robo_genesis.lessons.l05.run import ReachCase, SolveCase
 from robo_genesis.sim.arm import franka, reaching
+
+from .run import ReachCase, SolveCase
 
 MEASURES = False
 

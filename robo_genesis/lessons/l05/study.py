@@ -9,14 +9,15 @@ import numpy as np
 from robo_genesis.core.experiment import Experiment, Readings
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.run import ReachCase, SolveCase, ask
 from robo_genesis.sim.arm import engine_kinematics as engine
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.joint_control import reset
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.arm.kinematics import ARM, Pose, measured_hand
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+from . import spec
+from .run import ReachCase, SolveCase, ask
 
 # Groups of a bundle's metrics: what the engine's solver reported, also for smaller
 # tolerances.

@@ -8,15 +8,16 @@ from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, decimal
-from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.checks import marker
-from robo_genesis.lessons.l05.metrics import ReachMetrics
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.camera import geometry as cameras
 from robo_genesis.sim.camera.checks import PLANE_FAR, computed, from_plane, from_sphere
 from robo_genesis.sim.camera.record import SEGMENTS, view_of
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+from . import spec, study
+from .checks import marker
+from .metrics import ReachMetrics
 
 MEASURES = False
 

@@ -14,12 +14,13 @@ from robo_genesis.core.checks import (
     within,
 )
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l06 import spec, study, throughput
 from robo_genesis.sim.arm.kinematics import ARM, Pose, distance_and_angle, hand_pose
 from robo_genesis.sim.arm.laws import driven_run
 from robo_genesis.sim.common_checks import posture, stamps, structure
 from robo_genesis.sim.laws import kept
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+from . import spec, study, throughput
 
 
 def mapping(run: Experiment) -> Findings:

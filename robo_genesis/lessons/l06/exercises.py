@@ -9,8 +9,9 @@ import numpy as np
 
 from robo_genesis.core.checks import Findings, equal, within
 from robo_genesis.core.exercises import Examples, Written, as_test, refused
-from robo_genesis.lessons.l06 import spec
 from robo_genesis.sim.arm.reaching import ANSWERS
+
+from . import spec
 
 MEASURES = False
 

@@ -6,7 +6,8 @@ from typing import Any
 from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal
-from robo_genesis.lessons.l06 import spec
+
+from . import spec
 
 MEASURES = False
 

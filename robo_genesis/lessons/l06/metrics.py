@@ -6,7 +6,6 @@ import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm.kinematics import (
     HAND,
     Pose,
@@ -15,6 +14,8 @@ from robo_genesis.sim.arm.kinematics import (
     measured_hand,
     passed_by,
 )
+
+from .run import Environment
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 

@@ -10,10 +10,11 @@ from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06 import checks, spec, study, throughput
-from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.visual_shape import Part, ball
+
+from . import checks, spec, study, throughput
+from .metrics import WorldMetrics, world_metrics
 
 MEASURES = False
 

@@ -9,12 +9,13 @@ from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l06 import spec
-from robo_genesis.lessons.l06.run import Environment
-from robo_genesis.lessons.l06.text import fits, steps
-from robo_genesis.lessons.l06.throughput import FITTED, GROUP
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import HAND
+
+from . import spec
+from .run import Environment
+from .text import fits, steps
+from .throughput import FITTED, GROUP
 
 MEASURES = False
 

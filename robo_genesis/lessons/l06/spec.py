@@ -11,8 +11,9 @@ from typing import Any
 
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, read_only
-from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm import franka, reaching
+
+from .run import Environment
 
 MEASURES = False
 

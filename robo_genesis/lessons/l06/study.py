@@ -9,13 +9,14 @@ import numpy as np
 from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06 import spec
-from robo_genesis.lessons.l06.run import ask, reach, reset_some, start
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.batch import set_link_mass
 from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR, IkAnswer
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joints import JointMap, resolve_joints, to_numpy
+
+from . import spec
+from .run import ask, reach, reset_some, start
 
 # Counts, residuals and verdicts of a question with a target beyond reach, and masses of
 # hands.

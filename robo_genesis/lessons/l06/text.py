@@ -13,11 +13,12 @@ from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.text import bullets, decimal, listed
-from robo_genesis.lessons.l06 import spec, study
-from robo_genesis.lessons.l06.checks import swept
-from robo_genesis.lessons.l06.throughput import ENDS, FITTED, GROUP, PARTS
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 from robo_genesis.sim.throughput import Model, fit
+
+from . import spec, study
+from .checks import swept
+from .throughput import ENDS, FITTED, GROUP, PARTS
 
 MEASURES = False
 

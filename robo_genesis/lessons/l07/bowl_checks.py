@@ -14,13 +14,14 @@ from robo_genesis.core.checks import (
 )
 from robo_genesis.core.experiment import Experiment, MeasuringPage, runs_of
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l07 import bowls
-from robo_genesis.lessons.l07.bowls import BALLS, BowlCase
 from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY, HEIGHT, WALL
 from robo_genesis.sim.bodies.free_fall import GRAVITY, summed_drop
 from robo_genesis.sim.bodies.laws import FALLEN, FALLING
 from robo_genesis.sim.common_checks import stamps
 from robo_genesis.sim.laws import apart, each_run
+
+from . import bowls
+from .bowls import BALLS, BowlCase
 
 ENDS, NEAR = (
     WALL + 0.001,

@@ -14,14 +14,15 @@ from robo_genesis.core.checks import (
 )
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import rungs, spec
-from robo_genesis.lessons.l07.metrics import OBJECT, lifts
 from robo_genesis.sim.arm import lifting
 from robo_genesis.sim.arm.kinematics import measured_hand
 from robo_genesis.sim.arm.laws import assigned_run, driven_run
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.common_checks import posture, stamps, structure
 from robo_genesis.sim.laws import apart, kept
+
+from . import rungs, spec
+from .metrics import OBJECT, lifts
 
 
 def one_rung(run: Experiment) -> Findings:

@@ -8,8 +8,9 @@ from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import decimal
-from robo_genesis.lessons.l07 import rungs
-from robo_genesis.lessons.l07.table_map import (
+
+from . import rungs
+from .table_map import (
     CASE,
     CELLS,
     WORDS,

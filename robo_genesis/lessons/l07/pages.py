@@ -5,14 +5,15 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import checks, rungs, spec, study, table_map
-from robo_genesis.lessons.l07.bowl_checks import MESHES
-from robo_genesis.lessons.l07.bowls import BowlMetrics
-from robo_genesis.lessons.l07.metrics import SceneMetrics, scene_metrics
-from robo_genesis.lessons.l07.rest import RestMetrics
-from robo_genesis.lessons.l07.rest_checks import REST
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record
+
+from . import checks, rungs, spec, study, table_map
+from .bowl_checks import MESHES
+from .bowls import BowlMetrics
+from .metrics import SceneMetrics, scene_metrics
+from .rest import RestMetrics
+from .rest_checks import REST
 
 MEASURES = False
 

@@ -6,13 +6,14 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import BAND, LINE, legend_above, look
-from robo_genesis.lessons.l07 import bowls, rungs, spec
-from robo_genesis.lessons.l07.metrics import OBJECT, WINDOW
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.lifting import ENDS
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.bowl import CHOICES
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
+
+from . import bowls, rungs, spec
+from .metrics import OBJECT, WINDOW
 
 MEASURES = False
 

@@ -3,11 +3,12 @@
 from robo_genesis.core.checks import Findings, above, at_most, below, nearly, within
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, runs_of
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l07 import rest
 from robo_genesis.sim.bodies.checks import laws_of_motion, settings
 from robo_genesis.sim.bodies.contacts import SETTINGS
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 from robo_genesis.sim.common_checks import stamps
+
+from . import rest
 
 SHARE, DEPTH = (
     0.02,

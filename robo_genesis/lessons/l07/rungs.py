@@ -7,12 +7,13 @@ import numpy as np
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l07 import spec
-from robo_genesis.lessons.l07.metrics import BALL
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.table import SceneCase
 from robo_genesis.sim.camera.geometry import project
 from robo_genesis.sim.camera.views import View
+
+from . import spec
+from .metrics import BALL
 
 # Where each camera is.
 CAMERAS = {"world": "beside the table", "wrist": "on the hand"}

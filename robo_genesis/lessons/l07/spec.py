@@ -13,10 +13,11 @@ import numpy as np
 from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs, json_value
 from robo_genesis.core.scene import CAMERA, DT
-from robo_genesis.lessons.l07 import bowls, rest
 from robo_genesis.sim.arm import franka, lifting, reaching
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.bodies.table import SceneCase
+
+from . import bowls, rest
 
 MEASURES = False
 

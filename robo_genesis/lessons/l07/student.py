@@ -6,8 +6,9 @@ from typing import Any
 from robo_genesis.core.exercises import refused
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import SCALES, bullets, listed, with_unit
-from robo_genesis.lessons.l07 import rungs, spec
-from robo_genesis.lessons.l07.study import Facts
+
+from . import rungs, spec
+from .study import Facts
 
 MEASURES = False
 

@@ -8,8 +8,6 @@ import numpy as np
 from robo_genesis.core.experiment import Readings, counts
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import rungs, spec
-from robo_genesis.lessons.l07.metrics import BALL, OBJECT, scene_metrics
 from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.franka import MODEL_COUNTS
 from robo_genesis.sim.arm.joint_control import run_case
@@ -17,6 +15,9 @@ from robo_genesis.sim.arm.joints import JointMap, describe, to_numpy
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera import record
 from robo_genesis.sim.camera.views import View, look, segment_number
+
+from . import rungs, spec
+from .metrics import BALL, OBJECT, scene_metrics
 
 # Units of the readings of a scene, by group and name.
 GROUPS = {

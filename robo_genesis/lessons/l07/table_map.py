@@ -13,13 +13,14 @@ from robo_genesis.core.checks import Findings, at_most, equal
 from robo_genesis.core.experiment import Experiment, Run, case_inputs, counts
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l07 import rungs, spec
 from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.engine_kinematics import IkSettings
 from robo_genesis.sim.arm.joint_control import ControlCase, assign_postures
 from robo_genesis.sim.arm.joints import JointMap
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera.record import view_of
+
+from . import rungs, spec
 
 # Centres of the cells [m].
 X, Y = np.arange(2, 11) / 10, np.arange(-3, 4) * 0.12

@@ -3,9 +3,10 @@
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal, scaled_value
-from robo_genesis.lessons.l07 import bowls, rest, rungs, spec
 from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
+
+from . import bowls, rest, rungs, spec
 
 MEASURES = False
 

@@ -15,7 +15,6 @@ from robo_genesis.core.checks import (
 )
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Episodes
-from robo_genesis.lessons.l08 import dataset, metrics, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.arm.laws import driven_run
@@ -23,6 +22,8 @@ from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import posture, stamps, structure
 from robo_genesis.sim.laws import apart, kept
+
+from . import dataset, metrics, spec
 
 
 def place_is_enough(run: Experiment) -> Findings:

@@ -15,13 +15,14 @@ from robo_genesis.core.checks import (
 )
 from robo_genesis.core.experiment import Experiment, MeasuringPage, Readings, runs_of
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l08 import creep
 from robo_genesis.sim.bodies.grippers import CONTACTS, LINKS, HeldCase
 from robo_genesis.sim.bodies.laws import UNTURNED
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 from robo_genesis.sim.common_checks import read_back, stamps
 from robo_genesis.sim.laws import apart, each_run
 from robo_genesis.sim.throughput import KEPT
+
+from . import creep
 
 SHARE, STILL = (
     0.005,

@@ -6,10 +6,11 @@ import numpy as np
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l08 import metrics, spec
 from robo_genesis.sim.arm.franka import CREDIT
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.camera import film
+
+from . import metrics, spec
 
 TASK = "Pick up the cylinder and place it in the bowl."
 

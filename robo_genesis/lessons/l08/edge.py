@@ -7,8 +7,9 @@ import numpy as np
 
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import FloatArray, read_only
-from robo_genesis.lessons.l08 import spec
 from robo_genesis.sim.arm.picking import PickCase
+
+from . import spec
 
 # Samples of 0.1 s, for 6 s.
 STEPS: dict[str, Any] = {"dt": 0.1, "substeps": 20, "commands": 10, "steps": 60}

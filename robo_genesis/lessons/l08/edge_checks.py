@@ -4,9 +4,10 @@ import numpy as np
 
 from robo_genesis.core.checks import Findings, above, at_most, below, equal, within
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l08 import checks, edge, metrics, rates
 from robo_genesis.sim.arm.picking import CLOSE
 from robo_genesis.sim.common_checks import stamps, structure
+
+from . import checks, edge, metrics, rates
 
 MEASURES = False
 

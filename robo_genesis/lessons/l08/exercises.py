@@ -16,9 +16,10 @@ from robo_genesis.core.exercises import (
     refused,
     same_array,
 )
-from robo_genesis.lessons.l08 import metrics, rates
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
+
+from . import metrics, rates
 
 MEASURES = False
 

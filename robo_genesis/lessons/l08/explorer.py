@@ -8,8 +8,9 @@ from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l08 import metrics, spec
 from robo_genesis.sim.arm import picking
+
+from . import metrics, spec
 
 MEASURES = False
 

@@ -7,13 +7,14 @@ from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
 from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
 from robo_genesis.core.trace import Demonstrations, Episodes, Trace
-from robo_genesis.lessons.l08 import checks, edge, edge_checks, metrics, spec
-from robo_genesis.lessons.l08.creep import HeldMetrics
-from robo_genesis.lessons.l08.creep_checks import CREEP
-from robo_genesis.lessons.l08.metrics import EpisodesMetrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import structure
+
+from . import checks, edge, edge_checks, metrics, spec
+from .creep import HeldMetrics
+from .creep_checks import CREEP
+from .metrics import EpisodesMetrics
 
 MEASURES = False
 

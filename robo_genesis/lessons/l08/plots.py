@@ -6,12 +6,13 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, legend_above, look
-from robo_genesis.lessons.l08 import creep, metrics, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import hand_pose
 from robo_genesis.sim.bodies.grippers import HeldCase
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
+
+from . import creep, metrics, spec
 
 MEASURES = False
 

@@ -13,10 +13,11 @@ import numpy as np
 from robo_genesis.core import check_spec
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, FloatArray, read_only
-from robo_genesis.lessons.l08 import creep
 from robo_genesis.sim.arm import franka, lifting, reaching
 from robo_genesis.sim.arm.picking import PickCase
 from robo_genesis.sim.bodies.table import SceneCase
+
+from . import creep
 
 MEASURES = False
 

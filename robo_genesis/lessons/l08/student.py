@@ -9,12 +9,13 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed, scaled_value
 from robo_genesis.core.trace import Episodes
-from robo_genesis.lessons.l08 import metrics, rates, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.kinematics import ARM, hand_pose
 from robo_genesis.sim.arm.picking import CLOSE, DONE, OPEN, PickCase
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.table import World
+
+from . import metrics, rates, spec
 
 MEASURES = False
 

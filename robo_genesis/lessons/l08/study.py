@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.trace import Demonstrations, Episodes
-from robo_genesis.lessons.l08 import spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.batch import Batch
 from robo_genesis.sim.arm.joints import describe
 from robo_genesis.sim.bodies.table import World
 from robo_genesis.sim.camera import film, frames
+
+from . import spec
 
 
 def episodes(

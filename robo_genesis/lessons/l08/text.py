@@ -6,10 +6,11 @@ from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT
 from robo_genesis.core.text import decimal, scaled_value
-from robo_genesis.lessons.l08 import creep, edge, metrics, rates, spec
-from robo_genesis.lessons.l08.creep_checks import share_of
-from robo_genesis.lessons.l08.edge_checks import pairs
 from robo_genesis.sim.throughput import KEPT
+
+from . import creep, edge, metrics, rates, spec
+from .creep_checks import share_of
+from .edge_checks import pairs
 
 MEASURES = False
 

@@ -13,7 +13,8 @@ from robo_genesis.core.project import BOOK, PUBLISHED
 from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.bundles.status import (
+
+from .status import (
     Status,
     bundle_status,
     recorded_folders,

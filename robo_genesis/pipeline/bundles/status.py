@@ -12,8 +12,9 @@ from robo_genesis.evidence.bundle import (
 )
 from robo_genesis.evidence.compare import claims_of
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.sim.backends import BACKENDS
+
+from .verify import verify_bundle
 
 # The page whose bundles are recorded on accelerators and kept in the repository.
 RECORDED_PAGE = "lab"

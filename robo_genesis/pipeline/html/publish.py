@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from robo_genesis.core.files import replaced
 from robo_genesis.core.project import PUBLISHED
-from robo_genesis.pipeline.html.archive import pack, write_sums
+
+from .archive import pack, write_sums
 
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
     from robo_genesis.pipeline.pages.results import PageResult

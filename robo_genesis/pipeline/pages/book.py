@@ -11,8 +11,9 @@ from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
 from robo_genesis.core.files import derived, json_digest
 from robo_genesis.core.project import ROOT, ProjectError
-from robo_genesis.pipeline.pages.page_rules import declared, page_problems
-from robo_genesis.pipeline.pages.syntax import Code, read_code
+
+from .page_rules import declared, page_problems
+from .syntax import Code, read_code
 
 # The name of a lesson's lab, and the file with its work sheet.
 LAB, WORK_SHEET = "lab", "worksheet.md"

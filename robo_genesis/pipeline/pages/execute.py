@@ -9,11 +9,12 @@ from threading import Thread
 
 from robo_genesis.core import project
 from robo_genesis.pipeline.command import TIMEOUT
-from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.page_folder import RECORD, PageRefused
-from robo_genesis.pipeline.pages.page_run import PageRun
-from robo_genesis.pipeline.pages.results import Failure, PageResult
-from robo_genesis.pipeline.pages.store import last_record, stored_result
+
+from .book import Page
+from .page_folder import RECORD, PageRefused
+from .page_run import PageRun
+from .results import Failure, PageResult
+from .store import last_record, stored_result
 
 # Prints the name of a page and an event, or the running pages and "".
 Say = Callable[[str, str], None]

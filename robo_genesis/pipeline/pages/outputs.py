@@ -30,8 +30,9 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import MANIFEST, write_json
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.pages import values
-from robo_genesis.pipeline.pages.book import Page, code_cells
+
+from . import values
+from .book import Page, code_cells
 
 # The calls that show a measured output; pages give this name to the result of
 # `rg.open_page`.

@@ -16,8 +16,9 @@ from pydantic import ValidationError
 from robo_genesis.core.files import files_below, replaced
 from robo_genesis.core.project import ENGINE, ProjectError, installed_version
 from robo_genesis.evidence.bundle import MANIFEST, Sha256, Strict, sha256
-from robo_genesis.pipeline.pages.book import Page, code_cells, code_digest
-from robo_genesis.pipeline.pages.outputs import keep_outputs
+
+from .book import Page, code_cells, code_digest
+from .outputs import keep_outputs
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
 SECONDS = "cell_seconds"  # In the metadata of the notebook

@@ -10,8 +10,9 @@ from pydantic import Field
 
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.bundle import Strict
-from robo_genesis.pipeline.pages.page_folder import OUTPUTS, SECONDS, executed_cells
-from robo_genesis.pipeline.pages.results import PageResult
+
+from .page_folder import OUTPUTS, SECONDS, executed_cells
+from .results import PageResult
 
 # A variable: if it is set, a page whose code changed is shown with the outputs of its
 # last run.

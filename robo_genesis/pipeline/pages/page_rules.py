@@ -8,7 +8,7 @@ from difflib import get_close_matches
 
 from nbformat import NotebookNode
 
-from robo_genesis.pipeline.pages.syntax import PACKAGE
+from .syntax import PACKAGE
 
 # The tag of a code cell and the class of a directive that contain a solution
 SOLUTION = "solution"

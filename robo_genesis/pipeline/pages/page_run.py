@@ -19,10 +19,11 @@ from nbformat import NotebookNode
 from robo_genesis.core import project
 from robo_genesis.core.text import ended
 from robo_genesis.pipeline.command import ANSI
-from robo_genesis.pipeline.pages import kernels, results
-from robo_genesis.pipeline.pages.book import Page, code_digest
-from robo_genesis.pipeline.pages.page_folder import PageRefused, Record, write_page
-from robo_genesis.pipeline.pages.results import Failure, PageResult
+
+from . import kernels, results
+from .book import Page, code_digest
+from .page_folder import PageRefused, Record, write_page
+from .results import Failure, PageResult
 
 # What a warning names in the place of a file: a temporary one with the number of the
 # process.

@@ -12,10 +12,11 @@ from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
 from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
-from robo_genesis.pipeline.pages.book import Page, code_cells
-from robo_genesis.pipeline.pages.guards import contradicted
-from robo_genesis.pipeline.pages.page_folder import OUTPUTS, find_bundle
-from robo_genesis.pipeline.pages.page_rules import first_line
+
+from .book import Page, code_cells
+from .guards import contradicted
+from .page_folder import OUTPUTS, find_bundle
+from .page_rules import first_line
 
 LOG_LINES = 15
 Status = Literal["executed", "reused", "failed"]

@@ -18,10 +18,11 @@ from robo_genesis.core import project
 from robo_genesis.core.files import NO_SOURCE, files_below, json_digest
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence.bundle import sha256
-from robo_genesis.pipeline.pages.syntax import PACKAGE, ModuleCode, read_module
+
+from .syntax import PACKAGE, ModuleCode, read_module
 
 if TYPE_CHECKING:  # a verification loads no Jupyter
-    from robo_genesis.pipeline.pages.book import Page
+    from .book import Page
 
 COMPUTING = ("core", "sim", "lessons")  # The sub-packages with modules that measure
 

@@ -6,15 +6,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.page_folder import (
+from .book import Page
+from .page_folder import (
     PageRefused,
     Record,
     read_page,
     read_record,
 )
-from robo_genesis.pipeline.pages.results import PageResult, unexpected_outcome
-from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint
+from .results import PageResult, unexpected_outcome
+from .sources import Tree, page_fingerprint
 
 # Takes a bundle's folder; returns the manifest or raises BundleRefused.
 Verify = Callable[[Path], Any]

@@ -14,7 +14,8 @@ from nbformat import NotebookNode
 
 from robo_genesis.core.text import DIGITS, MICRO, SCALED, SCALES, quoted
 from robo_genesis.evidence import bundle
-from robo_genesis.pipeline.pages.book import code_cells
+
+from .book import code_cells
 
 OPTION = "prints"  # The option of a cell that names the measured values which it prints
 

@@ -12,10 +12,11 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm import joint_control
-from robo_genesis.sim.arm.joint_control import ControlCase
-from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.session import require_built
+
+from . import joint_control
+from .joint_control import ControlCase
+from .joints import JointMap, to_numpy
 
 
 class Batch:

@@ -8,7 +8,8 @@ from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import with_unit
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.joints import JointMap
+
+from .joints import JointMap
 
 MEASURES = False
 

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.joints import JointMap, require_whole, to_numpy
+
+from .joints import JointMap, require_whole, to_numpy
 
 
 def let_go(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> list[int]:

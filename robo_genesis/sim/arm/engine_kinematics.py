@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.franka import FRANKA
-from robo_genesis.sim.arm.joints import JointMap, require_whole, to_numpy
-from robo_genesis.sim.arm.kinematics import Pose, accepted, distances, hand_pose, rotate
-from robo_genesis.sim.arm.model import RobotModel
+
+from .franka import FRANKA
+from .joints import JointMap, require_whole, to_numpy
+from .kinematics import Pose, accepted, distances, hand_pose, rotate
+from .model import RobotModel
 
 END_EFFECTOR = FRANKA.hand
 

@@ -1,7 +1,8 @@
 """Constants of the Franka Panda of the course, with units."""
 
 from robo_genesis.core.scene import FloatArray, read_only
-from robo_genesis.sim.arm.model import RobotModel
+
+from .model import RobotModel
 
 # The Franka Panda that Genesis bundles, relative to the engine's asset folder.
 FRANKA_MJCF = "xml/franka_emika_panda/panda.xml"

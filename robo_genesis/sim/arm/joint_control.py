@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.scene import SEED, FloatArray, Stepped
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.joints import JointMap, to_numpy
-from robo_genesis.sim.arm.model import RobotModel
 from robo_genesis.sim.session import CaseError, require_built
+
+from . import franka
+from .joints import JointMap, to_numpy
+from .model import RobotModel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

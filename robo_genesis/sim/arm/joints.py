@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.franka import FRANKA, MODEL_COUNTS
-from robo_genesis.sim.arm.model import ModelError, RobotModel
+
+from .franka import FRANKA, MODEL_COUNTS
+from .model import ModelError, RobotModel
 
 POSITION_UNIT = {"REVOLUTE": "rad", "PRISMATIC": "m"}
 EFFORT_UNIT = {"REVOLUTE": "N·m", "PRISMATIC": "N"}

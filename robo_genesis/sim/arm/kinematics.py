@@ -11,7 +11,8 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray, read_only
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import FRANKA, LINK_PARENTS
+
+from .franka import FRANKA, LINK_PARENTS
 
 HALF = np.sqrt(0.5)
 

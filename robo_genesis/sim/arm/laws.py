@@ -18,9 +18,10 @@ from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.checks import Findings
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.joint_control import ControlCase
-from robo_genesis.sim.arm.model import RobotModel
 from robo_genesis.sim.laws import apart
+
+from .joint_control import ControlCase
+from .model import RobotModel
 
 MEASURES = False
 

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
-from robo_genesis.sim.arm.franka import KP_BASELINE, KV_BASELINE, per_joint
-from robo_genesis.sim.arm.joints import JointMap, to_numpy
-from robo_genesis.sim.arm.kinematics import ARM, DOWN
+
+from .engine_kinematics import IkAnswer, IkSettings, solve_ik
+from .franka import KP_BASELINE, KV_BASELINE, per_joint
+from .joints import JointMap, to_numpy
+from .kinematics import ARM, DOWN
 
 # Outer steps of the phases of a lift.
 PHASES = {

@@ -12,16 +12,17 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Episodes
-from robo_genesis.sim.arm import kinematics
-from robo_genesis.sim.arm.batch import Batch
-from robo_genesis.sim.arm.engine_kinematics import IkSettings
-from robo_genesis.sim.arm.joint_control import ControlCase
-from robo_genesis.sim.arm.joints import JointMap, to_numpy
-from robo_genesis.sim.arm.kinematics import ARM
-from robo_genesis.sim.arm.lifting import FINGERS, HAND_TO_PAD, ask
 from robo_genesis.sim.bodies import bowl, table
 from robo_genesis.sim.bodies.table import SceneCase, World
 from robo_genesis.sim.session import CaseError
+
+from . import kinematics
+from .batch import Batch
+from .engine_kinematics import IkSettings
+from .joint_control import ControlCase
+from .joints import JointMap, to_numpy
+from .kinematics import ARM
+from .lifting import FINGERS, HAND_TO_PAD, ask
 
 # The phases of an episode in their order.
 PHASES = (

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 from robo_genesis.core.check_spec import TOLERANCES as TOLERANCES
 from robo_genesis.core.scene import read_only
-from robo_genesis.sim.arm.engine_kinematics import IkSettings
-from robo_genesis.sim.arm.kinematics import DOWN as DOWN
+
+from .engine_kinematics import IkSettings
+from .kinematics import DOWN as DOWN
 
 MEASURES = False
 

@@ -4,11 +4,12 @@ from itertools import chain
 
 from robo_genesis.core.checks import Findings, model_counts
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.sim.bodies.contacts import SETTINGS
-from robo_genesis.sim.bodies.laws import repeated_steps, reported_depth
-from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS
 from robo_genesis.sim.common_checks import read_back
 from robo_genesis.sim.laws import kept
+
+from .contacts import SETTINGS
+from .laws import repeated_steps, reported_depth
+from .rigid_bodies import MODEL_COUNTS
 
 
 def structure(run: Experiment) -> Findings:

@@ -9,16 +9,17 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray, Stepped
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.bodies.free_fall import GRAVITY
-from robo_genesis.sim.bodies.rigid_bodies import (
+from robo_genesis.sim.session import CaseError
+
+from .free_fall import GRAVITY
+from .rigid_bodies import (
     new_scene,
     read_body,
     record_states,
     stacked,
     times,
 )
-from robo_genesis.sim.bodies.soft_contact import Load
-from robo_genesis.sim.session import CaseError
+from .soft_contact import Load
 
 # Length, width and thickness of the fixed box under the bodies [m].
 SURFACE_SIZE = (2.0, 0.8, 0.05)

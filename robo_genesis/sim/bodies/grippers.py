@@ -11,15 +11,16 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.bodies import contacts
-from robo_genesis.sim.bodies.rigid_bodies import (
+
+from . import contacts
+from .rigid_bodies import (
     new_scene,
     read_body,
     record_states,
     stacked,
     times,
 )
-from robo_genesis.sim.bodies.soft_contact import Load
+from .soft_contact import Load
 
 # The links of a run: the box and both pads.
 LINKS = ("box", "left", "right")

@@ -27,11 +27,12 @@ from robo_genesis.core.checks import Findings
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace
 from robo_genesis.sim.arm.kinematics import quat_multiply
-from robo_genesis.sim.bodies.contacts import TOP, ContactCase
-from robo_genesis.sim.bodies.free_fall import predicted
-from robo_genesis.sim.bodies.rigid_bodies import Drop
 from robo_genesis.sim.laws import apart, each_run
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+
+from .contacts import TOP, ContactCase
+from .free_fall import predicted
+from .rigid_bodies import Drop
 
 MEASURES = False
 

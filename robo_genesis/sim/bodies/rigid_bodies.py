@@ -9,8 +9,9 @@ import numpy as np
 from robo_genesis.core.scene import SEED, FloatArray, Stepped
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
-from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.session import require_built
+
+from .free_fall import GRAVITY
 
 # The engine's counts of a scene with a ground and one free body; all but `entities` are
 # those of the body.

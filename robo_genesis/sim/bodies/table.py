@@ -12,8 +12,9 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.franka import FRANKA_MJCF
 from robo_genesis.sim.arm.joint_control import Controlled
-from robo_genesis.sim.bodies import bowl
-from robo_genesis.sim.bodies.rigid_bodies import new_scene
+
+from . import bowl
+from .rigid_bodies import new_scene
 
 # Size of the table's top [m], and its centre (x, y).
 TABLE = ((1.2, 0.8, 0.05), (0.45, 0.0))

@@ -13,9 +13,10 @@ import numpy as np
 from robo_genesis.core.checks import Findings, above, at_most, equal, noted
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.arm.kinematics import rotate
-from robo_genesis.sim.camera import geometry as cameras
-from robo_genesis.sim.camera.geometry import Residuals
-from robo_genesis.sim.camera.views import View
+
+from . import geometry as cameras
+from .geometry import Residuals
+from .views import View
 
 SKIP = "SKIP"
 

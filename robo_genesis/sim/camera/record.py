@@ -12,7 +12,8 @@ import numpy as np
 
 from robo_genesis.core.experiment import Experiment, Readings
 from robo_genesis.core.scene import CAMERA_RES
-from robo_genesis.sim.camera.views import View
+
+from .views import View
 
 DEPTH_UNIT = 1e-5  # Resolution of a recorded depth [m]; 24 bits reach 167 m
 

@@ -10,7 +10,8 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.joint_control import ControlCase, assemble
 from robo_genesis.sim.bodies.rigid_bodies import record_states
-from robo_genesis.sim.mujoco.kinematics import bare_spec, compiled, with_data
+
+from .kinematics import bare_spec, compiled, with_data
 
 VERSION = version("mujoco")
 

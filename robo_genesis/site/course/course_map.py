@@ -22,10 +22,11 @@ from sphinx.util.docutils import ReferenceRole
 from robo_genesis.core.markup import filled
 from robo_genesis.core.text import listed
 from robo_genesis.pipeline.pages.book import LAB
-from robo_genesis.site.course.facts import MINUTES
-from robo_genesis.site.course.sizes import Minutes
 from robo_genesis.site.evidence.plain_nodes import late
 from robo_genesis.site.pages import PageDirective, PageRole
+
+from .facts import MINUTES
+from .sizes import Minutes
 
 FILE = "course_map.yml"
 

@@ -10,8 +10,9 @@ from docutils import nodes
 from sphinx.application import Sphinx
 
 from robo_genesis.core.project import engine_pin
-from robo_genesis.site.course.sizes import count_minutes
 from robo_genesis.site.evidence.plain_nodes import html
+
+from .sizes import count_minutes
 
 DESCRIPTION = (
     200  # Longest description, in characters: search engines show about as many

@@ -14,11 +14,12 @@ from sphinx.application import Sphinx
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.markup import filled
 from robo_genesis.pipeline.pages.book import page_files
-from robo_genesis.site.evidence import ledger_data
-from robo_genesis.site.evidence.plain_nodes import late
-from robo_genesis.site.evidence.provenance import ITEMS
-from robo_genesis.site.evidence.runs import all_runs, badge, measured_pages
 from robo_genesis.site.pages import PageDirective
+
+from . import ledger_data
+from .plain_nodes import late
+from .provenance import ITEMS
+from .runs import all_runs, badge, measured_pages
 
 DOWNLOADS = "_downloads/evidence"
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.pipeline.html.archive import write_zip
-from robo_genesis.site.evidence.runs import PageRun
+
+from .runs import PageRun
 
 LEDGER = "evidence/ledger"  # The page
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from docutils import nodes
 
-from robo_genesis.site.evidence.runs import BACKEND
+from .runs import BACKEND
 
 # The tag of a cell whose tables contain only chosen values, no measured ones
 INPUTS = "inputs"

@@ -19,11 +19,12 @@ from robo_genesis.core.markup import filled
 from robo_genesis.core.text import listed
 from robo_genesis.evidence.compare import compare
 from robo_genesis.lessons import course_marks, find_replay
-from robo_genesis.site.evidence.plain_nodes import image
-from robo_genesis.site.evidence.runs import PageRun, page_run, recorded_runs
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
 from robo_genesis.site.replay.recorded_runs import read_runs
+
+from .plain_nodes import image
+from .runs import PageRun, page_run, recorded_runs
 
 
 class Evidence(PageDirective):

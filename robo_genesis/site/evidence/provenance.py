@@ -19,16 +19,17 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
-from robo_genesis.site.evidence import ledger_data
-from robo_genesis.site.evidence.ledger_data import (
+from robo_genesis.site.frame.executed import RECOMPUTED
+
+from . import ledger_data
+from .ledger_data import (
     LEDGER,
     MEASURED,
     PRINTED,
     Item,
 )
-from robo_genesis.site.evidence.origin import INPUTS, above, origin
-from robo_genesis.site.evidence.runs import all_runs, measured_pages
-from robo_genesis.site.frame.executed import RECOMPUTED
+from .origin import INPUTS, above, origin
+from .runs import all_runs, measured_pages
 
 LOG = "the engine's log"
 TITLE = 80  # Longest title in the ledger, in characters

@@ -31,7 +31,8 @@ from robo_genesis.pipeline.bundles.status import (
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.site.course.course_map import MapDirective
-from robo_genesis.site.evidence.plain_nodes import html
+
+from .plain_nodes import html
 
 BACKEND, REFERENCE = project.BUILD_BACKEND, "amdgpu"
 

@@ -27,9 +27,10 @@ from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages.page_index import measuring_page, page_outputs
 from robo_genesis.pipeline.pages.values import value_of
-from robo_genesis.site.evidence.plain_nodes import WRITERS, between, fill_in, late
-from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.pages import PageRole
+
+from .plain_nodes import WRITERS, between, fill_in, late
+from .runs import BACKEND
 
 COUNTED = ("episodes", "cells")  # Units that a page gives to counts
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"

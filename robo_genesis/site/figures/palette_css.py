@@ -18,7 +18,8 @@ from robo_genesis.core.markup import filled
 from robo_genesis.core.palette import MARKS, PARTS, css_name
 from robo_genesis.lessons import course_marks
 from robo_genesis.site.evidence.origin import above
-from robo_genesis.site.figures import case_labels
+
+from . import case_labels
 
 SHEET = Path(__file__).with_name(
     "palette.css"

@@ -13,7 +13,8 @@ from sphinx.application import Sphinx
 
 from robo_genesis.pipeline.html.checks import POLICY, POLICY_NAME
 from robo_genesis.site.figures import drawings
-from robo_genesis.site.frame import accessibility
+
+from . import accessibility
 
 # Jupyter Book and the theme load every script on all pages; these are needed only where
 # an element has one of these classes or identifiers. No page needs `fontawesome.js`:

@@ -14,7 +14,7 @@ from robo_genesis.core.text import time_digits
 from robo_genesis.site.figures.case_labels import MARKS
 
 if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Scenery  # loads slowly
+    from .scenery import Scenery  # loads slowly
 
 PANEL = Path(__file__).with_name("panel.html")  # The template of the controls
 

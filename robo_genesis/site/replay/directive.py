@@ -41,13 +41,14 @@ from robo_genesis.site.evidence.plain_nodes import (
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.replay import controls, viewer
-from robo_genesis.site.replay.recorded_runs import read_runs
-from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
 from robo_genesis.site.text.questions import question
 
+from . import controls, viewer
+from .recorded_runs import read_runs
+from .viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
+
 if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Scenery
+    from .scenery import Scenery
 
 SHAPE_PAGE = "lecture"
 
@@ -96,7 +97,7 @@ def replay_block(
         ValueError: its runs cannot be played together, or no page of this build wrote
             the shape of these links.
     """
-    from robo_genesis.site.replay.scenery import scenery, side_by_side  # loads slowly
+    from .scenery import scenery, side_by_side  # loads slowly
 
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
@@ -164,8 +165,8 @@ def leave_model(
         Name, addresses and camera of what loads on a reader's request, its compressed
         size [kB], and the still picture.
     """
-    from robo_genesis.site.replay.model import glb  # these load slowly
-    from robo_genesis.site.replay.poster import picture
+    from .model import glb  # these load slowly
+    from .poster import picture
 
     around, links, traces, credit = drawn
     camera = around.camera

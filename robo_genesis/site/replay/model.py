@@ -19,7 +19,8 @@ from trimesh.visual.material import PBRMaterial
 from robo_genesis.core.channels import Run
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part
-from robo_genesis.site.replay.scenery import Scenery
+
+from .scenery import Scenery
 
 # Share of the triangles of a large part that is kept: with the small parts, about
 # 12,000 of the Franka's 135,000 triangles.

@@ -13,7 +13,7 @@ from vtkmodules.vtkIOImport import vtkGLTFImporter
 from vtkmodules.vtkRenderingCore import vtkLightKit
 from vtkmodules.vtkRenderingOpenGL2 import vtkEGLRenderWindow
 
-from robo_genesis.site.replay.scenery import ASPECT, Camera
+from .scenery import ASPECT, Camera
 
 SIZE = WIDTH, HEIGHT = 960, round(960 / ASPECT)
 SAMPLES = 8  # of each pixel

@@ -18,7 +18,8 @@ from robo_genesis.core.markup import filled
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.takeaways.files import run_commands, system, write_takeaways
+
+from .files import run_commands, system, write_takeaways
 
 TAKEAWAYS = "takeaways"  # Folder of the site
 GITHUB = "https://github.com/"

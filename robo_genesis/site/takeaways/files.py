@@ -39,12 +39,13 @@ from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.evidence.values import measured
-from robo_genesis.site.takeaways.notebooks import (
+
+from .notebooks import (
     CHECK,
     executed_notebook,
     student_notebook,
 )
-from robo_genesis.site.takeaways.plain_markdown import Writer
+from .plain_markdown import Writer
 
 # Replaces in the student notebook a value that the site measured.
 NOT_SHOWN = "*(your run measures it)*"

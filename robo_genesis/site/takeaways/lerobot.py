@@ -46,9 +46,10 @@ from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.site.evidence.plain_nodes import bullets, html
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.pages import PageDirective
-from robo_genesis.site.takeaways.directive import folder, links
-from robo_genesis.site.takeaways.files import writer_of
-from robo_genesis.site.takeaways.plain_markdown import plain
+
+from .directive import folder, links
+from .files import writer_of
+from .plain_markdown import plain
 
 FILE = "chunk-000/file-000"  # The only file of each kind
 CHUNK = "chunk-{chunk_index:03d}/file-{file_index:03d}"

@@ -14,7 +14,8 @@ from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.book import WORK_SHEET, Page
 from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
 from robo_genesis.site.frame.executed import without_stack
-from robo_genesis.site.takeaways.plain_markdown import Writer, plain
+
+from .plain_markdown import Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
 
