@@ -27,7 +27,7 @@ class Part:
 
     heading: str
     rows: Sequence[Cells]
-    empty: str = ""
+    empty: str = "There are none."
     remarks: Sequence[str] = ()
     state: str = ""
 

@@ -66,15 +66,11 @@ class Readings:
 
     `units` are by name. Values of kind `exact` are counts, which another run must
     repeat. Those of kind `performance` are elapsed times and memory, which no other run
-    has to repeat. A count is at least 0.
+    has to repeat.
     """
 
     units: Mapping[str, str]
     kind: Kind = "value"
-
-    def possible(self, value: float) -> bool:
-        """Return whether a value is an integer from 0, if it is a count."""
-        return self.kind != "exact" or (isinstance(value, int) and value >= 0)
 
 
 def counts(names: Iterable[str]) -> Readings:

@@ -8,7 +8,7 @@ import platform
 import uuid
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -38,6 +38,7 @@ class RecordError(ValueError):
     """An experiment cannot be recorded; the message names the runs or values."""
 
 
+@dataclass
 class Recorder:
     """Notes when a page starts, and writes its bundle at the end.
 
@@ -48,29 +49,18 @@ class Recorder:
         modules: the digest of each module that measures.
     """
 
-    def __init__(
-        self,
-        lesson: str,
-        page: str,
-        contract: session.Contract,
-        engine: session.Engine,
-        modules: Mapping[str, str],
-    ) -> None:
-        self.lesson, self.page, self.contract, self.engine = (
-            lesson,
-            page,
-            contract,
-            engine,
-        )
+    lesson: str
+    page: str
+    contract: session.Contract
+    engine: session.Engine
+    modules: Mapping[str, str]
+
+    def __post_init__(self) -> None:
         self.started = _now()
         self.run_id = os.environ.get(project.RUN_ID) or uuid.uuid4().hex
-        self._source = {
-            "page": os.environ.get(project.PAGE_SHA256),
-            "modules": dict(modules),
-        }
-        reader = ThreadPoolExecutor(
-            1
-        )  # the engine has many files; the page continues meanwhile
+        self.page_digest = os.environ.get(project.PAGE_SHA256)
+        # The engine has many files; the page continues meanwhile.
+        reader = ThreadPoolExecutor(1)
         self._match = reader.submit(files_match_wheel, ENGINE, COMPILER)
         reader.shutdown(wait=False)
 
@@ -177,7 +167,7 @@ class Recorder:
             "checks": [check.record() for check in run.outcomes()],
             "warnings": engine.log.warnings,
             "git": git_record(),
-            "source": self._source,
+            "source": {"page": self.page_digest, "modules": dict(self.modules)},
         }
 
 
@@ -189,10 +179,9 @@ def require_complete(run: Experiment) -> None:
             f"The page has the runs {', '.join(present) or 'none'}; its declaration names "
             f"{', '.join(required)}. Run each declared case, or correct the declaration."
         )
-    metrics = bundle.by_full_name(run.records())
     odd = [
         name
-        for name, metric in metrics.items()
+        for name, metric in bundle.by_full_name(run.records()).items()
         if not math.isfinite(metric["value"] or 0)
     ]
     if odd:

@@ -92,7 +92,7 @@ def summary(comparison: BundleComparison) -> str:
     """
     lines = [title(comparison), verdict(comparison), *comparison.obstacles]
     for part in comparison.sections:
-        state = part.state if part.rows else part.empty
+        state = part.state if part.rows else "none"
         lines.append(f"  {part.title.lower()}: {state}")
         worst = [row for row in part.rows if row.state in (DIFFERS, INCONCLUSIVE)]
         lines += [f"    {words(row)}" for row in worst]
@@ -109,12 +109,7 @@ def words(row: Row) -> str:
 def document(comparison: BundleComparison) -> Document:
     """Return the whole report."""
     parts = [
-        Part(
-            part.title,
-            _table(part.rows),
-            part.empty,
-            state=part.state if part.rows else "",
-        )
+        Part(part.title, _table(part.rows), state=part.state if part.rows else "")
         for part in comparison.sections
     ]
     parts.append(Part("The two bundles", _circumstances(comparison)))
@@ -129,10 +124,8 @@ def changes(comparison: BundleComparison) -> list[Cells]:
 
 
 def _table(rows: Sequence[Row]) -> list[Cells]:
-    """Return a head and each row, without empty columns."""
-    cells = [astuple(row)[: len(COLUMNS)] for row in rows]
-    kept = [k for k in range(len(COLUMNS)) if any(row[k] for row in cells)]
-    return [tuple(row[k] for k in kept) for row in [COLUMNS, *cells]]
+    """Return a head and each row."""
+    return [COLUMNS, *(astuple(row)[: len(COLUMNS)] for row in rows)]
 
 
 def _circumstances(comparison: BundleComparison) -> list[Cells]:

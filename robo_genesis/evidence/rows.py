@@ -9,7 +9,6 @@ import numpy as np
 from robo_genesis.core.comparison import (
     BROKEN,
     HELD,
-    WITHIN_MARGIN,
     Relation,
     agree,
     allowed,
@@ -37,21 +36,6 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
 )
 
 Tolerance = tuple[float, float]  # atol, rtol
-
-# State and verdict of a claimed ordering by its outcomes in the two runs.
-#
-# Two runs that both break an ordering agree, but the claim of the lesson fails.
-VERDICTS = {
-    frozenset({HELD}): (EQUAL, "held in both"),
-    frozenset({WITHIN_MARGIN}): (INCONCLUSIVE, "inconclusive"),
-    frozenset({HELD, WITHIN_MARGIN}): (INCONCLUSIVE, "inconclusive"),
-    frozenset({BROKEN}): (DIFFERS, "broken in both"),
-    frozenset({HELD, BROKEN}): (DIFFERS, "flipped"),
-    frozenset({BROKEN, WITHIN_MARGIN}): (
-        DIFFERS,
-        "broken in one, undecided in the other",
-    ),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +74,10 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """The rows of one kind, worst first; `empty` is the text of a section without rows."""
+    """The rows of one kind, worst first."""
 
     title: str
     rows: tuple[Row, ...]
-    empty: str = ""
 
     @property
     def state(self) -> str:
@@ -107,10 +90,10 @@ def worst(states: Sequence[str]) -> str:
     return max(states, key=SEVERITY.index, default=EQUAL)
 
 
-def section(title: str, rows: Iterator[Row], empty: str = "") -> Section:
+def section(title: str, rows: Iterator[Row]) -> Section:
     """Return a section with its rows sorted, worst first."""
     found = sorted(rows, key=lambda row: (-SEVERITY.index(row.state), -row.weight))
-    return Section(title, tuple(found), empty)
+    return Section(title, tuple(found))
 
 
 def coverage(old: Side, new: Side) -> Iterator[Row]:
@@ -143,13 +126,18 @@ def invariants(old: Side, new: Side) -> Iterator[Row]:
 
 
 def relations(old: Side, new: Side, claims: Sequence[Relation]) -> Iterator[Row]:
-    """Both sides show each ordering that the lesson claims."""
+    """Both sides show each ordering that the lesson claims.
+
+    Two runs that both break an ordering agree, but the claim of the lesson fails.
+    """
     numbers = {**old.numbers, **new.numbers}
     for claimed in claims:
         (first, second), metric, claim, margin = claimed
         outcomes = [outcome(side.numbers, claimed) for side in (old, new)]
-        state, verdict = VERDICTS[frozenset(held for held, _ in outcomes)]
-        what = f"{metric}: {second} {claim} than {first}, {verdict}"
+        words = {held for held, _ in outcomes}
+        clear = EQUAL if words == {HELD} else INCONCLUSIVE
+        state = DIFFERS if BROKEN in words else clear
+        what = f"{metric}: {second} {claim} than {first}"
         here, there = (f"{held}: {text}" for held, text in outcomes)
         known = numbers.get(f"{first}.{metric}")
         limit = f"margin {six_digits(margin, known.unit if known else '1')}"
@@ -174,9 +162,8 @@ def values(
             yield Row(EQUAL if a.value == b.value else DIFFERS, name, *text)
         else:
             group, _, metric = name.partition(".")
-            limits = tolerances if kind == "value" else {}
             both = np.array([float(a.value)]), np.array([float(b.value)])
-            yield _largest(name, (metric, group), *both, a.unit, limits)
+            yield _largest(name, (metric, group), *both, a.unit, tolerances)
 
 
 def arrays(old: Side, new: Side, tolerances: Mapping[str, Tolerance]) -> Iterator[Row]:

@@ -198,8 +198,6 @@ CARELESS = {
         "labels",
         case("G2", "variables", "q_rad_or_m", unit=["deg"] * 9),
     ),
-    "a link too few": ("labels", pop(ARRAYS, "coords", "link", -1)),
-    "a joint too few": ("labels", pop(ARRAYS, "joints", -1)),
     "an archive that is none": ("bad-array", write("arrays/G1.npz", "x")),
     "arrays of Python's objects": ("bad-array", rewrite(q=lambda q: q.astype(object))),
     "arrays that are not finite": ("bad-trace", rewrite(q=changed_at((-1, 0), np.nan))),
@@ -208,7 +206,6 @@ CARELESS = {
     "a frame too few": ("frames", remove("frames/final.png")),
     "frames without a camera": ("frames", part("render", mode="skip")),
     "a metric of another rule": ("metrics", metric(value=0.0)),
-    "a count that is none": ("metrics", put(METRICS, "model", "links", value=11.5)),
     "a check left out": ("checks", pop(MANIFEST, "checks", -1)),
     "a failed check": ("failed", failing),
 }

@@ -83,7 +83,7 @@ def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(bu
     assert found.state == "differs"
     text = refresh.document(found).markdown()
     assert "- Engine warning gained: Something new." in text
-    assert "flipped" in text
+    assert "broken: " in text
     assert "| differs | G3.overshoot |" in text
     assert "## L04 lab: engine version" in text
     below = text.split("## L04 lab: ")[1].split("## ")[0]
