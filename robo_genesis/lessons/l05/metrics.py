@@ -17,7 +17,7 @@ from robo_genesis.sim.arm.kinematics import (
     fingertip,
     hand_pose,
     measured_hand,
-    passed_by,
+    overshoot_along_line,
 )
 
 from .run import ReachCase
@@ -64,6 +64,6 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
         *distance_and_angle(command, end),
         float(np.linalg.norm(fingertip(command) - fingertip(end))),
         *distance_and_angle(target, end),
-        passed_by(path, case.position),
+        overshoot_along_line(path, case.position),
         float(np.abs(trace.qd[-1]).max()),
     )

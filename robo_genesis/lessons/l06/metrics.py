@@ -12,7 +12,7 @@ from robo_genesis.sim.arm.kinematics import (
     distance_and_angle,
     hand_pose,
     measured_hand,
-    passed_by,
+    overshoot_along_line,
 )
 
 from .run import Environment
@@ -55,6 +55,6 @@ def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:
         distance_and_angle(last, hand_pose(trace.target[-1]))[0],
         distance_and_angle(first, measured_hand(trace, world.switch))[0],
         *distance_and_angle(last, measured_hand(trace, -1)),
-        passed_by(hand[: world.switch + 1], first.position),
+        overshoot_along_line(hand[: world.switch + 1], first.position),
         float(apart.max()) if len(apart) > 1 else None,
     )

@@ -19,7 +19,7 @@ from robo_genesis.core.exercises import (
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
 
-from . import metrics, rates
+from . import metrics, statistics
 
 MEASURES = False
 
@@ -141,7 +141,7 @@ RATES = ((0, 1), (1, 1), (0, 64), (64, 64), (1, 3), (45, 64), (7, 1000))
 def intervals(wilson: Written) -> Findings:
     """Check `wilson(k, n)`: both ends of the interval, or ValueError."""
     for k, n in RATES:
-        right = rates.wilson(k, n)
+        right = statistics.wilson(k, n)
         yield from compared(
             f"{k}_of_{n}", ("lower", "upper"), wilson(k, n), right, 1e-9
         )

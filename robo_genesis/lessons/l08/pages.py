@@ -11,7 +11,7 @@ from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import structure
 
-from . import checks, edge, edge_checks, metrics, spec
+from . import checks, metrics, rates, rates_checks, spec
 from .creep import HeldMetrics
 from .creep_checks import CREEP
 from .metrics import EpisodesMetrics
@@ -59,9 +59,9 @@ LAB = with_functions(
 
 RATES = replace(
     LECTURE,
-    runs=runs_of(edge.CASES),
-    checks=edge_checks.RATES,
-    parameters=edge.parameters,
+    runs=runs_of(rates.CASES),
+    checks=rates_checks.RATES,
+    parameters=rates.parameters,
     camera=False,
 )
 MISTAKES = replace(RATES, runs={}, checks=(structure,))
@@ -83,7 +83,7 @@ TOGETHER = replace(
 
 LESSON = Lesson(
     spec=spec,
-    metrics=dict.fromkeys(spec.CASES | edge.CASES, EpisodesMetrics)
+    metrics=dict.fromkeys(spec.CASES | rates.CASES, EpisodesMetrics)
     | dict.fromkeys(CREEP.cases, HeldMetrics),
     pages={
         "lecture": LECTURE,

@@ -1,32 +1,86 @@
-"""Rates with their intervals, and two experts on the same starts."""
+"""Batches of the page on rates: a grid of errors, two experts, boxes, a clock."""
 
-from math import comb, sqrt
+from dataclasses import replace
+from typing import Any
 
-Z = 1.96  # Of an interval that holds in 95 % of repetitions
+import numpy as np
+
+from robo_genesis.core.experiment import inputs
+from robo_genesis.core.scene import FloatArray, read_only
+from robo_genesis.sim.arm.picking import PickCase
+
+from . import spec
+
+# Samples of 0.1 s, for 6 s.
+STEPS: dict[str, Any] = {"dt": 0.1, "substeps": 20, "commands": 10, "steps": 60}
+
+# Place of the cylinder, number of errors along each axis, and the largest one [m].
+PLACE, CELLS, MOST = (0.5, -0.1), 16, 0.03
+
+# Standard deviation of the error along each axis [m], and number of starts for both
+# experts.
+NOISE, PAIRS = 0.005, 128
+
+# Place of the pads when the fingers close, from their command, with the opposite sign
+# [m].
+SAG = read_only((0.0048, -0.0009))
+
+CLOCKS = (
+    10,
+    20,
+    30,
+    0,
+)  # Outer steps after which the descent ends, 0 where it is measured
+
+STRIDES = (
+    0.024,
+    0.012,
+    0.006,
+)  # Largest changes of a joint's command in one outer step [rad]
+
+TIMED = 16  # Episodes with each clock, and with each stride
+
+# Size of the box [m], and its largest yaw [rad].
+OBLONG, TURNED = (0.05, 0.07, 0.06), np.pi / 4
 
 
-def wilson(successes: float, of: float, z: float = Z) -> tuple[float, float]:
-    """Return the Wilson interval of a rate.
-
-    Raises:
-        ValueError: there are no episodes, or more successes than episodes.
-    """
-    if not 0 <= successes <= of or of < 1:
-        raise ValueError(
-            f"{successes} successes of {of} episodes: give 0 to n successes of n ≥ 1."
-        )
-    share, more = successes / of, z**2 / of
-    middle = (share + more / 2) / (1 + more)
-    half = z * sqrt(share * (1 - share) / of + more / (4 * of)) / (1 + more)
-    return middle - half, middle + half
+def batch(
+    starts: FloatArray, errors: FloatArray | float = 0.0, **more: Any
+) -> PickCase:
+    """Return episodes with these starts (e, 2) and errors (e, 2) of what the expert believes."""
+    settings = STEPS | more
+    return replace(spec.ASKEW, starts=starts, beliefs=starts + errors, **settings)
 
 
-def paired(only_one: int, only_other: int) -> float:
-    """Return the exact two-sided p value of McNemar's test.
+def cases() -> dict[str, PickCase]:
+    """Return the batches that have metrics, by name."""
+    rng = np.random.default_rng(5)
+    line = np.linspace(-MOST, MOST, CELLS)
+    errors = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    least, most = np.transpose(spec.REGION)
+    starts = rng.uniform(least, most, (PAIRS, 2))
+    noise = rng.normal(0.0, NOISE, (PAIRS, 2))
+    yaws = rng.uniform(-TURNED, TURNED, PAIRS)
+    timed = spec.starts(4, seed=6)
+    return {
+        "grid": batch(np.tile(PLACE, (len(errors), 1)), errors),
+        "plain": batch(starts, noise),
+        "corrected": batch(starts, noise + SAG),
+        "timed": batch(
+            np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)
+        ),
+        "paced": batch(
+            np.tile(timed, (len(STRIDES), 1)),
+            stride=np.repeat(STRIDES, TIMED),
+            steps=90,
+        ),
+        "boxes": batch(starts, shape="box", size=OBLONG, yaws=yaws),
+    }
 
-    The arguments count the starts at which one expert succeeds alone, and the other one
-    alone.
-    """
-    n, fewest = only_one + only_other, min(only_one, only_other)
-    tail = sum(comb(n, k) for k in range(fewest + 1)) / 2**n
-    return min(1.0, 2 * tail)
+
+CASES = cases()
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the page as JSON values, for the evidence key."""
+    return inputs(CASES, counted=list(spec.EXPECTED_MODEL))

@@ -15,7 +15,7 @@ from robo_genesis.sim.arm.picking import CLOSE, DONE, OPEN, PickCase
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.table import World
 
-from . import metrics, rates, spec
+from . import metrics, spec, statistics
 
 MEASURES = False
 
@@ -104,7 +104,7 @@ def rate(rungs: Written, wilson: Written, trace: Episodes, case: PickCase) -> st
     lines, course = [], metrics.reached(trace, case)
     for level, interval in (
         (levels(rungs, trace, case), wilson),
-        (course, rates.wilson),
+        (course, statistics.wilson),
     ):
         k, n = int(np.sum(level == len(metrics.RUNGS))), len(course)
         absent = level is None or missing(interval, k, n)
@@ -142,7 +142,7 @@ def conclusions(run: Experiment) -> str:
     return bullets(
         [
             f"{good} of {n} episodes reach the last rung. The interval of the rate is "
-            f"{percent(rates.wilson(good, n))}.",
+            f"{percent(statistics.wilson(good, n))}.",
             f"Episodes fail first: {listed(lost)}." if lost else "No episode fails.",
             f"All phases are done in {m.finished:.0f} episodes. At some "
             "time the object is lifted in "

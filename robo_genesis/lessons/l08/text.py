@@ -8,14 +8,14 @@ from robo_genesis.core.scene import DT
 from robo_genesis.core.text import decimal, scaled_value
 from robo_genesis.sim.throughput import KEPT
 
-from . import creep, edge, metrics, rates, spec
+from . import creep, metrics, rates, spec, statistics
 from .creep_checks import share_of
-from .edge_checks import pairs
+from .rates_checks import pairs
 
 MEASURES = False
 
 # By head of a table and by row, what is counted: a batch and a metric.
-COUNTED = {
+RATE_TABLES = {
     "success means": {
         "all phases done": ("askew", "finished"),
         "lifted at some time": ("askew", "raised_once"),
@@ -34,7 +34,7 @@ COUNTED = {
 
 def rate(successes: float, of: int) -> dict[str, str]:
     """Return a rate with its interval as columns of a table."""
-    low, high = rates.wilson(successes, of)
+    low, high = statistics.wilson(successes, of)
     return {
         "episodes": f"{successes:.0f} of {of}",
         "rate [%]": f"{100 * successes / of:.1f}",
@@ -43,12 +43,12 @@ def rate(successes: float, of: int) -> dict[str, str]:
 
 
 def rate_table(run: Experiment, head: str) -> str:
-    """Return the rates of a table of `COUNTED`, with their intervals."""
+    """Return the rates of a table of `RATE_TABLES`, with their intervals."""
     return tables.markdown(
         [
             {head: words}
             | rate(getattr(run.metrics[batch], name), len(run.cases[batch].starts))
-            for words, (batch, name) in COUNTED[head].items()
+            for words, (batch, name) in RATE_TABLES[head].items()
         ]
     )
 
@@ -71,7 +71,7 @@ def rung_table(run: Experiment) -> tables.Rows:
 @tables.as_table
 def pair_table(run: Experiment) -> tables.Rows:
     """Return the outcomes of both experts at the first starts, and p of the paired test."""
-    for n in (16, 32, 64, edge.PAIRS):
+    for n in (16, 32, 64, rates.PAIRS):
         both, alone, worse, none = pairs(run, n)
         plain, other = (
             rate(k, n)["95 % interval [%]"] for k in (both + worse, both + alone)
@@ -84,7 +84,7 @@ def pair_table(run: Experiment) -> tables.Rows:
             "only corrected": alone,
             "only plain": worse,
             "none": none,
-            "p": f"{rates.paired(alone, worse):.2g}",
+            "p": f"{statistics.paired(alone, worse):.2g}",
         }
 
 
@@ -119,9 +119,9 @@ def side_table(run: Experiment) -> tables.Rows:
 def pace_table(run: Experiment) -> tables.Rows:
     """Return how long cylinders are held at each speed of the arm, and how far they slide."""
     found = (
-        of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
+        of.reshape(len(rates.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
     )
-    for stride, seconds, slid in zip(edge.STRIDES, *found, strict=True):
+    for stride, seconds, slid in zip(rates.STRIDES, *found, strict=True):
         yield {
             "command, at most [rad/s]": decimal(stride / DT, 1),
             "held [s]": decimal(np.median(seconds), 1),

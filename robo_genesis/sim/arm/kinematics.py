@@ -203,7 +203,7 @@ def fingertip(pose: Pose) -> FloatArray:
     return pose.position + rotate(pose.quat, np.array([0.0, 0.0, TIP]))
 
 
-def passed_by(path: FloatArray, target: FloatArray) -> float:
+def overshoot_along_line(path: FloatArray, target: FloatArray) -> float:
     """Return how far a path (n+1, 3) leads past a target (3,), on the line from its start [m]."""
     way = np.asarray(path - target, dtype=float)
     return max(0.0, float((way @ -way[0]).max() / np.linalg.norm(way[0])))

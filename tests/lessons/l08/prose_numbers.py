@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from robo_genesis.lessons.l08 import rates
+from robo_genesis.lessons.l08 import statistics
 from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 from robo_genesis.sim.bodies.grippers import ARMATURE, PAD_MASS
 
 CONFIGURED = {
-    "z of the interval": rates.Z,
+    "z of the interval": statistics.Z,
     "hand above the pads [m]": HAND_TO_PAD,
     "the same [mm]": 1e3 * HAND_TO_PAD,
     "width of a wide box [m]": 0.078,
@@ -33,7 +33,7 @@ CONFIGURED = {
     "mass that it carries, by hand [kg]": round(2 * 11.7 / (9.81 + 5), 2),
     "seconds to slide by 10 mm, by hand [s]": round(10 / 1.2, 1),
     "error of the reader's own task [m]": 0.008,
-    "z of a 95 % interval": rates.Z,
+    "z of a 95 % interval": statistics.Z,
     "half of the length of a pad [mm]": 8.5,
     "permitted speed of joints 1 to 4 [rad/s]": 2.175,
     "permitted speed of joints 5 to 7 [rad/s]": 2.61,

@@ -7,7 +7,7 @@ import pytest
 from lessons.changed_runs import copied, failed, metric, put, reading, shift, trace
 from lessons.experiments import require_spoilers
 
-from robo_genesis.lessons.l08 import explorer, metrics, plots, rates, spec, text
+from robo_genesis.lessons.l08 import explorer, metrics, plots, spec, statistics, text
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.session import CaseError
 
@@ -21,16 +21,17 @@ PLACED = spec.SHOWN["placed"]
         (64, 64, 0.943, 1.0),
         (256, 256, 0.985, 1.0),
         (0, 10, 0.0, 0.278),
+        (15, 16, 0.717, 0.989),
     ],
 )
 def test_wilson_intervals_that_others_publish(k, n, low, high):
-    assert rates.wilson(k, n) == pytest.approx((low, high), abs=6e-4)
+    assert statistics.wilson(k, n) == pytest.approx((low, high), abs=6e-4)
 
 
 def test_the_paired_test_is_exact():
-    assert rates.paired(0, 5) == pytest.approx(2 / 32)
-    assert rates.paired(3, 3) == 1.0
-    assert rates.paired(1, 22) == rates.paired(22, 1)
+    assert statistics.paired(0, 5) == pytest.approx(2 / 32)
+    assert statistics.paired(3, 3) == 1.0
+    assert statistics.paired(1, 22) == statistics.paired(22, 1)
 
 
 def test_figures_and_tables_show_the_episodes(episodes):

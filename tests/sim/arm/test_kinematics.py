@@ -63,3 +63,14 @@ def test_the_margin_is_that_of_the_nearest_limit():
     assert of.limit_margin(q, lower, upper) == pytest.approx(0.1)
     q[4] = lower[4] - 0.2
     assert of.limit_margin(q, lower, upper) == pytest.approx(-0.2)
+
+
+@pytest.mark.parametrize(
+    ("ways", "expected"),
+    [([0, 3, 5, 4], 0.0), ([0, 3, 7, 5.5], 2.0), ([0, -1, 5], 0.0)],
+)
+def test_an_overshoot_is_measured_along_the_line_from_the_start(ways, expected):
+    along, aside = np.array([0.6, 0.8, 0.0]), np.array([-0.8, 0.6, 0.0])
+    path = np.outer(ways, along) + np.outer(np.arange(len(ways)), aside)
+    found = of.overshoot_along_line(path, 5 * along)
+    assert found == pytest.approx(expected)

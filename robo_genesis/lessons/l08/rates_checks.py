@@ -7,7 +7,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.arm.picking import CLOSE
 from robo_genesis.sim.common_checks import stamps, structure
 
-from . import checks, edge, metrics, rates
+from . import checks, metrics, rates, statistics
 
 MEASURES = False
 
@@ -41,18 +41,18 @@ def correction_helps(run: Experiment) -> Findings:
     alone, worse = pairs(run)[1:3]
     yield above("only_corrected", alone, 9.5)
     yield at_most("only_plain", worse, 8)
-    yield below("p", rates.paired(alone, worse), 0.01)
+    yield below("p", statistics.paired(alone, worse), 0.01)
 
 
 def window_is_centred(run: Experiment) -> Findings:
     """The corrected expert succeeds at all starts with noise of at most 7 mm along the pads."""
     case = run.cases["corrected"]
-    along = (case.beliefs - case.starts - edge.SAG)[:, 0]
+    along = (case.beliefs - case.starts - rates.SAG)[:, 0]
     good = metrics.good(run.traces["corrected"], case)
     yield equal("small_noise.failed", (~good[np.abs(along) <= 7e-3]).sum(), 0)
 
 
-def pairs(run: Experiment, first: int = edge.PAIRS) -> tuple[int, int, int, int]:
+def pairs(run: Experiment, first: int = rates.PAIRS) -> tuple[int, int, int, int]:
     """Return at how many of the first starts both experts succeed, only the corrected
     one, only the plain one, and none.
     """
@@ -69,12 +69,12 @@ def clock_hides_failure(run: Experiment) -> Findings:
     longest one and with the measured end all do.
     """
     good = metrics.good(run.traces["timed"], run.cases["timed"]).reshape(
-        len(edge.CLOCKS), -1
+        len(rates.CLOCKS), -1
     )
     yield equal("timed.finished", run.metrics["timed"].finished, good.size)
     yield equal("shortest.success", good[0].sum(), 0)
     for row, words in ((-2, "longest"), (-1, "measured")):
-        yield equal(f"{words}.success", good[row].sum(), edge.TIMED)
+        yield equal(f"{words}.success", good[row].sum(), rates.TIMED)
 
 
 def slower_slides_farther(run: Experiment) -> Findings:
@@ -83,7 +83,7 @@ def slower_slides_farther(run: Experiment) -> Findings:
     than a tenth.
     """
     seconds, slid = (
-        of.reshape(len(edge.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
+        of.reshape(len(rates.STRIDES), -1) for of in metrics.slides(run.traces["paced"])
     )
     yield equal("paced.success", run.metrics["paced"].resting, slid.size)
     yield above("slower.least_further_slide_m", np.diff(slid, axis=0).min(), 0)
@@ -99,7 +99,7 @@ def hovering_is_a_trap(run: Experiment) -> Findings:
     m = run.metrics["boxes"]
     yield above("boxes.over_bowl", m.over_bowl, m.resting + BAND)
     yield above("boxes.hanging", m.hanging, 9.5)
-    yield above("boxes.finished", m.finished, 0.95 * edge.PAIRS)
+    yield above("boxes.finished", m.finished, 0.95 * rates.PAIRS)
 
 
 RATES = (

@@ -8,7 +8,7 @@ from lessons.changed_runs import put, reading, shift, trace
 from lessons.experiments import require_spoilers
 from lessons.l08.conftest import batch, experiment
 
-from robo_genesis.lessons.l08 import edge, pages, plots, spec, text
+from robo_genesis.lessons.l08 import pages, plots, rates, spec, text
 from robo_genesis.sim.arm import picking
 
 
@@ -17,7 +17,7 @@ def outcomes(name, case):
     along, across = 1000 * (case.beliefs - case.starts).T
     k = np.arange(len(case.starts))
     inside = (along > -3) & (along < 11) & (abs(across) < 19)
-    noise = along - 1000 * edge.SAG[0] * (name == "corrected")
+    noise = along - 1000 * rates.SAG[0] * (name == "corrected")
     good = {
         "plain": noise > -3,
         "corrected": abs(noise) < 8.5,
@@ -31,11 +31,11 @@ def outcomes(name, case):
 @pytest.fixture(scope="module")
 def run(joints):
     lengths = {
-        "paced": np.repeat([9, 10, 11], edge.TIMED),
-        "timed": np.repeat([6, 6.4, 6.8, 7.2], edge.TIMED),
+        "paced": np.repeat([9, 10, 11], rates.TIMED),
+        "timed": np.repeat([6, 6.4, 6.8, 7.2], rates.TIMED),
     }
     made = {}
-    for name, case in edge.CASES.items():
+    for name, case in rates.CASES.items():
         good, *hand = outcomes(name, case)
         how = {"length": lengths.get(name, 6), "slide": 1.5e-3}
         made[name] = batch(case, np.where(good, 7, 1), *hand, **how)
@@ -68,7 +68,7 @@ def test_each_check_fails_for_a_spoiled_run(run):
 
 
 def test_a_clock_ends_the_descent_whatever_is_measured():
-    case = replace(edge.batch(spec.starts(1)), timed=3.0)
+    case = replace(rates.batch(spec.starts(1)), timed=3.0)
     expert = picking.Expert(case, np.zeros((9, 1, 7)), np.array([True]))
     expert.phase[:] = picking.DESCEND
     for _ in range(3):
