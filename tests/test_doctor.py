@@ -82,6 +82,15 @@ def assert_broken(steps_run, capsys, step, *words):
             (project, "installed_version", lambda package: "0.0.1"),
             ("genesis-world 0.0.1", "pip install -r"),
         ),
+        (
+            "version",
+            (
+                diagnosis,
+                "requires",
+                lambda package: ["numpy>=99", "numpy<2; extra == 'x'"],
+            ),
+            ("numpy>=99 is required, installed is", "pip install -r"),
+        ),
         ("libraries", (ctypes, "CDLL", fail), ("libGL.so.1", "apt install libegl1")),
         (
             "model_file",

@@ -5,10 +5,12 @@ import platform
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from importlib.metadata import requires
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from packaging.requirements import Requirement
 
 from robo_genesis.core import project, scene
 from robo_genesis.core.project import RENDER
@@ -68,8 +70,16 @@ class StepResult:
 
 
 def version(bench: Bench) -> str:
-    """The pinned engine is the installed one."""
+    """The pinned engine is the installed one, with packages in the versions that it requires."""
     pin = project.require_pinned_engine()
+    lines = [line for line in requires(project.ENGINE) or () if "extra ==" not in line]
+    for need in map(Requirement, lines):
+        found = project.installed_version(need.name)
+        if found and not need.specifier.contains(found, prereleases=True):
+            raise StepError(
+                f"{need.name}{need.specifier} is required, installed is {found}. "
+                f"Run {project.install_command()}"
+            )
     return f"{project.ENGINE} {pin}, as pinned; Python {platform.python_version()}"
 
 
