@@ -39,10 +39,6 @@ class StepError(RuntimeError):
     """A step failed; the message says what was found and what to do."""
 
 
-class DoubtError(StepError):
-    """A step found something that can stop the engine, or that makes no difference."""
-
-
 @dataclass(slots=True)
 class Bench:
     """The objects that the steps have made so far; later steps use them."""
@@ -57,7 +53,7 @@ class Bench:
     trace: Any = None
 
 
-State = Literal["ok", "warning", "broken", "not run"]
+State = Literal["ok", "broken", "not run"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,19 +230,15 @@ def run_steps(
     """
     state: State = "ok"
     for step in steps:
-        ended = state in ("broken", "not run")
-        state, found = ("not run", "") if ended else outcome(step, subject)
+        found = ""
+        if state != "ok":
+            state = "not run"
+        else:
+            try:
+                found = step(subject)
+            except Exception as error:  # any error is reported
+                state, found = "broken", advice(error)
         yield StepResult(step.__name__, state, found)
-
-
-def outcome(step: Callable[[Any], str], subject: Any) -> tuple[State, str]:
-    """Run a step; return its state and what it found."""
-    try:
-        return "ok", step(subject)
-    except DoubtError as doubt:
-        return "warning", str(doubt)
-    except Exception as error:  # any error is reported
-        return "broken", advice(error)
 
 
 def advice(error: Exception) -> str:

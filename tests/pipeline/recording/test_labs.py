@@ -127,7 +127,7 @@ def test_engine_switches_reach_the_probe_and_the_user_s_contract_does_not(monkey
 
 
 FOUND = [StepResult(name, "broken", "a\nb") for name in ("devices", "kernel")]
-FOUND += [StepResult("torch", "warning", "c")]
+FOUND += [StepResult("torch", "ok", "c")]
 
 
 @pytest.mark.parametrize(
@@ -147,7 +147,7 @@ def test_what_cannot_be_recorded_is_refused_before_the_run(tmp_path, settings, s
     probed = [
         r"probe devices broken a\nb",
         r"probe kernel broken a\nb",
-        "probe torch warning c",
+        "probe torch ok c",
     ]
     found = [" ".join(line.split("] ")[1].split()) for line in lines]
     assert found == (probed if "probe" in settings else [])
