@@ -43,34 +43,33 @@ WIDTH, INDENT = 72, 28
 MARK = "\x1e"
 STEPS_PROCESS = "from robo_genesis import doctor; doctor.send_reports()"
 
-# What a manifest and a report say about a machine.
-FACTS = ("engine", "quadrants", "torch", "python", "system", "backend", "device")
-
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
 def table(steps: Sequence[Mapping[str, str]]) -> str:
     """Return the rows of the steps that are done, and the beginning of the next one's.
 
-    If none is left, the verdict is the last line. Only a long word makes a row longer
-    than `WIDTH`.
+    If one is broken or none is left, the verdict is the last line. Only a long word
+    makes a row longer than `WIDTH`.
     """
     text, verdict = "", f"all {len(steps)} steps pass"
-    indent = f"\n{' ' * INDENT}"
     for number, step in enumerate(steps, start=1):
         name, state = step["step"], step["state"]
-        text += f"{number:2}/{len(steps):<2}  {name:{INDENT - 18}}  "
-        if state == "not run" and verdict.startswith("all"):
-            return text
-        lines = textwrap.wrap(
-            step["found"],
-            WIDTH - INDENT,
+        begun = f"{number:2}/{len(steps):<2}  {name:{INDENT - 18}}  "
+        if state == "not run":
+            return text + begun
+        row = textwrap.fill(
+            printable(" ".join(step["found"].split())),
+            WIDTH,
+            initial_indent=f"{begun}{state:7}  ",
+            subsequent_indent=" " * INDENT,
             break_long_words=False,
             break_on_hyphens=False,
         )
-        text += f"{state:7}  {indent.join(map(printable, lines))}".rstrip() + "\n"
+        text += f"{row}\n"
         if state == "broken":
             verdict = f"step {number}, {name}, is broken; fix it and run this again"
+            break
     return f"{text}\nDOCTOR: {verdict}\n"
 
 
@@ -156,13 +155,16 @@ def reports() -> Iterator[dict[str, Any]]:
 
 def machine(engine: Any) -> dict[str, str]:
     """Return the facts that the manifest of a run has too; fewer if the engine did not start."""
-    versions = [
-        project.installed_version(name) or "not installed" for name in PACKAGES[:3]
-    ]
-    facts = [*versions, platform.python_version(), platform.platform()]
+    names = {"engine": project.ENGINE, "quadrants": "quadrants", "torch": "torch"}
+    facts = {
+        fact: project.installed_version(name) or "not installed"
+        for fact, name in names.items()
+    }
+    facts |= {"python": platform.python_version(), "system": platform.platform()}
     if engine:
-        facts += [engine.backend.actual, engine.backend.device_name]
-    return dict(zip(FACTS, facts, strict=False))
+        backend = engine.backend
+        facts |= {"backend": backend.actual, "device": backend.device_name}
+    return facts
 
 
 def shareable(text: str) -> str:
@@ -184,39 +186,34 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     with bundle_folder(Path(bundle)) as folder:
         run = read_manifest(folder)
     engine, backend, host = run.engine, run.backend, run.host
-    versions = [
-        engine.version,
-        engine.quadrants_version,
-        backend.torch_version,
-        host.python,
-    ]
-    found = [*versions, host.os, backend.actual, backend.device_name]
-    return dict(zip(FACTS, found, strict=True))
+    return {
+        "engine": engine.version,
+        "quadrants": engine.quadrants_version,
+        "torch": backend.torch_version,
+        "python": host.python,
+        "system": host.os,
+        "backend": backend.actual,
+        "device": backend.device_name,
+    }
 
 
-def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> list[str]:
-    """Return a line for each fact: equal, or both values, in columns of equal width.
+def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> Iterator[str]:
+    """Yield a line for each fact: equal, or both values.
 
     Args:
         here: the facts of this machine.
         recorded: the facts of the machine that recorded a bundle.
     """
-    rows = [("", "recorded", "this machine")]
+    line = "{:9}  {:50}  {}".format
+    yield line("", "recorded", "this machine")
     for name, value in recorded.items():
         found = here.get(name, "unknown: the engine did not start")
-        rows.append(
-            (name, printable(value), "equal" if found == value else printable(found))
-        )
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        f"{name:{widths[0]}}  {value:{widths[1]}}  {found}"
-        for name, value, found in rows
-    ]
-    advice = (
-        "If the engine differs, install the site's version. Another "
-        "backend rounds differently;"
+        same = "equal" if found == value else printable(found)
+        yield line(name, printable(value), same)
+    yield (
+        "If the engine differs, install the site's version. Another backend rounds "
+        "differently; other differences usually change only the last digits."
     )
-    return [*lines, f"{advice} other differences usually change only the last digits."]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
