@@ -29,7 +29,7 @@ FAILED = re.compile(
     r"^\[ *[\d.]+ s\] \w+ +(.+?)  (failed|refused)\b.*?: (.+)\n", re.MULTILINE
 )
 
-LINES = 50  # How many last lines of a log an error and the report show
+LINES = 50  # How many last lines of a log an error shows
 
 
 def run_repin(
@@ -144,7 +144,7 @@ class Trial:
             f"so that it passes with {self.new} too, and commit; then run make repin again. It "
             "reuses what is compiled and executed."
         )
-        report = self.write_report(head, remedy, *lines)
+        report = self.write_report(head, remedy)
         raise project.ProjectError(
             "\n".join(
                 [*lines, f"Log: {log}", f"Report: {report}", "", f"{head}. {remedy}"]
@@ -155,10 +155,7 @@ class Trial:
         """Compare what both versions built, as far as they did, and write the report."""
         found = refresh.Refresh((self.old, self.new))
         if self.before:
-            absent = [
-                page for page, (state, _) in self.failed.items() if state == "failed"
-            ]
-            after = refresh.read_build(self.work, self.new, self.site, absent)
+            after = refresh.read_build(self.work, self.new, self.site)
             found = refresh.compare_builds(self.before, after)
         found = replace(found, failed=failed, pages=self.failed)
         folder = self.cache / "reports" / f"repin-{self.old}-{self.new}"

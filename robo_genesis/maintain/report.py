@@ -1,7 +1,7 @@
 """The refresh report: what another engine version changes in evidence and sentences."""
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
@@ -72,9 +72,8 @@ class Refresh:
 
     `missing` is lesson/page/backend → why its bundles were not compared; `changed` holds
     (page, old, new) of each changed sentence, see `changed_sentences`. `failed` says what
-    failed, what to do, and the last lines of the log; what was not reached is empty
-    then. `pages` is the name of each page that is not accepted → `failed` or `refused`,
-    and why.
+    failed and what to do; what was not reached is empty then. `pages` is the name of each
+    page that is not accepted → `failed` or `refused`, and why.
     """
 
     versions: Pair
@@ -91,21 +90,16 @@ class Refresh:
         return worst([comparison.state for comparison in self.comparisons] + lacking)
 
 
-def read_build(
-    root: Path, version: str, site: Path, failed: Collection[str] = ()
-) -> EngineBuild:
+def read_build(root: Path, version: str, site: Path) -> EngineBuild:
     """Return what an engine version has built in a checkout that pins it, refused or not.
 
     Args:
         root: the checkout.
         version: of the engine.
         site: the folder of the HTML.
-        failed: names of pages of which the store can have an earlier run alone.
     """
-    bundles, book = {}, root / "book"
-    for page in find_pages(book):
-        if page.docname in failed:
-            continue
+    bundles = {}
+    for page in find_pages(root / "book"):
         for folder in folders(executions(root / ".cache" / STORE, page)):
             with suppress(PageRefused):  # it is not of a build of today
                 record = read_record(folder)
@@ -129,14 +123,9 @@ def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
         except BundleRefused as error:
             missing[name] = str(error)
     versions = old.version, new.version
-    return Refresh(
-        versions,
-        tuple(comparisons),
-        missing,
-        tuple(changed_sentences(old.site, new.site, versions))
-        if new.site.is_dir()
-        else (),
-    )
+    changed = changed_sentences(old.site, new.site, versions)
+    sentences = tuple(changed) if new.site.is_dir() else ()
+    return Refresh(versions, tuple(comparisons), missing, sentences)
 
 
 def changed_sentences(
@@ -209,11 +198,10 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
     and left out below: most of several thousand rows are.
     """
     if refresh.failed:
-        what, remedy, *lines = refresh.failed
+        what, remedy = refresh.failed
         reasons = [(page, *reason) for page, reason in refresh.pages.items()]
         head = ("page", "result", "reason")
         yield Part(what, [head, *reasons], remarks=[remedy, RULE_OR_ENGINE])
-        yield Part("Last lines of the log", [()], remarks=lines)
     rows = [("page", "result", "rows")]
     for one in refresh.comparisons:
         name = f"{one.new.lesson} {one.new.page}"
