@@ -1,7 +1,7 @@
 """Add a lesson: files made from the template, and its lines in `_toc.yml` and `course_map.yml`.
 
-The files below `template/` hold `$lesson` and `$LESSON` in the place of the name, `l07`
-and `L07`.
+The files below `template/` lie as in the checkout. Their paths and texts hold `$lesson`
+and `$LESSON` in the place of the name, `l07` and `L07`.
 """
 
 import re
@@ -12,7 +12,6 @@ from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import ProjectError
 
 TEMPLATE = Path(__file__).with_name("template")
-SUFFIX = ".tmpl"
 OUTCOME = "measure how a joint turns"
 CHAPTER, ENTRY = "  - file: ", "- id: "
 
@@ -65,18 +64,15 @@ def require_new(root: Path, lesson: str) -> None:
 
 def lesson_files(root: Path, lesson: str) -> dict[Path, str]:
     """Return the text of each file that the template gives."""
-    words = {"lesson": lesson, "LESSON": lesson.upper()}
-    targets = {
-        "package": root / "robo_genesis" / "lessons" / lesson,
-        "book": root / "book" / "lessons" / f"{lesson}-new-lesson",
-        "tests": root / "tests" / "lessons" / lesson,
-    }
+
+    def filled(text: str) -> str:
+        return Template(text).substitute(lesson=lesson, LESSON=lesson.upper())
+
     return {
-        target / path.name.removesuffix(SUFFIX): Template(
+        root / filled(str(path.relative_to(TEMPLATE).with_suffix(""))): filled(
             path.read_text("utf8")
-        ).substitute(words)
-        for part, target in targets.items()
-        for path in sorted((TEMPLATE / part).glob(f"*{SUFFIX}"))
+        )
+        for path in sorted(TEMPLATE.rglob("*.tmpl"))
     }
 
 
@@ -86,10 +82,9 @@ def with_chapter(toc: str, lesson: str) -> str:
     folder = f"lessons/{lesson}-new-lesson"
     new = f"{CHAPTER}{folder}/lecture\n    sections:\n"
     new += "".join(f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes"))
-    before = (
-        k for k, text in enumerate(chapters) if f"{CHAPTER}lessons/" <= text < new
-    )
-    chapters.insert(max(before, default=-1) + 1, new)
+    # The lessons are the first chapters.
+    at = sum(f"{CHAPTER}lessons/" <= text < new for text in chapters)
+    chapters.insert(at, new)
     return "".join([head, *chapters])
 
 
