@@ -68,10 +68,10 @@ def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     """Describe a point, its overshoot, and whether it saturated."""
     name = f" (the case {NAMES[point]})" if point in NAMES else ""
     overshoot, force = "none", "Not saturated: no sample"
-    if measured.overshoot > 0:
+    if measured.overshoot:
         overshoot = f"{share_text(measured.overshoot / point.step)} of the step"
-    if measured.saturation_samples:
-        force = f"Saturated: {measured.saturation_samples} of {samples} samples"
+    if count := measured.saturation_samples:
+        force = f"Saturated: {count} of {samples} samples"
     return (
         f"KP {point.kp:g}, KV {point.kv:g}, step {point.step:g} rad{name}. "
         f"Overshoot: {overshoot}. {force} at the force limit."
@@ -81,9 +81,10 @@ def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
 def explored(run: Experiment) -> dict[str, Any]:
     """Return the grid for the explorer: a map for each step, with curves packed as integers."""
     first = run.traces[POINTS[0].name]
+    start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
     return {
         "choices": (f"Step of {STEPPED_JOINT}", "Map shows"),
-        "maps": [_map(run, step) for step in STEP_SIZES],
+        "maps": [_map(run, step, start, limit) for step in STEP_SIZES],
         "measures": [_measure(name) for name in CELLS],
         "columns": [*LABELS.values()],
         "notes": {"–": "A dash: not observed."},
@@ -97,7 +98,7 @@ def explored(run: Experiment) -> dict[str, Any]:
                     "name": "Position",
                     "title": "Position [rad], target dotted",
                     "unit": PACKED["q"],
-                    "zero": float(first.q[0, ENTRY]),
+                    "zero": start,
                     "first": 0,
                 },
                 {
@@ -115,24 +116,15 @@ def explored(run: Experiment) -> dict[str, Any]:
     }
 
 
-def _map(run: Experiment, step: float) -> dict[str, Any]:
+def _map(run: Experiment, step: float, start: float, limit: float) -> dict[str, Any]:
     """Return the runs of one step: KP upwards, KV to the right, and the axes of their curves."""
     cells = [_cell(run, point) for point in POINTS if point.step == step]
-    first = run.traces[POINTS[0].name]
-    start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
-    target, room = start + step, 0.08 * step
+    target, room, end = start + step, 0.08 * step, 1.15 * limit
     highest = max(start + PACKED["q"] * max(max(cell["q"]) for cell in cells), target)
-    q = {
-        "low": start - room,
-        "high": highest + room,
-        "ticks": _ticks((start, start + step / 2, target), 3),
-        "levels": [{"value": target, "mark": "target"}],
-    }
-    force = {
-        "low": -1.15 * limit,
-        "high": 1.15 * limit,
-        "ticks": _ticks((-limit, 0.0, limit), 0),
-        "levels": [{"value": value, "mark": "limit"} for value in (-limit, limit)],
+    ends = (start - room, highest + room)
+    axes = {
+        "q": _axis(*ends, (start, start + step / 2, target), 3, "target", target),
+        "force": _axis(-end, end, (-limit, 0.0, limit), 0, "limit", -limit, limit),
     }
     return maps.grid(
         "Map of the runs: KP upwards, KV to the right.",
@@ -141,24 +133,31 @@ def _map(run: Experiment, step: float) -> dict[str, Any]:
         cells,
         label=f"{step:g} rad",
         setting=f"step {step:g} rad",
-        axes={"q": q, "force": force},
+        axes=axes,
     )
 
 
-def _ticks(values: Sequence[float], digits: int) -> list[dict[str, Any]]:
-    """Return the ticks of the value axis of a curve."""
-    return [{"value": value, "label": decimal(value, digits)} for value in values]
+def _axis(
+    low: float, high: float, ticks: Sequence[float], digits: int, mark: str, *at: float
+) -> dict[str, Any]:
+    """Return the value axis of a curve: its ends, ticks, and levels with a mark."""
+    return {
+        "low": low,
+        "high": high,
+        "ticks": [{"value": value, "label": decimal(value, digits)} for value in ticks],
+        "levels": [{"value": value, "mark": mark} for value in at],
+    }
 
 
 def _measure(name: str) -> dict[str, Any]:
     """Return a metric that cells show and questions are about."""
-    words = ("earlier", "later") if UNITS[name] == "s" else ("lower", "higher")
+    lower, higher = ("earlier", "later") if UNITS[name] == "s" else ("lower", "higher")
     return {
         "label": f"{LABELS[name]} [{CELLS[name][2]}]",
         "column": [*LABELS].index(name),
         "noun": NOUNS[name],
-        "lower": words[0],
-        "higher": words[1],
+        "lower": lower,
+        "higher": higher,
         "margin": MARGINS[name],
         "within": margin_text(name),
     }
@@ -168,26 +167,25 @@ def _cell(run: Experiment, point: GridPoint) -> dict[str, Any]:
     """Return one run of the grid as JSON values; positions are from the start."""
     trace, measured = run.traces[point.name], run.metrics[point.name]
     drawn, q = round(UNTIL / trace.dt), trace.q[:, ENTRY].astype(float)
-    numbers = {name: getattr(measured, name) for name in CELLS}
+    numbers = [getattr(measured, name) for name in CELLS]
     return {
         "name": f"KP {point.kp:g}, KV {point.kv:g}",
         "tag": NAMES.get(point, ""),
         "opens": point == CASE_POINTS["G2"],
         "sentence": sentence(point, measured, trace.steps),
         "values": [*written(measured).values()],
-        "numbers": [*numbers.values()],
+        "numbers": numbers,
         "texts": [
-            "–" if value is None else decimal(value * CELLS[name][0], CELLS[name][1])
-            for name, value in numbers.items()
+            "–" if value is None else decimal(value * factor, digits)
+            for value, (factor, digits, _) in zip(numbers, CELLS.values(), strict=True)
         ],
         "q": _integers(q[: drawn + 1] - q[0], "q"),
         "force": _integers(trace.control_force[:drawn, ENTRY].astype(float), "force"),
     }
 
 
-def _integers(values: FloatArray, name: str) -> list[int]:
-    packed: list[int] = np.rint(values / PACKED[name]).astype(int).tolist()
-    return packed
+def _integers(values: FloatArray, name: str) -> Any:
+    return np.rint(values / PACKED[name]).astype(int).tolist()
 
 
 @as_table

@@ -62,14 +62,12 @@ def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
     tables = {}
     for one in shown:
         answers = {cell["answer"] for row in one["rows"] for cell in row["cells"]}
-        tables[one["caption"]] = [
-            row for row in records(run, one["run"]) if int(row["answer"]) in answers
-        ]
-    columns = [*next(iter(tables.values()))[0]]
+        found = [r for r in records(run, one["run"]) if int(r["answer"]) in answers]
+        tables[one["caption"]] = found
     return {
         "maps": shown,
         "measures": [{"label": name} for name in QUANTITIES],
-        "columns": columns[1:],
+        "columns": [*found[0]][1:],
         "notes": {
             "×": "×: refused.",
             "↓": "↓: accepted by its residual, fingertips in the floor.",
@@ -83,9 +81,7 @@ def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
 def plane_map(run: Experiment, name: str) -> dict[str, Any]:
     """Return the map of the targets in a plane."""
     label, axis, upwards = PLACES[name]
-    columns, rows = (
-        [f"{value:g}" for value in values] for values in (spec.GRID_X, upwards)
-    )
+    columns, rows = ([f"{at:g}" for at in ends] for ends in (spec.GRID_X, upwards))
     places = [f"{axis} {row}, x {column}" for row in rows for column in columns]
     cells = map(_cell, records(run, name), places)
     caption = f"{label}. x [m] to the right, {axis} [m] upwards."
@@ -97,14 +93,12 @@ def solution_map(run: Experiment) -> dict[str, Any]:
     found = records(run, "many_starts")
     rows = []
     for curve, (_, inside) in enumerate(study.solution_families(run), start=1):
-        cells = [
-            _cell(found[answer], f"curve {curve}, place {k % COLUMNS + 1}")
-            for k, answer in enumerate(inside)
-        ]
-        rows += [
-            {"label": str(curve), "cells": cells[k : k + COLUMNS]}
-            for k in range(0, len(cells), COLUMNS)
-        ]
+        for first in range(0, len(inside), COLUMNS):
+            cells = [
+                _cell(found[answer], f"curve {curve}, place {k}")
+                for k, answer in enumerate(inside[first : first + COLUMNS], start=1)
+            ]
+            rows.append({"label": str(curve), "cells": cells})
     return {
         "run": "many_starts",
         "label": "One target has many answers",
