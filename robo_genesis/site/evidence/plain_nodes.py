@@ -1,20 +1,14 @@
-"""Nodes that no parser of markup makes; text of a bundle could contain a script."""
+"""Nodes that no parser of markup makes."""
 
 import os
-import re
-from collections.abc import Iterable
 from functools import partial
 from html import escape
-from itertools import cycle
 from pathlib import Path
 from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
-
-MARKED = re.compile(r"\*\*([^*]+)\*\*|`([^`]+)`")
-KINDS = (nodes.Text, partial(nodes.strong, ""), partial(nodes.literal, ""))
 
 
 class between(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
@@ -39,12 +33,6 @@ def fill_in(app: Sphinx, doctree: nodes.document, docname: str) -> None:
         place.replace_self(html(place["make"](app, docname)))
 
 
-def marked(text: str) -> list[nodes.Node]:
-    """Return text with `**strong**` parts and code in backticks; nothing else is markup."""
-    parts = zip(cycle(KINDS), MARKED.split(text))  # plain, strong, code, plain, …
-    return [make(part) for make, part in parts if part]
-
-
 def image(env: BuildEnvironment, name: str, content: bytes, alt: str) -> nodes.image:
     """Return a picture; its file is written outside the site until Sphinx copies it.
 
@@ -63,18 +51,6 @@ def image(env: BuildEnvironment, name: str, content: bytes, alt: str) -> nodes.i
 def html(text: str) -> nodes.Node:
     """Return markup of the site's own."""
     return nodes.raw("", text, format="html")
-
-
-def paragraph(*parts: str | nodes.Node, **attributes: Any) -> nodes.paragraph:
-    """Return a paragraph of nodes and texts, each text as it is."""
-    texts = (nodes.Text(part) if isinstance(part, str) else part for part in parts)
-    return nodes.paragraph("", "", *texts, **attributes)
-
-
-def bullets(*items: Iterable[str | nodes.Node], **attributes: Any) -> nodes.bullet_list:
-    """Return a list; an item consists of nodes and texts."""
-    lines = (nodes.list_item("", paragraph(*item)) for item in items)
-    return nodes.bullet_list("", *lines, **attributes)
 
 
 def scroll_box(label: str, *inside: nodes.Node) -> between:

@@ -194,7 +194,8 @@ def postures(
     files, weight, still = replays.leave_model(
         env,
         name,
-        [folder, shape],
+        folder,
+        shape,
         (with_cross(parts, camera), [*run.links, CROSS], traces, replay.credit),
         "The robot at the start, drawn from the recorded poses.",
     )

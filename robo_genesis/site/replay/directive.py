@@ -11,7 +11,7 @@ writes to a file.
 
 import base64
 import gzip
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,20 +24,15 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.channels import Run
-from robo_genesis.core.files import derived, files_below, write_whole
+from robo_genesis.core.files import derived, files_below, files_digest, write_whole
 from robo_genesis.core.markup import filled
+from robo_genesis.core.text import bullets
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.page_index import page_outputs
 from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.sim import visual_shape
-from robo_genesis.site.evidence.plain_nodes import (
-    bullets,
-    html,
-    image,
-    marked,
-    scroll_box,
-)
+from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.pages import PageDirective
@@ -110,7 +105,7 @@ def replay_block(
     around = scenery(parts, runs)
     drawn = around, runs.links, runs.traces, replay.credit
     files, weight, still = leave_model(
-        env, name, [folder, shape], drawn, controls.alt(runs)
+        env, name, folder, shape, drawn, controls.alt(runs)
     )
     shown, (first, *_) = runs, runs.channels
     if brief:  # the model is the same
@@ -119,18 +114,16 @@ def replay_block(
     samples = f"samples of {', '.join(runs.traces)} as a table"
     summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
-    veiled = [
-        "growing",
-        *(["veiled"] if env.docname != env.config.root_doc else []),
-    ] * blind
-    block = nodes.container(classes=["replay-block", *veiled], evidence_runs=(key,))
+    block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
+    if blind:
+        on_home = env.docname == env.config.root_doc
+        block["classes"] += ["growing"] if on_home else ["growing", "veiled"]
     block += html(opening)
     over = controls.over_the_picture("Play", blind)
     block += stage(still, over, controls.caption(runs, around), f"{name}-model")
     fold = f"<details><summary>{summary}</summary>"
     block += html(controls.panel(name, shown, weight) + fold)
-    if shown.moves:
-        block += bullets(*map(marked, shown.moves.values()))
+    block += directive.parse_text_to_nodes(bullets(shown.moves.values()))
     block += scroll_box(
         summary, *directive.parse_text_to_nodes(controls.samples(shown))
     )
@@ -146,7 +139,8 @@ def replay_folder(env: BuildEnvironment) -> str:
 def leave_model(
     env: BuildEnvironment,
     name: str,
-    sources: Iterable[Path],
+    folder: Path,
+    shape: Path,
     drawn: tuple["Scenery", Sequence[str], Mapping[str, Run], str | None],
     alt: str,
 ) -> tuple[dict[str, str], int, nodes.image]:
@@ -157,7 +151,8 @@ def leave_model(
     Args:
         env: of the page.
         name: of the model.
-        sources: the files and folders that decide it, besides the package.
+        folder: of the bundle.
+        shape: the file of the shape.
         drawn: what to draw, the links, the runs and the copyright; see `model.glb`.
         alt: text of the picture that it replaces.
 
@@ -170,20 +165,17 @@ def leave_model(
 
     around, links, traces, credit = drawn
     camera = around.camera
-    inputs = [repr((name, *links, *traces, credit)).encode()]
-    for source in (project.ROOT / PACKAGE, *sources):
-        inputs += [
-            f.read_bytes()
-            for f in (source, *sorted(files_below(source)))
-            if f.is_file()
-        ]
+    files = [shape, *files_below(folder), *files_below(project.ROOT / PACKAGE)]
+    inputs = [
+        repr((name, *links, *traces, credit, files_digest(Path("/"), files))).encode()
+    ]
     model = derived("replay", inputs, lambda: glb(*drawn))
     still = derived("poster", inputs, lambda: picture(model, camera))
     text = base64.b64encode(model).decode()
     script = f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
-    folder, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
-    for file, content in ((f"{name}.glb", model), (f"{name}.js", script)):
-        write_whole(folder / file, content)
+    site, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
+    write_whole(site / f"{name}.glb", model)
+    write_whole(site / f"{name}.js", script)
     weight = round(
         sum(len(gzip.compress(of)) for of in (script, viewer.viewer())) / 1000
     )

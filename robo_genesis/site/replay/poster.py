@@ -51,5 +51,5 @@ def picture(model: bytes, camera: Camera) -> bytes:
     data = bytes(pixels)  # type: ignore[call-overload] # a buffer, which its stubs omit
     image = Image.frombytes("RGBa", SIZE, data, "raw", "RGBa", 0, -1)
     content = BytesIO()
-    image.convert("RGBA").save(content, "WEBP", quality=70, method=6)
+    image.convert("RGBA").save(content, "WEBP", quality=70)
     return content.getvalue()

@@ -43,7 +43,6 @@ from robo_genesis.core.shown import find
 from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
 from robo_genesis.pipeline.pages.page_index import page_outputs
-from robo_genesis.site.evidence.plain_nodes import bullets, html
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.pages import PageDirective
 
@@ -89,8 +88,8 @@ class DatasetDownload(PageDirective):
         name = f"{lesson_page.replace('/', '-')}-lerobot.zip"
         file = folder(self.env) / f"{lesson}-dataset" / name
         write_whole(file, content)
-        digest = nodes.literal("", hashlib.sha256(content).hexdigest())
-        return [bullets((html(links(self.env)(file)), ", SHA-256 ", digest))]
+        link, digest = links(self.env)(file), hashlib.sha256(content).hexdigest()
+        return self.parse_text_to_nodes(f"- {link}, SHA-256 `{digest}`")
 
 
 def archive(data: Mapping[str, Any], readme: str) -> bytes:
