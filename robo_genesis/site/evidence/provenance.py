@@ -17,33 +17,23 @@ from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.util import logging
 
+from robo_genesis.core.markup import filled
 from robo_genesis.site.frame.executed import RECOMPUTED
 
 from . import ledger_data
-from .ledger_data import (
-    LEDGER,
-    MEASURED,
-    PRINTED,
-    Item,
-)
-from .origin import INPUTS, above, origin
+from .ledger_data import LEDGER, MEASURED, PRINTED, Item
+from .origin import above, origin
+from .plain_nodes import html
 from .runs import all_runs, measured_pages
 
+LINE = Path(__file__).with_suffix(".html")  # The template of the line
 LOG = "the engine's log"
 TITLE = 80  # Longest title in the ledger, in characters
 ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
 
 # The kind of an item that belongs to no run, by the keys of its origin.
 WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {None: "illustration", (): "settings"}
-
-UNBOUND = (
-    "a cell shows an output, but the page declares no bundle. Give its front matter "
-    f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
-)
-
-logger = logging.getLogger(__name__)
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:
@@ -52,33 +42,23 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     book, items = Path(env.srcdir), []
     known, page = all_runs(book), measured_pages(book).get(env.docname)
     recomputed = RECOMPUTED.get(env.docname, set())
-    ledger = (
-        app.builder.get_relative_uri(env.docname, LEDGER)
-        if LEDGER in env.found_docs
-        else None
-    )
+    ledger = app.builder.get_relative_uri(env.docname, LEDGER)
     for node in list(doctree.findall(nodes.Element)):
         texts = printed_texts(node, recomputed)
         last = texts[-1] if texts else node
         keys, cell = origin(last, page)
         is_picture = isinstance(node, nodes.image)
-        is_table = isinstance(node, nodes.table) and keys is not None
-        if not (texts or is_picture or is_table):
-            continue
-        if cell is not None and keys and page is None:
-            if not texts:
-                logger.warning(UNBOUND, location=env.docname)
+        made = keys is not None and (texts or isinstance(node, nodes.table))
+        if not (is_picture or made):
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
         item = describe(holder, node, env, texts)
-        if cell is not None and cell.get("cell_index") not in recomputed:
-            item = replace(item, kind="printed")
-        kind = WITHOUT_RUN.get(keys, item.kind)
+        printed = cell is not None and cell.get("cell_index") not in recomputed
+        kind = WITHOUT_RUN.get(keys, "printed" if printed else item.kind)
         item = replace(item, kind=kind, runs=keys or ())
         items.append(item)
         line = ledger_data.provenance(kind, [known[key] for key in item.runs])
-        address = None if ledger is None else f"{ledger}#{item.row}"
-        add_line(last if texts else holder, line, address)
+        add_line(last if texts else holder, line, f"{ledger}#{item.row}")
     env.metadata[env.docname][ITEMS] = items
 
 
@@ -108,10 +88,7 @@ def describe(
         word, suffix, data = "picture", path.suffix, path.read_bytes()
         title = node.get("alt", "") if caption is None else caption.astext()
     else:
-        rows = [
-            [e.astext() for e in row.findall(nodes.entry)]
-            for row in node.findall(nodes.row)
-        ]
+        rows = [[cell.astext() for cell in row] for row in node.findall(nodes.row)]
         word, suffix, data = "table", ".csv", ledger_data.csv_bytes(rows)
         title = ", ".join(filter(None, rows[0]))
     anchor, kind = _anchor(holder, f"{word}-{section['ids'][0]}"), word
@@ -140,40 +117,30 @@ def _text(texts: Sequence[nodes.Element]) -> tuple[str, bytes]:
 def _anchor(holder: nodes.Element, base: str) -> str:
     """Return an anchor, by default from the section's: other sections do not change it."""
     if not holder["ids"]:
-        names, used = (
-            chain([base], (f"{base}-{n}" for n in count(2))),
-            holder.document.ids,
-        )
+        used = holder.document.ids
+        names = chain([base], (f"{base}-{n}" for n in count(2)))
         name = next(name for name in names if name not in used)
         used[name] = holder
         holder["ids"].append(name)
     return holder["ids"][0]
 
 
-def add_line(holder: nodes.Element, text: str, address: str | None) -> None:
+def add_line(holder: nodes.Element, text: str, address: str) -> None:
     """Insert the line of provenance at the end of the caption, or below an item without one.
 
     What a run measured or printed has an icon, and the words appear under the mouse or
     the focus. Anything else says so in words. `address` is that of its row in the
     ledger.
     """
-    caption = (
-        holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
-    )
-    parts = [nodes.inline("", text, classes=["provenance-text"])]
-    if address is not None:
-        joint = nodes.inline(
-            "", " · " if text[-1] != "." else " ", classes=["provenance-joint"]
-        )
-        parts += [joint, nodes.reference("", "ledger", internal=True, refuri=address)]
-    classes = [
-        "provenance",
-        *(["as-icon"] if text.startswith((MEASURED, PRINTED)) else []),
-    ]
+    line = html(filled(LINE, text=text, address=address))
+    with_icon = text.startswith((MEASURED, PRINTED))
+    classes = ["provenance", "as-icon"] if with_icon else ["provenance"]
+    is_figure = isinstance(holder, nodes.figure)
+    caption = holder.next_node(nodes.caption) if is_figure else None
     if caption is not None:
-        caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=classes)]
+        caption += [nodes.Text(" "), nodes.inline("", "", line, classes=classes)]
     else:
-        line = nodes.paragraph("", "", *parts, classes=classes)
+        line = nodes.paragraph("", "", line, classes=classes)
         block = next(above(holder, nodes.paragraph), holder)
         block.parent.insert(block.parent.index(block) + 1, line)
 

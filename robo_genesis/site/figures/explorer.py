@@ -28,9 +28,10 @@ import base64
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
+import trimesh
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
@@ -51,9 +52,13 @@ from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay import directive as replays
-
-if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
+from robo_genesis.site.replay.scenery import (
+    AXIS_RGB,
+    Camera,
+    Scenery,
+    fitted,
+    floor_of,
+)
 
 # Name of the cross at the target, which moves like a link, length and radius of its
 # rods [m]. They are longer than the hand, which hides the target when it is there.
@@ -128,19 +133,6 @@ def panel(data: Data, loads: str = "") -> nodes.Node:
     return html(filled(Path(__file__).with_suffix(".html"), **data, loads=loads))
 
 
-def fold(
-    directive: SphinxDirective, found: Mapping[str, Sequence[Mapping[str, Any]]]
-) -> list[Any]:
-    """Return tables with their captions below a fold."""
-    shown: list[nodes.Node] = [
-        html("<details><summary>All answers as tables</summary>")
-    ]
-    for caption, rows in found.items():
-        table = directive.parse_text_to_nodes(tables.markdown(rows))
-        shown += [nodes.paragraph("", caption), scroll_box(caption, *table)]
-    return [*shown, html("</details>")]
-
-
 def picture(
     directive: SphinxDirective, file: str, folder: Path, data: dict[str, Any]
 ) -> list[nodes.Node]:
@@ -177,8 +169,6 @@ def postures(
         run: the accepted bundle.
         data: see the module's table.
     """
-    from robo_genesis.site.replay.scenery import fitted  # it loads slowly
-
     env, lesson = directive.env, name.split("-")[1]
     replay = find_replay(lesson)
     runs = {**run.traces, **data.pop("traces", {})}
@@ -206,7 +196,12 @@ def postures(
     yield replays.stage(still, over, caption, f"{name}-model")
     yield panel(data, f"Show in 3D loads the robot: {weight} kB.")
     if tables_below:
-        yield from fold(directive, tables_below)
+        yield html("<details><summary>All answers as tables</summary>")
+        for title, rows in tables_below.items():
+            yield nodes.paragraph("", title)
+            table = directive.parse_text_to_nodes(tables.markdown(rows))
+            yield scroll_box(title, *table)
+        yield html("</details>")
     yield html(replays.origin_html(name, folder, env, replay.credit))
 
 
@@ -229,12 +224,8 @@ def with_target(trace: Trace | BodyTrace, targets: FloatArray) -> Trace | BodyTr
     return replace(trace, **arrays)
 
 
-def with_cross(parts: Sequence[Part], camera: "Camera") -> "Scenery":
+def with_cross(parts: Sequence[Part], camera: Camera) -> Scenery:
     """Return parts with the cross at the target and a floor, as a camera sees them."""
-    import trimesh  # these load slowly
-
-    from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
-
     half = CROSS_LENGTH / 2 * np.eye(3)
     rods = [
         trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half

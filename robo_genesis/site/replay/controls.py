@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robo_genesis.core import tables
 from robo_genesis.core.channels import Runs
@@ -13,8 +13,7 @@ from robo_genesis.core.palette import css_name, marks_of
 from robo_genesis.core.text import time_digits
 from robo_genesis.site.figures.case_labels import MARKS
 
-if TYPE_CHECKING:
-    from .scenery import Scenery  # loads slowly
+from .scenery import Scenery
 
 PANEL = Path(__file__).with_name("panel.html")  # The template of the controls
 
@@ -64,7 +63,7 @@ def alt(runs: Runs) -> str:
     return f"The {runs.replay.thing} at the start of {case}, drawn from the recorded poses."
 
 
-def caption(runs: Runs, around: "Scenery") -> str:
+def caption(runs: Runs, around: Scenery) -> str:
     """Return the caption of the model, with the meaning of what it shows besides the bodies."""
     parts = [f"Recorded poses of the {runs.replay.thing}."]
     if around.axis:
@@ -98,20 +97,13 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         speeds=SPEEDS,
         speed=SLOW_FOR_LONG if end > LONG else SLOW,
         rest=round(until / runs.first.dt) if until < end else None,
-        terms=[
-            "time",
-            *(c.name for c in runs.channels),
-            *(level.name for level in runs.levels),
-        ],
     )
 
 
 def data(runs: Runs) -> dict[str, str]:
     """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
     names = ("name", "unit", "digits", "top")
-    channels = [
-        {name: getattr(channel, name) for name in names} for channel in runs.channels
-    ]
+    channels = [{name: getattr(one, name) for name in names} for one in runs.channels]
     return {
         "subject": runs.subject,
         "channels": as_json(channels),

@@ -14,7 +14,6 @@ import gzip
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
@@ -40,10 +39,8 @@ from robo_genesis.site.text.questions import question
 
 from . import controls, viewer
 from .recorded_runs import read_runs
+from .scenery import Scenery, scenery, side_by_side
 from .viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
-
-if TYPE_CHECKING:
-    from .scenery import Scenery
 
 SHAPE_PAGE = "lecture"
 
@@ -92,8 +89,6 @@ def replay_block(
         ValueError: its runs cannot be played together, or no page of this build wrote
             the shape of these links.
     """
-    from .scenery import scenery, side_by_side  # loads slowly
-
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
     replay = find_replay(lesson, chosen)
@@ -141,7 +136,7 @@ def leave_model(
     name: str,
     folder: Path,
     shape: Path,
-    drawn: tuple["Scenery", Sequence[str], Mapping[str, Run], str | None],
+    drawn: tuple[Scenery, Sequence[str], Mapping[str, Run], str | None],
     alt: str,
 ) -> tuple[dict[str, str], int, nodes.image]:
     """Write a model for the page that is read, as GLB and as a classic script.

@@ -172,14 +172,10 @@ def floor_of(shape: Sequence[Part]) -> list[Part]:
 def tiles_on(still: Part) -> Part:
     """Return the tiles on the top of a part."""
     low, high = still.vertices.min(axis=0), still.vertices.max(axis=0)
-    columns, rows = (np.arange(low[k], high[k] - TILE / 2, TILE) for k in (0, 1))
-    dark = [
-        (x, y)
-        for (i, x), (j, y) in product(enumerate(columns), enumerate(rows))
-        if (i + j) % 2
-    ]
-    square = np.array([[0, 0], [TILE, 0], [TILE, TILE], [0, TILE]])
-    corners = (np.array(dark)[:, None] + square).reshape(-1, 2)
+    counts = np.ceil((high - low)[:2] / TILE - 0.5).astype(int)
+    dark = np.argwhere(np.indices(counts).sum(axis=0) % 2)  # (n, 2), every other tile
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    corners = low[:2] + TILE * (dark[:, None] + square).reshape(-1, 2)
     vertices = np.column_stack([corners, np.full(len(corners), high[2] + RAISED)])
     halves = np.array([[0, 1, 2], [0, 2, 3]]) + 4 * np.arange(len(dark))[:, None, None]
     return Part(WORLD, TILE_RGB, vertices, halves.reshape(-1, 3))

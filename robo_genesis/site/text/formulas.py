@@ -179,12 +179,7 @@ def add_css(
     app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
 ) -> None:
     """Load the style sheet and its font on a page with a formula."""
-    formulas = (
-        (*doctree.findall(nodes.math), *doctree.findall(nodes.math_block))
-        if doctree
-        else ()
-    )
-    if formulas:
+    if app.env.domaindata["math"]["has_equations"].get(page):
         app.add_css_file(STYLE)
         app.add_js_file(None, body=LOAD)
 

@@ -75,13 +75,15 @@ def test_the_comparison_names_both_runs_and_all_else_one(
     document += nodes.section("", nodes.title("", "Page"), panel, ids=["page"])
     for image in document.findall(nodes.image):
         image["uri"] = image["uri"].removeprefix("/")
-    provenance.read_page(SimpleNamespace(env=env), document)
+    builder = SimpleNamespace(get_relative_uri=lambda page, to: f"{to}.html")
+    provenance.read_page(SimpleNamespace(env=env, builder=builder), document)
 
     ours, theirs = (
         ledger_data.provenance("table", [of]).removeprefix("Measured ")
         for of in both_runs
     )
-    lines = [n.astext() for n in document.findall(lambda n: "provenance" in classes(n))]
+    places = document.findall(lambda n: "provenance" in classes(n))
+    lines = [BeautifulSoup(n.astext(), "html.parser").span.text for n in places]
     alone, compared = f"Measured {theirs}", f"Measured {ours} and {theirs}"
     assert (ours[:9], theirs[:10]) == ("on cpu · ", "on cuda · ")
     assert lines == [alone] * 6 + [compared] * 2
