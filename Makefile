@@ -47,7 +47,7 @@ TESTS = $(COURSE) book $(call options,JOBS) && \
 test: $(ENVIRONMENT) ## build the site, and run the tests (needs Debian's chromium)
 	@$(TESTS)
 
-test-all: $(ENVIRONMENT) ## run the slow tests too: empty environments, a changed pin (network; hours)
+test-all: $(ENVIRONMENT) ## run the slow tests too: empty environments (network; hours)
 	@$(TESTS) --slow
 
 # codespell looks up what its expression finds: here the entries of our list, phrases included. It

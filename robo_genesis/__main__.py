@@ -10,11 +10,14 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robo_genesis.core import project
 from robo_genesis.core.project import BOOK, CACHE, PUBLISHED, ROOT, ProjectError
 from robo_genesis.pipeline.command import TIMEOUT, run
+
+if TYPE_CHECKING:
+    from robo_genesis.pipeline.stages import Build  # loads slowly
 
 
 def book(options: Namespace) -> Sequence[str] | int:
@@ -34,19 +37,19 @@ def book(options: Namespace) -> Sequence[str] | int:
         lines := up_to_date.nothing_changed(ROOT, options.book, published)
     ):
         return lines
-    from robo_genesis.pipeline.stages import Build, run_build
+    from robo_genesis.pipeline.stages import run_build
 
     return run_build(
-        Build(**folders(options), jobs=options.jobs, release=is_release, to=options.to)
+        build(options, jobs=options.jobs, release=is_release, to=options.to)
     )
 
 
 def execute(options: Namespace) -> Sequence[str]:
     """Execute one page, unless it was executed unchanged."""
-    from robo_genesis.pipeline.stages import Build, execute_one
+    from robo_genesis.pipeline.stages import execute_one
 
     set_environment(options)
-    return execute_one(options.page, Build(**folders(options), command="make execute"))
+    return execute_one(options.page, build(options, command="make execute"))
 
 
 def verify(options: Namespace) -> int:
@@ -59,10 +62,9 @@ def verify(options: Namespace) -> int:
 def evidence(options: Namespace) -> int:
     """Record all labs on this machine, or one."""
     from robo_genesis.pipeline.recording.labs import Recording, record
-    from robo_genesis.pipeline.stages import Build
 
-    build = Build(**folders(options), jobs=1, command="make evidence")
-    return record(Recording(options.lesson, options.backend, options.to, build))
+    how = build(options, jobs=1, command="make evidence")
+    return record(Recording(options.lesson, options.backend, options.to, how))
 
 
 def evidence_rocm(options: Namespace) -> int:
@@ -119,18 +121,21 @@ def sizes(options: Namespace) -> int:
     return int(bool(problems))
 
 
-def folders(options: Namespace) -> dict[str, Any]:
-    """Return the options that all commands that execute pages share."""
-    names = ("book", "cache", "timeout")
-    return {name: getattr(options, name) for name in names}
+def build(options: Namespace, **more: Any) -> "Build":
+    """Return what to build; all commands that execute pages share the folders and the time."""
+    from robo_genesis.pipeline.stages import Build
+
+    return Build(options.book, options.cache, timeout=options.timeout, **more)
 
 
 def set_environment(options: Namespace) -> None:
     """Set the variables that pages and Sphinx read; every build runs on the CPU."""
-    os.environ[project.BACKEND] = project.BUILD_BACKEND
-    os.environ[project.RENDER] = options.render
-    os.environ["SITE_URL"] = options.site_url
-    os.environ[project.SOLUTIONS] = options.solutions
+    os.environ |= {
+        project.BACKEND: project.BUILD_BACKEND,
+        project.RENDER: options.render,
+        project.SOLUTIONS: options.solutions,
+        "SITE_URL": options.site_url,
+    }
 
 
 def absolute(path: str) -> Path:
