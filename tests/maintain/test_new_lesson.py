@@ -1,8 +1,10 @@
 """A lesson made from the template is complete; a name that cannot be used changes nothing."""
 
+import sys
+
 import pytest
 import yaml
-from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
+from checkout import copy_checkout, make, run_in
 from tiny_book import contents
 
 from robo_genesis.core.project import BOOK, ProjectError
@@ -17,7 +19,6 @@ TOC, COURSE_MAP = (BOOK / name for name in ("_toc.yml", "course_map.yml"))
 MAP = COURSE_MAP.read_text() + "- id: L98\n  title: A lesson that is planned\n"
 ROWS, PLANNED = yaml.safe_load(MAP), "l98"
 LAST = [row["id"] for row in ROWS if "page" in row][-1].lower()
-PUBLISHED = "test_the_course_s_map_names_the_lessons_that_are_published"
 
 
 @pytest.fixture(scope="module")
@@ -29,30 +30,35 @@ def work(tmp_path_factory):
     return work
 
 
-def test_the_code_is_clean(work):
-    places = ("robo_genesis/lessons/l99", "tests/lessons/l99")
-    run_in(work, "python", "-m", "ruff", "check", "--no-cache", *places)
-    run_in(work, "python", "-m", "ruff", "format", "--no-cache", "--check", *places)
-    run_in(
-        work,
-        "python",
-        "-m",
-        "mypy",
-        "--cache-dir=/dev/null",
-        "-p",
-        "robo_genesis.lessons.l99",
+LINT = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+OWN = ("robo_genesis/lessons/l99", "tests/lessons/l99")
+TESTS = [
+    f"tests/{place}"
+    for place in (
+        "lessons/l99",
+        "lessons/test_registry.py",
+        "lessons/test_prose.py",
+        "lessons/test_loaded_modules.py",
+        "site/course/test_course_map.py::"
+        "test_the_course_s_map_names_the_lessons_that_are_published",
     )
-    import_contracts(work)
-    run_in(work, "python", "-m", "robo_genesis", "sizes")
+]
 
 
-def test_its_tests_and_those_of_all_lessons_pass(work):
-    own = ("lessons/l99", "lessons/test_registry.py", "lessons/test_prose.py")
-    names = (*own, "lessons/test_loaded_modules.py")
-    course_map = "tests/site/course/test_course_map.py::" + PUBLISHED
-    assert "passed" in unit_tests(
-        work, *(f"tests/{name}" for name in names), course_map
-    )
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("-m", "ruff", "check", "--no-cache", *OWN),
+        ("-m", "ruff", "format", "--no-cache", "--check", *OWN),
+        ("-m", "mypy", "--cache-dir=/dev/null", "-p", "robo_genesis.lessons.l99"),
+        ("-c", LINT, "--no-logo", "--no-cache"),
+        ("-m", "robo_genesis", "sizes"),
+        ("-m", "pytest", "-p", "no:cacheprovider", "-m", "not engine", *TESTS),
+    ],
+    ids=lambda words: words[1].partition(" ")[0],
+)
+def test_the_lesson_is_clean_and_its_tests_pass(work, command):
+    run_in(work, sys.executable, *command)
 
 
 @pytest.fixture
