@@ -54,19 +54,16 @@ class ProbedMachine:
 def devices(machine: ProbedMachine) -> str:
     """The device files of the driver exist, and this user may open them."""
     kfd = machine.root / "dev/kfd"
-    drawing = sorted((machine.root / "dev/dri").glob("renderD*"))
-    if not (kfd.exists() and drawing):
-        raise StepError(
-            "/dev/kfd or /dev/dri/renderD* is missing, expected both. Load the driver: modprobe "
-            "amdgpu. Start a container with --device=/dev/kfd --device=/dev/dri."
-        )
-    nodes = [node for node in (kfd, *drawing) if os.access(node, os.R_OK | os.W_OK)]
-    names = " ".join(node.name for node in nodes)
-    if kfd in nodes and len(nodes) > 1:
+    nodes = [kfd, *sorted((machine.root / "dev/dri").glob("renderD*"))]
+    opened = [node for node in nodes if os.access(node, os.R_OK | os.W_OK)]
+    names = " ".join(node.name for node in opened)
+    if kfd in opened and len(opened) > 1:
         return f"may open {names}"
     raise StepError(
-        f"You may open {names or 'none of them'}, expected kfd and a renderD. Run "
-        "usermod -aG render,video for your user and log in again; in a container, --group-add."
+        f"You may open {names or 'nothing'}, expected /dev/kfd and a /dev/dri/renderD*. If they "
+        "are missing, run modprobe amdgpu, or start the container with --device=/dev/kfd "
+        "--device=/dev/dri. Otherwise run usermod -aG render,video for your user and log in "
+        "again; in a container, --group-add."
     )
 
 
