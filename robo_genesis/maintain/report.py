@@ -113,11 +113,10 @@ def read_build(root: Path, version: str, site: Path) -> EngineBuild:
 
 def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
     """Compare what two engine versions made of one checkout."""
-    comparisons, missing = [], {}
-    for name in sorted(old.bundles | new.bundles):
-        if name not in old.bundles or name not in new.bundles:
-            missing[name] = "In one build only."
-            continue
+    comparisons = []
+    alone = sorted(old.bundles.keys() ^ new.bundles.keys())
+    missing = dict.fromkeys(alone, "In one build only.")
+    for name in sorted(old.bundles.keys() & new.bundles.keys()):
         try:
             comparisons.append(compare(old.bundles[name], new.bundles[name]))
         except BundleRefused as error:
@@ -179,16 +178,14 @@ def sentences(page: Path) -> Iterator[str]:
 
 def summary(refresh: Refresh) -> str:
     """Return the result in one line."""
-    result = refresh.failed[0] if refresh.failed else refresh.state
+    result = refresh.failed[0] if refresh.failed else refresh.state.capitalize()
     return f"{result}; changed sentences: {len(refresh.changed)}"
 
 
 def document(refresh: Refresh) -> Document:
     """Return the whole report."""
-    text = summary(refresh)
-    verdict = f"{text[0].upper()}{text[1:]}."
     title = f"Engine {' → '.join(refresh.versions)}"
-    return Document(title, verdict, list(_parts(refresh)))
+    return Document(title, f"{summary(refresh)}.", list(_parts(refresh)))
 
 
 def _parts(refresh: Refresh) -> Iterator[Part]:
