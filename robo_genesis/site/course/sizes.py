@@ -1,7 +1,7 @@
 """The size of each page in its source and its minutes, and the limits of `make lint`."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,22 +86,7 @@ class Minutes:
 def count_minutes(page: Path) -> Minutes:
     """Return the time that a page takes."""
     text = new_notebook(cells=[new_markdown_cell(page.read_text("utf8"))])
-    return _minutes(read_notebook(page) or text, page)
-
-
-def _minutes(notebook: NotebookNode, file: Path) -> Minutes:
-    """Return the time that a page takes; a page with functions to write is also run."""
-    texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
-    visible = visible_code(notebook)
-    functions = sum(STUB in code for code in visible)
-    work = sum(map(_lines, visible)) / LINES_A_MINUTE
-    work += functions * MINUTES_A_FUNCTION + bool(functions) * MINUTES_A_RUN
-    for text in texts:
-        work += len(QUESTION.findall(text)) * MINUTES_A_QUESTION
-        work += len(THOUGHT.findall(text)) * MINUTES_A_CHECKPOINT
-    sheet = file.stem == LAB and file.with_name(WORK_SHEET).is_file()
-    read = max(1, round(sum(map(count_words, texts)) / WORDS_A_MINUTE))
-    return Minutes(read, round(work + sheet * MINUTES_A_SHEET), sheet)
+    return size(read_notebook(page) or text, page)[0]
 
 
 def visible_code(notebook: NotebookNode) -> list[str]:
@@ -112,12 +97,10 @@ def visible_code(notebook: NotebookNode) -> list[str]:
     ]
 
 
-def _lines(code: str) -> int:
-    return sum(bool(line.strip()) for line in code.splitlines())
+def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
+    """Return the time that a page takes, and its size by the names of `MEASURES`.
 
-
-def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
-    """Return the size of a page by the names of `MEASURES`.
+    A page with functions to write is also run.
 
     Args:
         notebook: the page's source.
@@ -125,12 +108,20 @@ def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
     """
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
     visible = visible_code(notebook)
-    return {
-        "words": sum(map(count_words, texts)),
-        "cells": len(visible),
-        "longest": max(map(_lines, visible), default=0),
-        "minutes": _minutes(notebook, file).total,
-    }
+    lines = [sum(map(bool, map(str.strip, code.splitlines()))) for code in visible]
+    functions = sum(STUB in code for code in visible)
+    work = sum(lines) / LINES_A_MINUTE
+    work += functions * MINUTES_A_FUNCTION + bool(functions) * MINUTES_A_RUN
+    for text in texts:
+        work += len(QUESTION.findall(text)) * MINUTES_A_QUESTION
+        work += len(THOUGHT.findall(text)) * MINUTES_A_CHECKPOINT
+    sheet = file.stem == LAB and file.with_name(WORK_SHEET).is_file()
+    words = sum(map(count_words, texts))
+    read = max(1, round(words / WORDS_A_MINUTE))
+    minutes = Minutes(read, round(work + sheet * MINUTES_A_SHEET), sheet)
+    longest = max(lines, default=0)
+    sizes = {"words": words, "cells": len(visible), "longest": longest}
+    return minutes, sizes | {"minutes": minutes.total}
 
 
 def count_words(text: str) -> int:
@@ -149,15 +140,6 @@ def count_words(text: str) -> int:
     return words
 
 
-def excess(found: Mapping[str, int], kind: str) -> list[str]:
-    """Return a phrase for each number of a page that is over the limit for its kind."""
-    return [
-        f"{number:,} {MEASURES[name]} (at most {limit:,})"
-        for name, limit in LIMITS.get(kind, {}).items()
-        if (number := found[name]) > limit
-    ]
-
-
 def report(pages: Iterable[Page]) -> list[str]:
     """Return what to do about each page that is too large.
 
@@ -167,7 +149,13 @@ def report(pages: Iterable[Page]) -> list[str]:
     problems = []
     for page in pages:
         kind = page.path.stem.partition("-")[0]
-        if over := excess(size(page.notebook, page.path), kind):
+        _, found = size(page.notebook, page.path)
+        over = [
+            f"{found[name]:,} {MEASURES[name]} (at most {limit:,})"
+            for name, limit in LIMITS.get(kind, {}).items()
+            if found[name] > limit
+        ]
+        if over:
             problems.append(
                 f"{page.docname} is over its size: {'; '.join(over)}. Shorten it, or move a part "
                 "to a deeper page."

@@ -66,7 +66,7 @@ class Evidence(PageDirective):
 def pictures(run: PageRun) -> Iterator[tuple[str, bytes, str, str]]:
     """Yield (name, content, alternative text, caption) of the curves and of each camera frame."""
     replay, backend = find_replay(run.lesson), run.status.backend
-    runs = read_runs(run.folder, replay)
+    runs = read_runs(run.folder, replay, labels={})
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {listed(replay.cases)} drawn over each other"

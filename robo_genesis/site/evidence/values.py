@@ -147,10 +147,8 @@ class EngineLink(PageRole):
 
 def visit_measured(self: Any, node: measured_value) -> None:
     """Write a value that shows its provenance on hover, focus or touch."""
-    provenance = {
-        "data-provenance": node["provenance"],
-        "aria-description": node["provenance"],
-    }
+    names = ("data-provenance", "aria-description")
+    provenance = dict.fromkeys(names, node["provenance"])
     self.body.append(
         self.starttag(node, "span", "", tabindex="0", role="note", **provenance)
     )

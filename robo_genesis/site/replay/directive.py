@@ -33,7 +33,7 @@ from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
-from robo_genesis.site.figures.case_labels import labelled
+from robo_genesis.site.figures.case_labels import labels_of
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.text.questions import question
 
@@ -92,7 +92,7 @@ def replay_block(
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
     replay = find_replay(lesson, chosen)
-    runs = labelled(read_runs(folder, replay), lesson)
+    runs = read_runs(folder, replay, labels_of(lesson))
     shape = shape_file(lesson, replay.thing)
     parts = visual_shape.load_shape(shape)
     if replay.places:

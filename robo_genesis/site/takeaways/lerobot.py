@@ -53,15 +53,8 @@ from .plain_markdown import plain
 FILE = "chunk-000/file-000"  # The only file of each kind
 CHUNK = "chunk-{chunk_index:03d}/file-{file_index:03d}"
 CAMERA = "observation.images.world"
-QUANTILES = {
-    "min": 0.0,
-    "max": 1.0,
-    "q01": 0.01,
-    "q10": 0.1,
-    "q50": 0.5,
-    "q90": 0.9,
-    "q99": 0.99,
-}
+QUANTILES = {"min": 0.0, "max": 1.0}
+QUANTILES |= {f"q{percent:02}": percent / 100 for percent in (1, 10, 50, 90, 99)}
 
 PIXELS = "yuv420p"
 # Of the encoder: few frames depend on others, and equal pictures give equal bytes.

@@ -36,7 +36,7 @@ def test_a_page_s_size(tmp_path):
         ),
         new_code_cell("c = 3"),
     ]
-    found = sizes.size(new_notebook(cells=cells), tmp_path / "lecture.md")
+    _, found = sizes.size(new_notebook(cells=cells), tmp_path / "lecture.md")
     assert found == {
         "words": 400,
         "cells": 2,

@@ -4,17 +4,15 @@ from dataclasses import replace
 
 from robo_genesis.core import palette
 from robo_genesis.lessons import find_replay
-from robo_genesis.site.figures import case_labels
-from robo_genesis.site.figures.case_labels import MARKS, label, labelled
+from robo_genesis.site.figures.case_labels import MARKS, label
 from robo_genesis.site.replay.recorded_runs import read_runs
 
 WORDS = {"G1": "one", "G2": "two", "G3": "three"}
 
 
-def test_runs_are_shown_by_their_words_everywhere(pristine, monkeypatch):
-    runs = read_runs(pristine, replace(find_replay("l04"), cases=tuple(WORDS)))
-    monkeypatch.setattr(case_labels, "labels_of", lambda lesson: WORDS)
-    shown = labelled(runs, "l04")
+def test_runs_are_shown_by_their_words_everywhere(pristine):
+    replay = replace(find_replay("l04"), cases=tuple(WORDS))
+    shown = read_runs(pristine, replay, WORDS)
     parts = [shown.traces, shown.moves, *(one.values for one in shown.channels)]
     parts += [of for level in shown.levels for of in (level.values, level.texts)]
     for by_case in parts:

@@ -15,7 +15,7 @@ from robo_genesis.site.replay.scenery import Camera, Scenery
 
 @pytest.fixture(scope="module")
 def joint(pristine) -> Runs:
-    return read_runs(pristine, find_replay("l04"))
+    return read_runs(pristine, find_replay("l04"), {})
 
 
 CAMERA = Camera(np.array([0.2, 0.5, 0.0]), 1.5)
