@@ -80,27 +80,34 @@ def describe(
     """Return the item of a table, picture or texts as of no run, and give `holder` an anchor."""
     section = next(above(holder, nodes.section))
     heading = section.next_node(nodes.title).astext()
-    if texts:
-        word, suffix, title, data = "printed", ".txt", *_text(texts)
-        holder["classes"].append("printed")
-    elif isinstance(node, nodes.image):
-        caption, path = holder.next_node(nodes.caption), Path(env.srcdir, node["uri"])
-        word, suffix, data = "picture", path.suffix, path.read_bytes()
+    if isinstance(node, nodes.image):
+        caption, file = holder.next_node(nodes.caption), node["uri"]
+        path, data = Path(env.srcdir, file), None
+        anchor = _anchor(holder, f"picture-{section['ids'][0]}")
+        kind, content = (
+            node.get("kind") or ledger_data.picture_kind(path),
+            path.read_bytes(),
+        )
         title = node.get("alt", "") if caption is None else caption.astext()
     else:
-        rows = [[cell.astext() for cell in row] for row in node.findall(nodes.row)]
-        word, suffix, data = "table", ".csv", ledger_data.csv_bytes(rows)
-        title = ", ".join(filter(None, rows[0]))
-    anchor, kind = _anchor(holder, f"{word}-{section['ids'][0]}"), word
-    file = f"{env.docname}-{anchor}{suffix}".replace("/", "-")
-    if word == "picture":
-        kind, file = node.get("kind") or ledger_data.picture_kind(path), node["uri"]
-    else:
+        if texts:
+            kind, suffix = "printed", ".txt"
+            title, content = _text(texts)
+            holder["classes"].append("printed")
+        else:
+            kind, suffix = "table", ".csv"
+            rows = [[cell.astext() for cell in row] for row in node.findall(nodes.row)]
+            title, content = (
+                ", ".join(filter(None, rows[0])),
+                ledger_data.csv_bytes(rows),
+            )
+        anchor, data = _anchor(holder, f"{kind}-{section['ids'][0]}"), content
         title = f"{heading}: {title}"
+        file = f"{env.docname}-{anchor}{suffix}".replace("/", "-")
     title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
     title = textwrap.shorten(title, TITLE, placeholder=" …")
-    digest, kept = ledger_data.sha256(data), None if word == "picture" else data
-    return Item(kind, title, env.docname, anchor, (), digest, file, kept)
+    digest = ledger_data.sha256(content)
+    return Item(kind, title, env.docname, anchor, (), digest, file, data)
 
 
 def _text(texts: Sequence[nodes.Element]) -> tuple[str, bytes]:

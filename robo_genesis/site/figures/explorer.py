@@ -26,7 +26,6 @@ measures. It may have a `tag` and a `state`, and one cell `opens`.
 
 import base64
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -37,11 +36,11 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import tables
+from robo_genesis.core.channels import Run
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.markup import filled
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
-from robo_genesis.core.trace import BodyTrace, Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
@@ -58,6 +57,7 @@ from robo_genesis.site.replay.scenery import (
     Scenery,
     fitted,
     floor_of,
+    moved,
 )
 
 # Name of the cross at the target, which moves like a link, length and radius of its
@@ -85,7 +85,7 @@ class ExplorerDirective(PageDirective):
         run = accepted_experiment(folder, bundle.read_manifest(folder))
         explored = find(f"robo_genesis.lessons.{lesson}.explorer.explored")
         key = f"{lesson_page}/{BACKEND}"
-        file = "-".join((*key.split("/"), *name))
+        file = "-".join([*key.split("/"), *name])
         return [explorer_block(self, key, file, folder, run, explored(run, *name))]
 
 
@@ -205,7 +205,7 @@ def postures(
     yield html(replays.origin_html(name, folder, env, replay.credit))
 
 
-def with_target(trace: Trace | BodyTrace, targets: FloatArray) -> Trace | BodyTrace:
+def with_target(trace: Run, targets: FloatArray) -> Run:
     """Return answers with one more link, the target of each; before the first, that of the first.
 
     Args:
@@ -214,14 +214,8 @@ def with_target(trace: Trace | BodyTrace, targets: FloatArray) -> Trace | BodyTr
     """
     places = np.vstack([targets[:1], targets])[:, None]
     turns = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (len(places), 1, 4))
-    added = {"link_pos": places, "link_quat": turns}
-    if isinstance(trace, BodyTrace):
-        added |= dict.fromkeys(("link_vel", "link_ang"), np.zeros_like(places))
-    arrays: dict[str, Any] = {
-        name: np.concatenate([getattr(trace, name), array], axis=1)
-        for name, array in added.items()
-    }
-    return replace(trace, **arrays)
+    pos = np.concatenate([trace.link_pos, places], axis=1)
+    return moved(trace.t, pos, np.concatenate([trace.link_quat, turns], axis=1))
 
 
 def with_cross(parts: Sequence[Part], camera: Camera) -> Scenery:

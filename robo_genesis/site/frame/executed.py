@@ -1,6 +1,5 @@
 """Sphinx reads executed pages and runs nothing."""
 
-import os
 from pathlib import Path
 
 import myst_nb.sphinx_
@@ -9,7 +8,6 @@ from nbformat import NotebookNode
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
-from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.pipeline.pages.book import code_of
 from robo_genesis.pipeline.pages.outputs import shown_outputs
 from robo_genesis.pipeline.pages.page_index import executed_notebook
@@ -70,15 +68,7 @@ def without_stack(output: NotebookNode) -> NotebookNode:
 
 
 def setup(app: Sphinx) -> None:
-    """Register the extension.
-
-    Raises:
-        ExtensionError: the environment does not name the executed pages.
-    """
-    if EXECUTED_PAGES not in os.environ:
-        raise ExtensionError(
-            f"{EXECUTED_PAGES} is not set. Build the site with `make book`."
-        )
+    """Register the extension."""
     ExecutedPage.sources = Path(app.srcdir)
     myst_nb.sphinx_.create_client = lambda *arguments: ExecutedPage(*arguments[:4])
     # Jupyter Book always sets this value, also where sphinx_comments is not an

@@ -90,7 +90,7 @@ def replay_block(
             the shape of these links.
     """
     env, lesson = directive.env, key.split("/")[0]
-    name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
+    name = f"replay/{key}/{chosen}".rstrip("/").replace("/", "-")
     replay = find_replay(lesson, chosen)
     runs = read_runs(folder, replay, labels_of(lesson))
     shape = shape_file(lesson, replay.thing)
@@ -213,10 +213,14 @@ def origin_html(
         env: of the page that shows it.
         credit: of the shape, None for shapes of the scene itself.
     """
-    run, up = bundle.read_manifest(folder), replay_folder(env)
-    files = {"name": name, "notice": NOTICE, "licence": VIEWER_LICENCE}
     return filled(
-        Path(__file__).with_name("origin.html"), run=run, up=up, credit=credit, **files
+        Path(__file__).with_name("origin.html"),
+        name=name,
+        run=bundle.read_manifest(folder),
+        up=replay_folder(env),
+        credit=credit,
+        notice=NOTICE,
+        licence=VIEWER_LICENCE,
     )
 
 

@@ -9,7 +9,6 @@ All of it follows from the record and the shape; nothing here needs the engine.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 import trimesh
@@ -18,6 +17,7 @@ from trimesh.transformations import quaternion_matrix, rotation_matrix
 from robo_genesis.core import palette
 from robo_genesis.core.channels import Run, Runs
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.visual_shape import WORLD, Hinge, Part, floor
 from robo_genesis.site.figures.case_labels import MARKS
 
@@ -217,6 +217,12 @@ def poses(trace: Run, link: int) -> FloatArray:
     return found
 
 
+def moved(t: FloatArray, pos: FloatArray, quat: FloatArray) -> BodyTrace:
+    """Return a run of links with these times (n+1,) and poses (n+1, l, …), its speeds left out."""
+    unread = np.zeros_like(pos)
+    return BodyTrace(t, pos, quat, unread, unread)
+
+
 def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
     """Return runs whose traces all have the links of all runs, and the shape of these links.
 
@@ -228,16 +234,13 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
         shape: of the robot; parts of the world remain where they are, unless the replay
             repeats them.
     """
-    traces = list(runs.traces.items())
+    cases, traces = list(runs.traces), runs.traces.values()
     places = np.pad(runs.replay.places, ((0, 0), (0, 1)))  # (cases, 3) [m]
-    arrays: dict[str, Any] = {
-        name: np.concatenate([getattr(trace, name) for _, trace in traces], axis=1)
-        for name, stored in runs.first.arrays().items()
-        if "link" in stored.dims
-    }
-    arrays["link_pos"] = arrays["link_pos"] + np.repeat(places, len(runs.links), axis=0)
-    links = [f"{case}: {link}" for case, _ in traces for link in runs.links]
-    marks = palette.marks_of([case for case, _ in traces], MARKS)
+    pos = np.concatenate([trace.link_pos for trace in traces], axis=1)
+    quat = np.concatenate([trace.link_quat for trace in traces], axis=1)
+    all_links = moved(runs.t, pos + np.repeat(places, len(runs.links), axis=0), quat)
+    links = [f"{case}: {link}" for case in cases for link in runs.links]
+    marks = palette.marks_of(cases, MARKS)
 
     def of_case(part: Part, case: str) -> Part:
         """Return a part of one run; the link that its curve follows has the curve's colour."""
@@ -246,7 +249,7 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
         return replace(part, link=f"{case}: {part.link}", rgb=rgb, hinge=None)
 
     moving = [part for part in shape if part.link != WORLD]
-    parts = [of_case(part, case) for case, _ in traces for part in moving]
+    parts = [of_case(part, case) for case in cases for part in moving]
     still = [part for part in shape if part.link == WORLD]
     if runs.replay.repeats:
         still = [
@@ -254,5 +257,5 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
             for place in places
             for part in still
         ]
-    together = {case: replace(trace, **arrays) for case, trace in traces}
+    together = dict.fromkeys(cases, all_links)
     return replace(runs, traces=together, links=links), [*parts, *still]
