@@ -41,10 +41,8 @@ def run_list(app: Sphinx, docname: str) -> str:
     runs, archives = all_runs(Path(app.srcdir)).values(), {}
     for run in runs:
         if run.manifest is not None:
-            name, content = (
-                ledger_data.archive_name(run),
-                ledger_data.archive(run.folder),
-            )
+            name = f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
+            content = ledger_data.archive(run.folder)
             archives[run.key] = name, ledger_data.sha256(content)
             write_whole(Path(app.outdir) / DOWNLOADS / name, content)
     return _filled("ledger_runs.html", docname, runs=runs, archives=archives)
@@ -54,12 +52,11 @@ def item_list(app: Sphinx, docname: str) -> str:
     """Return the table of all items on the pages, in the order of the pages."""
     book, env = Path(app.srcdir), app.env
     runs, rows = all_runs(book), []
-    for item in (
-        item for name in page_files(book) for item in env.metadata[name][ITEMS]
-    ):
-        rows.append((item, [runs[key] for key in item.runs]))
-        if item.data is not None:
-            write_whole(Path(app.outdir) / DOWNLOADS / item.file, item.data)
+    for name in page_files(book):
+        for item in env.metadata[name][ITEMS]:
+            rows.append((item, [runs[key] for key in item.runs]))
+            if item.data is not None:
+                write_whole(Path(app.outdir) / DOWNLOADS / item.file, item.data)
     return _filled(
         "ledger_items.html",
         docname,

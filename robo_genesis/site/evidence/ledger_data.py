@@ -85,23 +85,13 @@ def sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def archive_name(run: PageRun) -> str:
-    """Return the file name of a run's bundle."""
-    assert run.manifest is not None
-    return f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
-
-
 def archive(folder: Path) -> bytes:
     """Return a bundle as a zip whose bytes depend only on the names and contents of its files.
 
     Args:
         folder: an accepted bundle.
     """
-    files = {
-        path.relative_to(folder).as_posix(): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file())
     stream = io.BytesIO()
-    write_zip(stream, files.items())
+    write_zip(stream, ((str(p.relative_to(folder)), p.read_bytes()) for p in files))
     return stream.getvalue()

@@ -51,9 +51,8 @@ class Evidence(PageDirective):
                 panel += nodes.figure("", *picture, ids=[Path(file).stem])
             panel += replay_block(self, run.key, run.folder)
             here = page_run(Path(env.srcdir), run.lesson)
-            found = self.filled(
-                "comparison.md", compared=compare(here.folder, run.folder)
-            )
+            compared = compare(here.folder, run.folder)
+            found = self.filled("comparison.md", compared=compared)
             panel += nodes.container("", *found, evidence_runs=(here.key, run.key))
         return panel
 

@@ -17,14 +17,6 @@ from .scenery import Scenery
 
 PANEL = Path(__file__).with_name("panel.html")  # The template of the controls
 
-SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
-
-# The initial speed: most of the motion happens in a small part of the window. The other
-# is for runs of more than `LONG` seconds.
-SLOW, SLOW_FOR_LONG = "0.1", "0.25"
-
-LONG = 3.0
-
 
 def samples(runs: Runs) -> str:
     """Return every sample of every case as a Markdown table, in the order of time.
@@ -85,18 +77,14 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         runs: the runs to play.
         weight: of what loads with the first Play, compressed [kB].
     """
-    marks, end = marks_of(list(runs.traces), MARKS), runs.t[-1]
-    until = runs.replay.until or end
+    marks = marks_of(list(runs.traces), MARKS)
     return filled(
         PANEL,
         name=name,
         runs=runs,
         weight=weight,
         marks={case: css_name(mark) for case, mark in marks.items()},
-        levels={case: as_json(_levels(runs, case)) for case in runs.traces},
-        speeds=SPEEDS,
-        speed=SLOW_FOR_LONG if end > LONG else SLOW,
-        rest=round(until / runs.first.dt) if until < end else None,
+        levels={case: as_json(levels(runs, case)) for case in runs.traces},
     )
 
 
@@ -114,7 +102,7 @@ def data(runs: Runs) -> dict[str, str]:
     }
 
 
-def _levels(runs: Runs, case: str) -> list[dict[str, Any]]:
+def levels(runs: Runs, case: str) -> list[dict[str, Any]]:
     """Return the levels of a run for the script."""
     return [
         {

@@ -48,9 +48,8 @@ SHEET = Path(__file__).with_name(STYLE)  # Its template
 
 # The characters that a formula may contain.
 SHOWN = {
-    *map(
-        chr, (*range(0x20, 0x5C), *range(0x5D, 0x7F))
-    ),  # ASCII; `\\` is left of a command
+    *map(chr, range(0x20, 0x5C)),  # ASCII without `\\`, which is left of a command
+    *map(chr, range(0x5D, 0x7F)),
     *"\N{NO-BREAK SPACE}¬¯±´·×÷ˆˇ˘˙˜–—‖…′″‴",
     *map(chr, range(0x0300, 0x0309)),  # accents
     *"ΑΒΓΔΕΖΗΘΙΚΛΜΝΞΟΠΡΣΤΥΦΧΨΩαβγδεζηθικλμνξοπρςστυφχψωϑϕϖϱϵ",
