@@ -64,7 +64,8 @@ def evidence(options: Namespace) -> int:
     from robo_genesis.pipeline.recording.labs import Recording, record
 
     how = build(options, jobs=1, command="make evidence")
-    return record(Recording(options.lesson, options.backend, options.to, how))
+    place = options.to or options.book / "evidence"
+    return record(Recording(options.lesson, options.backend, place, how))
 
 
 def evidence_rocm(options: Namespace) -> int:

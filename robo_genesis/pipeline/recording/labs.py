@@ -20,8 +20,8 @@ from robo_genesis.sim.diagnosis import StepResult
 
 ACCELERATORS = ("amdgpu", "cuda")
 NO_COMMIT = (
-    "It names no commit, or a tree with changes, which a release refuses. Commit, then record it "
-    "again with LESSON={}."
+    ". It names no commit, or a tree with changes, which a release refuses. Commit, then record "
+    "it again with LESSON={}."
 )
 
 
@@ -35,43 +35,39 @@ class Recording:
     """Which labs to record, and where their bundles go.
 
     `lesson` names one, and is empty for all. `expected` is the backend that must be
-    found; None accepts any accelerator. `to` gets the folder `<lesson>/<actual
-    backend>`; None is the book's own `evidence`. `probe` returns, before the run, the
-    backend that it would find, and the results of its steps.
+    found; None accepts any accelerator. `evidence` gets the folder `<lesson>/<actual
+    backend>`. `probe` returns, before the run, the backend that it would find, and the
+    results of its steps.
     """
 
     lesson: str
     expected: str | None
-    to: Path | None
+    evidence: Path
     build: Build
     probe: Callable[[str | None], tuple[str, list[StepResult]]] = probe_here
-
-    @property
-    def evidence(self) -> Path:
-        """The folder of all recorded bundles."""
-        return self.to or self.build.book / "evidence"
 
 
 def record(recording: Recording) -> int:
     """Run labs in clean kernels, verify their bundles and put them in their places.
 
     Without a lesson, each lab that has no accepted bundle of this backend is run. A lab
-    that fails has its report printed at once, and the next one follows. Pages see the
-    requested backend and, always, a camera.
+    that fails has its report printed at once, and the next one follows. The last lines
+    have the outcome of each lab. Pages see the requested backend and, always, a camera.
 
     Args:
         recording: see there.
 
     Returns:
-        The exit status: 0 every lab has a bundle, 1 some failed. An older bundle is
-        unchanged unless a new one is accepted.
+        The exit status: 0 every lab has a bundle, 1 some failed, 130 interrupted. An
+        older bundle is unchanged unless a new one is accepted.
 
     Raises:
         ProjectError: the lesson is not valid, or a step of the probe is broken; or
             checkout, environment or the folder of bundles is not fit for it, or a build
             or another recording runs here.
     """
-    build, failed = recording.build, False
+    build, status = recording.build, 0
+    store = build.cache / project.RECORDING
     os.environ[BACKEND] = "cpu" if recording.expected == "cpu" else "auto"
     os.environ[RENDER] = "1"
     with build_lock(build.cache):
@@ -80,37 +76,44 @@ def record(recording: Recording) -> int:
         _, pages, into = prepare(build, project.RECORDING)
         labs, progress = _labs(recording, pages), Progress(build.say)
         backend = _found_backend(recording, progress)
-        for page in labs:
-            shutil.rmtree(build.cache / project.RECORDING, ignore_errors=True)
-            try:
-                if recording.lesson or not _is_kept(recording, page, backend, progress):
-                    _record_lab(recording, page, into, progress)
-            except (ProjectError, OSError) as error:
-                build.say(f"\n{error}\n\nFailed: {page.lesson}\n")
-                failed = True
-        shutil.rmtree(build.cache / project.RECORDING, ignore_errors=True)
+        outcomes = dict.fromkeys(labs, "not recorded")
+        try:
+            for lesson, page in labs.items():
+                shutil.rmtree(store, ignore_errors=True)
+                try:
+                    kept = _kept(recording, lesson, backend)
+                    done = kept or _record_lab(recording, page, into, progress)
+                except (ProjectError, OSError) as error:
+                    build.say(f"\n{error}\n")
+                    done, status = "failed", 1
+                progress("record", lesson, done)
+                outcomes[lesson] = done
+        except KeyboardInterrupt:
+            status = 130
+        shutil.rmtree(store, ignore_errors=True)
+    for lesson, outcome in outcomes.items():
+        build.say(f"{lesson}  {outcome}")
     build.say(
         f"Before you commit: look at both pictures in {recording.evidence}/*/{backend}/frames, "
         "read log.txt, and check that manifest.json names nothing private of your machine."
     )
-    return int(failed)
+    return status
 
 
-def _labs(recording: Recording, pages: list[Page]) -> list[Page]:
-    """Return the lab of the given lesson, or all labs in the order of the book.
+def _labs(recording: Recording, pages: list[Page]) -> dict[str, Page]:
+    """Return the lab of the given lesson, or all labs by lesson in the order of the book.
 
     Raises:
         ProjectError: the lesson has no lab.
     """
     labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
-    if not recording.lesson:
-        return [*labs.values()]
-    if recording.lesson not in labs:
+    asked = recording.lesson
+    if asked and asked not in labs:
         raise ProjectError(
-            f"LESSON={recording.lesson!r} is not valid. "
+            f"LESSON={asked!r} is not valid. "
             f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}; unset, all."
         )
-    return [labs[recording.lesson]]
+    return {asked: labs[asked]} if asked else labs
 
 
 def _found_backend(recording: Recording, progress: Progress) -> str:
@@ -132,22 +135,20 @@ def _found_backend(recording: Recording, progress: Progress) -> str:
     return found
 
 
-def _is_kept(
-    recording: Recording, page: Page, backend: str, progress: Progress
-) -> bool:
-    """Return whether a lab has an accepted bundle of this backend, and say so."""
-    lesson, build = str(page.lesson), recording.build
+def _kept(recording: Recording, lesson: str, backend: str) -> str:
+    """Return words on the accepted bundle of this backend, none if the lab is to be run."""
+    if recording.lesson:
+        return ""
     place = recording.evidence / lesson / backend
-    kept = bundle_status(place, lesson, RECORDED_PAGE, book=build.book)
-    if kept.manifest:
-        progress("keep", lesson, f"{kept.badge}; LESSON={lesson} records it again")
-    return kept.manifest is not None
+    kept = bundle_status(place, lesson, RECORDED_PAGE, book=recording.build.book)
+    again = f"kept: {place}, {kept.badge}; LESSON={lesson} records it again"
+    return again if kept.manifest else ""
 
 
 def _record_lab(
     recording: Recording, page: Page, into: dict[str, Path], progress: Progress
-) -> None:
-    """Run one lab, and put its verified bundle into its place.
+) -> str:
+    """Run one lab, put its verified bundle into its place, and return words on it.
 
     Raises:
         ProjectError: see `record`.
@@ -166,8 +167,6 @@ def _record_lab(
     put(result.bundle, place)
     passed = sum(check.passed for check in manifest.checks)
     checks = f"{passed} of {len(manifest.checks)} checks"
-    progress(
-        "record", str(place), printable(f"{checks}, {manifest.backend.device_name}")
-    )
-    if manifest.git is None or manifest.git.dirty:
-        recording.build.say(NO_COMMIT.format(lesson))
+    words = printable(f"recorded: {place}, {checks}, {manifest.backend.device_name}")
+    unclean = manifest.git is None or manifest.git.dirty
+    return words + NO_COMMIT.format(lesson) * unclean

@@ -41,7 +41,7 @@ def run(
     Torch sees what the test says.
     """
     said = settings.pop("said", list[str]())
-    how = {"lesson": "l04", "to": folder / "kept", "probe": PROBED}
+    how = {"lesson": "l04", "evidence": folder / "kept", "probe": PROBED}
     how |= {name: settings.pop(name) for name in how.keys() & settings.keys()}
     settings = {"verify": accept, "say": said.append, **settings}
     places = {"book": make_book(folder, lab=page), "cache": folder / "cache"}
@@ -62,13 +62,13 @@ def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_pa
     assert run_ids[0] != run_ids[1]
     stages = re.findall(r"^\[.*\] (\w+)", said, re.MULTILINE)
     assert list(dict.fromkeys(stages)) == ["probe", "execute", "verify", "record"]
-    assert f"{place}  2 of 2 checks, a device" in said
+    assert f"\nl04  recorded: {place}, 2 of 2 checks, a device" in said
     assert "It names no commit, or a tree with changes" in said
 
 
-def test_the_cpu_is_recorded_without_a_probe_and_by_default_in_the_book(tmp_path):
-    assert run(tmp_path, lab("cpu"), "cpu", to=None, probe=None)[0] == 0
-    assert (tmp_path / "book/evidence/l04/cpu/manifest.json").is_file()
+def test_the_cpu_is_recorded_without_a_probe(tmp_path):
+    assert run(tmp_path, lab("cpu"), "cpu", probe=None)[0] == 0
+    assert (tmp_path / "kept/l04/cpu/manifest.json").is_file()
 
 
 NO_CAMERA = lab("cuda").replace('"camera" if camera', '"skip" if camera')
@@ -100,9 +100,9 @@ def test_a_run_that_is_not_accepted_leaves_the_old_bundle(
 
 def test_an_interrupted_run_leaves_the_old_bundle(tmp_path):
     old = old_bundle(tmp_path, "cuda")
-    with pytest.raises(KeyboardInterrupt):
-        run(tmp_path, lab("cuda"), **STOPPED)
-    assert old.read_text() == "old"
+    status, said = run(tmp_path, lab("cuda"), **STOPPED)
+    assert (status, old.read_text()) == (130, "old")
+    assert "\nl04  not recorded\n" in said
 
 
 def test_engine_switches_reach_the_probe_and_the_user_s_contract_does_not(monkeypatch):
@@ -181,6 +181,7 @@ def labs(tmp_path, courses_pages, monkeypatch):
             ran.append(page.lesson)
             if error := fails.get(page.lesson):
                 raise error
+            return "recorded"
 
         monkeypatch.setattr(recording, "_record_lab", record_lab)
         build = Build(book=book, cache=tmp_path / "cache", say=said.append)
@@ -202,12 +203,21 @@ def recorded(folder, tmp_path):
     return put
 
 
-@pytest.mark.parametrize("error", [ProjectError("E: no"), OSError(28, "No space")])
-def test_all_labs_are_tried_and_a_failure_is_reported(labs, error):
-    assert labs()[:2] == (0, ["l02", "l03", "l04"])
-    status, ran, said = labs(l03=error)
-    assert (status, ran) == (1, ["l02", "l03", "l04"])
-    assert f"\n{error}\n\nFailed: l03" in said
+@pytest.mark.parametrize(
+    ("error", "status", "states"),
+    [
+        (None, 0, ("recorded", "recorded", "recorded")),
+        (ProjectError("E: no"), 1, ("recorded", "failed", "recorded")),
+        (OSError(28, "No space"), 1, ("recorded", "failed", "recorded")),
+        (KeyboardInterrupt(), 130, ("recorded", "not recorded", "not recorded")),
+    ],
+)
+def test_the_last_lines_have_the_outcome_of_each_lab(labs, error, status, states):
+    found, _, said = labs(l03=error)
+    assert found == status
+    lines = [f"l0{k}  {state}" for k, state in enumerate(states, start=2)]
+    assert said.splitlines()[-4:-1] == lines
+    assert status != 1 or f"\n{error}\n" in said
 
 
 def test_an_accepted_bundle_is_kept_unless_its_lesson_is_given(labs, recorded):
