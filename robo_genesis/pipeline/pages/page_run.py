@@ -40,7 +40,8 @@ class PageRun:
 
     `cell` is the number of the code cell that runs, from 1; 0 while the kernel starts.
     The page `waits` before its first cell that must run alone until `turn` is set, and
-    is `alone` from there on. `begin` is a time of the monotonic clock [s].
+    is `alone` from there on. `begin` is a time of the monotonic clock [s], later by the
+    time for which the page waited.
     """
 
     page: Page
@@ -67,10 +68,12 @@ class PageRun:
 
     @property
     def state(self) -> str:
-        """Cell and elapsed time of the run."""
+        """Cell and elapsed time of the run, and what is left if it takes as long as the last."""
         number = f"cell {self.cell} of {len(self.page.code.sources)}"
         cell = (number if self.cell else "kernel starts") + " waits" * self.waits
-        return f"{cell}, {time.monotonic() - self.begin:.0f} s"
+        elapsed = time.monotonic() - self.begin
+        left = self.last.seconds - elapsed if self.last else 0.0
+        return f"{cell}, {elapsed:.0f} s" + f", ~{left:.0f} s left" * (left > 0)
 
     def execute(self, on_cell: Callable[[], None]) -> PageResult:
         """Execute the page in an empty temporary folder; store it unless it failed.
@@ -97,19 +100,17 @@ class PageRun:
         notebook = deepcopy(self.page.notebook)
         begins: dict[int, float] = {}
         seconds: list[float] = []
-        waited = 0.0
 
         def cell_starts(cell: NotebookNode, cell_index: int) -> None:
-            nonlocal waited
-            asked = time.monotonic()
             self.cell = results.cell_number(notebook, cell_index)
             if self.cell == self.page.alone:
+                asked = time.monotonic()
                 self.alone = self.waits = True
                 on_cell()
                 self.turn.wait()
+                self.begin += time.monotonic() - asked
             kernel.busy = True
             begins[cell_index] = time.monotonic()
-            waited += begins[cell_index] - asked
 
         def cell_ends(
             cell: NotebookNode, cell_index: int, execute_reply: object
@@ -146,7 +147,7 @@ class PageRun:
             asyncio.run(kernel_run)
         except Exception as caught:  # also a dead kernel, or one that does not start
             error = caught
-        elapsed = time.monotonic() - self.begin - waited
+        elapsed = time.monotonic() - self.begin
         left = outputs / str(self.page.lesson) / str(self.page.page)
         if failure := self._failure(notebook, error, list(begins), left):
             return elapsed, failure

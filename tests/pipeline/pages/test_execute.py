@@ -311,6 +311,7 @@ def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest
     ]
     order = [run.page.docname for run in in_order(runs)]
     assert order == ["e", "b", "c", "d", "f"]
+    assert runs[1].state == "kernel starts, 0 s, ~30 s left"
     runs[2].log.touch()  # newer than any stored run: it failed
     order = [run.page.docname for run in in_order(runs)]
     assert order == ["d", "e", "b", "c", "f"]
