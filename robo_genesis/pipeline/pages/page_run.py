@@ -22,7 +22,7 @@ from robo_genesis.pipeline.command import ANSI
 
 from . import kernels, results
 from .book import Page, code_digest
-from .page_folder import PageRefused, Record, write_page
+from .page_folder import PageRefused, Record, find_bundle, write_page
 from .results import Failure, PageResult
 
 # What a warning names in the place of a file: a temporary one with the number of the
@@ -169,7 +169,14 @@ class PageRun:
         """Return why the page failed, None if it did not."""
         if error is None:
             wrong = results.unexpected_outcome(self.page, notebook)
-            return wrong or results.missing_bundle(left, self.page)
+            if wrong or not self.page.declares_bundle or find_bundle(left):
+                return wrong
+            return Failure(
+                "BundleMissing",
+                "the front matter declares a bundle, but the run left no "
+                f"{self.page.lesson}/{self.page.page}/<backend>/manifest.json. Write it with "
+                "page.finish, or remove `robo_genesis` from the front matter.",
+            )
         name, message = type(error).__name__, str(error)
         if isinstance(error, CellExecutionError):
             name, message = error.ename, error.evalue

@@ -96,18 +96,6 @@ class PageResult:
         return f"{self.status} in {self.seconds:.0f} s{why}"
 
 
-def missing_bundle(left: Path, page: Page) -> Failure | None:
-    """Return the failure of a page that declares a bundle and did not leave it."""
-    if not page.declares_bundle or find_bundle(left):
-        return None
-    return Failure(
-        "BundleMissing",
-        "the front matter declares a bundle, but the run left no "
-        f"{page.lesson}/{page.page}/<backend>/manifest.json. Write it with page.finish, "
-        "or remove `robo_genesis` from the front matter.",
-    )
-
-
 def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
     """Return the first cell with another exception than expected, or with a wrong output.
 
@@ -120,11 +108,9 @@ def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
     places = [k for k, cell in enumerate(source.cells) if cell.cell_type == "code"]
     for index, cell in zip(places, code_cells(executed), strict=True):
         metadata = source.cells[index].metadata
-        if wrong := _wrong_output(metadata.get("tags", []), cell.outputs):
-            return at_cell(page, index, *wrong)
-        raised = [out for out in cell.outputs if out.output_type == "error"]
-        if contradiction := _contradiction(metadata, raised):
-            return at_cell(page, index, "ExpectedException", contradiction, cell)
+        wrong = _wrong_output(metadata.get("tags", []), cell.outputs)
+        if wrong := wrong or _contradiction(metadata, cell.outputs):
+            return at_cell(page, index, *wrong, cell)
     return None
 
 
@@ -159,26 +145,25 @@ def _wrong_output(
 
 
 def _contradiction(
-    metadata: NotebookNode, raised: Sequence[NotebookNode]
-) -> str | None:
+    metadata: NotebookNode, outputs: Sequence[NotebookNode]
+) -> tuple[str, str] | None:
     """Return how a cell's exception contradicts its metadata, None if it does not."""
-    expects = metadata.get("expects")
-    happened = f"{raised[-1].ename}: {raised[-1].evalue}" if raised else "no exception"
-    if not expects:
-        but = "but is not tagged raises-exception."
-        return f"the cell raised {happened}, {but}" if raised else None
-    name, _, text = str(expects).partition(":")
-    if (
-        raised
-        and raised[-1].ename == name.strip()
-        and text.strip() in raised[-1].evalue
-    ):
+    expects, raised = metadata.get("expects"), ("no exception", "")
+    for out in outputs:
+        if out.output_type == "error":
+            raised = (out.ename, out.evalue)
+    happened = ": ".join(filter(None, raised))
+    name, _, text = str(expects or "no exception").partition(":")
+    if raised[0] == name.strip() and text.strip() in raised[1]:
         return None
-    return f"expected was {expects!r}, but the cell raised {happened}."
+    reason = f"expected was {expects!r}, but the cell raised {happened}."
+    if not expects:
+        reason = f"the cell raised {happened}, but is not tagged raises-exception."
+    return "ExpectedException", reason
 
 
 def at_cell(
-    page: Page, index: int, error: str, message: str, ran: NotebookNode | None = None
+    page: Page, index: int, error: str, message: str, ran: NotebookNode
 ) -> Failure:
     """Return a failure with the place of a cell.
 
@@ -191,10 +176,7 @@ def at_cell(
     """
     cells, text = page.notebook.cells, page.path.read_text("utf8").split("\n")
     lines = cells[index].source.splitlines() or [""]
-    same = (
-        ran and ran.source == cells[index].source
-    )  # no comment was added after the run
-    failing = min(_failing_line(ran), len(lines)) if same else 1
+    failing = min(_failing_line(ran), len(lines))
     if error == CheckFailed.__name__:
         book = page.path.parents[page.docname.count("/")]
         message += contradicted(book, f"{page.lesson}/{page.page}", message)

@@ -8,12 +8,20 @@ from types import SimpleNamespace
 import nbformat
 import psutil
 import pytest
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    cell,
+    make_book,
+    notebook,
+    raising,
+    run_pages,
+)
 
 from robo_genesis.core.project import engine_cache_environment, engine_cache_folder
 from robo_genesis.pipeline.pages import execute as execution
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages, in_order
+from robo_genesis.pipeline.pages.execute import in_order
 from robo_genesis.pipeline.pages.kernels import CleanKernelManager
 from robo_genesis.pipeline.pages.page_folder import PageRefused
 from robo_genesis.pipeline.pages.page_run import PageRun
@@ -60,8 +68,7 @@ BROKEN = {
 def execute(folder: Path, **settings):
     """Execute the book of a folder with its own store; return results by page."""
     pages = find_pages(folder / "book")
-    settings = {"logs": folder / "logs", **settings}
-    results = execute_pages(pages, places(pages, folder / "store"), **settings)
+    results = run_pages(pages, folder, **settings)
     return {result.page.docname: result for result in results}
 
 
@@ -297,7 +304,7 @@ def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
         assert said[:6] == order
 
 
-def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest(
+def test_new_pages_start_first_the_ones_with_many_cells_before_others_then_the_longest(
     tmp_path,
 ):
     cells = {"b": 1, "c": 1, "d": 9, "e": 2}
@@ -312,9 +319,6 @@ def test_failed_pages_start_first_then_new_ones_with_many_cells_then_the_longest
     order = [run.page.docname for run in in_order(runs)]
     assert order == ["e", "b", "c", "d", "f"]
     assert runs[1].state == "kernel starts, 0 s, ~30 s left"
-    runs[2].log.touch()  # newer than any stored run: it failed
-    order = [run.page.docname for run in in_order(runs)]
-    assert order == ["d", "e", "b", "c", "f"]
 
 
 def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatch):

@@ -1,6 +1,5 @@
 """Checks of executed cells; whole pages are executed in test_execute."""
 
-import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 from small_book import executed
@@ -174,13 +173,4 @@ def test_a_failure_names_the_line_of_the_cell_that_failed(failing, number):
     assert failure.source.startswith(FAILING[number][1])
     assert (
         page.path.read_text().splitlines()[failure.line - 1].strip() == failure.source
-    )
-
-
-def test_a_line_of_a_run_of_other_text_is_not_named(failing):
-    page, executed = failing
-    last = len(page.notebook.cells) - 1
-    ran = executed.cells[1].copy() | {"source": "1 / 0"}
-    assert (
-        at_cell(page, last, "E", "message", nbformat.from_dict(ran)).source == "one = 1"
     )
