@@ -17,8 +17,8 @@ from robo_genesis.core.project import CACHE, ROOT
 
 from .command import output_of
 
-LOCK = ("package.json", "package-lock.json")
-SETTINGS = ".npmrc"
+LOCK = "package-lock.json"
+FILES = ("package.json", LOCK, ".npmrc")
 
 
 def node() -> Path:
@@ -36,7 +36,7 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
     Raises:
         ProjectError: npm refused or could not fetch; the message holds its output.
     """
-    files = [(root / name).read_bytes() for name in (*LOCK, SETTINGS)]
+    files = [(root / name).read_bytes() for name in FILES]
     digest = hashlib.sha256(b"".join(files)).hexdigest()
     installed = cache / "npm" / digest[:12]
     if not installed.is_dir():
@@ -44,7 +44,7 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
         with tempfile.TemporaryDirectory(dir=installed.parent) as name:
             fresh = Path(name) / "fresh"
             fresh.mkdir()
-            for file in (*LOCK, SETTINGS):
+            for file in FILES:
                 shutil.copy(root / file, fresh)
             _install(fresh)
             with suppress(OSError):  # another process was first
@@ -63,7 +63,7 @@ def published(name: str) -> bytes:
 
 def locked(name: str) -> dict[str, str]:
     """Return a package's entry of package-lock.json, with `version` and `license`."""
-    lock = json.loads((ROOT / LOCK[1]).read_text("utf8"))
+    lock = json.loads((ROOT / LOCK).read_text("utf8"))
     return lock["packages"][f"node_modules/{name}"]
 
 

@@ -22,7 +22,7 @@ from .bundles.status import (
 from .command import end_with_parent
 
 # Variables of a surrounding make, which a make in a worktree must not get.
-OUTER = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "PYTHON", "GENESIS", "RELEASE")
+OUTER = {"MAKEFLAGS", "MAKELEVEL", "MFLAGS", "PYTHON", "GENESIS", "RELEASE"}
 
 
 @contextmanager
@@ -61,7 +61,7 @@ def remove(root: Path, folder: Path) -> None:
 
 def environment(tree: Path) -> dict[str, str]:
     """Return the variables for a command in a worktree."""
-    names = os.environ.keys() - {*OUTER}
+    names = os.environ.keys() - OUTER
     return {name: os.environ[name] for name in names} | {"PYTHONPATH": str(tree)}
 
 

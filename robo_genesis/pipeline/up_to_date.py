@@ -8,7 +8,7 @@ import json
 import os
 import platform
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from robo_genesis.core import project
@@ -47,17 +47,13 @@ VARIABLES = (
 SITE = ("html", "evidence", "pages")
 
 
-def inputs_digest(
-    root: Path, book: Path, environment: Mapping[str, str] | None = None
-) -> str:
+def inputs_digest(root: Path, book: Path) -> str:
     """Return the digest of everything that decides a build's site.
 
     Args:
         root: the checkout.
         book: the folder of the pages.
-        environment: variables, by default those of this process.
     """
-    given = os.environ if environment is None else environment
     code = (path for name in FOLDERS for path in files_below(root / name))
     pages = files_below(book, (PUBLISHED, f".{PUBLISHED}"))
     return json_digest(
@@ -65,8 +61,8 @@ def inputs_digest(
             "book": [str(book), files_digest(book, pages)],
             "code": files_digest(root, code),
             "files": files_digest(root, (root / name for name in FILES)),
-            "contract": project.environment_contract(given),
-            "variables": {name: given.get(name) or "" for name in VARIABLES},
+            "contract": project.environment_contract(),
+            "variables": {name: os.environ.get(name) or "" for name in VARIABLES},
             "python": [platform.python_version(), sys.executable],
             "installed": project.installed(sys.path),
             # a recorded run names a commit in the history
@@ -97,7 +93,7 @@ def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
             return []
         site = f"Site: {published / 'html/index.html'}"
         return ["Nothing changed: the site is up to date.", site, *record["lines"]]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError):
         return []
 
 

@@ -14,7 +14,7 @@ from robo_genesis.pipeline import npm
 def checkout(tmp_path) -> Path:
     root = tmp_path / "checkout"
     root.mkdir()
-    for name in (*npm.LOCK, npm.SETTINGS):
+    for name in npm.FILES:
         shutil.copy(ROOT / name, root)
     return root
 
@@ -25,7 +25,7 @@ def test_each_lock_has_a_folder_of_its_own_and_is_fetched_once(
     calls = []
     monkeypatch.setattr(npm, "_install", calls.append)
     found = [npm.packages(checkout, tmp_path), npm.packages(checkout, tmp_path)]
-    for name in (*npm.LOCK, npm.SETTINGS):
+    for name in npm.FILES:
         (checkout / name).write_text("{}")
         found.append(npm.packages(checkout, tmp_path))
     assert len(set(found)) == len(calls) == 4

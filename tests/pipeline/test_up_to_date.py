@@ -5,6 +5,7 @@ import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 from tiny_book import commit, git
@@ -39,7 +40,8 @@ def root(tmp_path, monkeypatch) -> Path:
 
 
 def digest(root: Path, **more: str) -> str:
-    return up_to_date.inputs_digest(root, root / "book", ENVIRONMENT | more)
+    with patch.dict(os.environ, ENVIRONMENT | more):
+        return up_to_date.inputs_digest(root, root / "book")
 
 
 def files(root: Path) -> list[Path]:

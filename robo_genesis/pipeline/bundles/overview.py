@@ -6,13 +6,11 @@ who recorded it at home.
 """
 
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 from robo_genesis.core.project import BOOK, PUBLISHED
 from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle import read_manifest
-from robo_genesis.evidence.refusals import BundleRefused
 
 from .status import (
     Status,
@@ -86,15 +84,13 @@ def all_bundles(book: Path) -> Iterator[tuple[str, Status]]:
 
 def one_bundle(folder: Path, book: Path) -> tuple[Status, list[str]]:
     """Return the status of one bundle, and lines for the person who recorded it."""
-    status, lines, run = bundle_status(folder, book=book), [], None
-    with suppress(BundleRefused):
+    status = bundle_status(folder, book=book)
+    text = ADVICE.get(status.code or "")
+    if status.code == "stale":  # so its manifest could be read
         run = read_manifest(folder)
-    if status.code in ADVICE:
-        text = ADVICE[status.code]
-        if run and status.code == "stale" and run.source.page is None:
+        if run.source.page is None:
             text = RUN_BY_HAND.format(lesson=run.lesson)
-        lines = [f"What this means: {text}"]
-    return status, lines
+    return status, [f"What this means: {text}"] if text else []
 
 
 def line(place: str, status: Status) -> str:

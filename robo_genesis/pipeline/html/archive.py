@@ -58,8 +58,8 @@ def content(path: Path) -> bytes:
     return page.encode()
 
 
-def write_sums(html: Path) -> Path:
-    """Write the digests of a complete site into the site; return the file.
+def write_sums(html: Path) -> None:
+    """Write the digests of a complete site into the site.
 
     Args:
         html: the folder of the site with its archive, which has no SHA256SUMS: its own
@@ -72,4 +72,3 @@ def write_sums(html: Path) -> Path:
     }
     lines = (f"{digest}  {name}\n" for name, digest in sorted(files.items()))
     (html / SUMS).write_text("".join(lines), "utf8")
-    return html / SUMS

@@ -17,7 +17,7 @@ POLICY_NAME = "Content-Security-Policy"
 POLICY = "default-src 'self' file: data: blob: 'unsafe-inline' 'unsafe-eval'"
 
 CHECKS = ("links", "anchors", "alt texts", "third parties", "leftovers")
-ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
+ADDRESSES = {"href", "src", "poster", "data", "action"}
 # Links of these kinds name a page for readers or crawlers; no browser loads it.
 NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "search"}
 ELSEWHERE = re.compile(r"(?:https?|wss?|ftp):|//", re.IGNORECASE)
@@ -56,10 +56,12 @@ class PageReader(HTMLParser):
         self.quotes += tag in QUOTING
         if identifier := given.get("id"):
             self.anchors.append(identifier)
-        found = [url for name in ADDRESSES & given.keys() for url in urls(name, given)]
+        found = [
+            url for name in ADDRESSES & given.keys() if (url := given[name].strip())
+        ]
         self.addresses += found
-        kinds = {*given.get("rel", "").lower().split()}
-        if tag not in ("a", "area") and not (tag == "link" and kinds & NOT_LOADED):
+        named = NOT_LOADED.intersection(given.get("rel", "").lower().split())
+        if tag not in ("a", "area") and not (tag == "link" and named):
             self.loaded += found
         if tag == "img":
             self.alt_texts.append((given.get("alt", ""), given.get("src", "")))
@@ -77,14 +79,6 @@ class PageReader(HTMLParser):
         """Note the text that a reader sees as prose."""
         if not self.quotes:
             self.texts.append(data)
-
-
-def urls(name: str, attributes: dict[str, str]) -> list[str]:
-    """Return the addresses that an attribute of an element lists."""
-    value = attributes[name].strip()
-    if name == "srcset":
-        return [part.split()[0] for part in value.split(",") if part.strip()]
-    return [value] if value else []
 
 
 def run_checks(html: Path, base: str) -> dict[str, list[str]]:

@@ -14,10 +14,6 @@ from .archive import pack, write_sums
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
     from robo_genesis.pipeline.pages.results import PageResult
 
-PAGES = (
-    "pages"  # The folder beside `evidence` with the bundles of other pages than labs
-)
-
 
 def publish(
     book: Path,
@@ -32,7 +28,9 @@ def publish(
     Args:
         book: the folder that holds `_build`.
         rendered: the pages as Sphinx wrote them.
-        results: the executed pages, whose bundles are published beside the site.
+        results: the executed pages. Their bundles are published beside the site: those
+            of labs as `evidence/<lesson>/<backend>`, others as
+            `pages/<lesson>/<page>/<backend>`.
         finish: called with the complete folder before it is put in place; what it
             raises leaves the old site.
 
@@ -44,7 +42,13 @@ def publish(
         html = shutil.copytree(
             rendered, site / "html", ignore=shutil.ignore_patterns(".buildinfo")
         )
-        add_bundles(site, results)
+        for result in results:
+            if bundle := result.bundle:
+                lesson, page = result.page.lesson, result.page.page
+                own = (
+                    f"evidence/{lesson}" if page == "lab" else f"pages/{lesson}/{page}"
+                )
+                shutil.copytree(bundle, site / own / bundle.name)
         pack(html)
         write_sums(html)
         finish(site)
@@ -53,18 +57,3 @@ def publish(
             for name in files:
                 os.chmod(os.path.join(here, name), 0o644)
     return book / PUBLISHED / "html"
-
-
-def add_bundles(site: Path, results: Iterable["PageResult"]) -> None:
-    """Copy the bundles of executed pages into a folder.
-
-    Args:
-        site: bundles of pages named `lab` become `evidence/<lesson>/<backend>` in it,
-            others `pages/<lesson>/<page>/<backend>`.
-        results: the executed pages.
-    """
-    for result in results:
-        if result.bundle is not None:
-            lesson, page = str(result.page.lesson), str(result.page.page)
-            own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
-            shutil.copytree(result.bundle, site.joinpath(*own, result.bundle.name))

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from robo_genesis.core.project import (
-    CACHE,
     EXECUTED_PAGES,
     KEPT,
     PUBLISHED,
@@ -71,7 +70,7 @@ def render(book: Path, folder: Path, built: PageIndex, log: Path) -> Path:
     return html
 
 
-def live(port: int, book: Path, cache: Path = CACHE) -> int:
+def live(port: int, book: Path, cache: Path) -> int:
     """Show a book on localhost while it is written, until Ctrl-C; return the exit status.
 
     It begins with the pages and runs of the last `make book`. A page whose code changed

@@ -63,8 +63,9 @@ def execute_pages(
                 continue
             place = places[page.docname]
             log, last = logs / f"{place.parent.name}.log", last_record(place.parent)
-            given = (page, place, Path(scratch), log, timeout, environment, last)
-            waiting.append(PageRun(*given))
+            waiting.append(
+                PageRun(page, place, Path(scratch), log, timeout, environment, last)
+            )
         first = _first(waiting, environment)
         schedule = Schedule(in_order(waiting, first), first, jobs, say)
         finished = [*results.values()]

@@ -11,6 +11,7 @@ from pydantic import Field
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.bundle import Strict
 
+from .book import code_cells
 from .page_folder import OUTPUTS, SECONDS, executed_cells
 from .results import PageResult
 
@@ -64,8 +65,7 @@ def executed_notebook(docname: str, page: NotebookNode) -> NotebookNode:
     """
     executed = executed_cells(page_index().folders[docname])
     if LAST_OUTPUTS in os.environ:
-        cells = [cell for cell in page.cells if cell.cell_type == "code"]
-        executed.cells = with_last_outputs(cells, executed.cells)
+        executed.cells = with_last_outputs(code_cells(page), executed.cells)
     return executed
 
 

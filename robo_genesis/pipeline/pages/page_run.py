@@ -28,6 +28,8 @@ from .results import Failure, PageResult
 # What a warning names in the place of a file: a temporary one with the number of the
 # process.
 CELL_FILE = re.compile(rf"{re.escape(tempfile.gettempdir())}/ipykernel_\d+/\d+\.py")
+# What a terminal overwrites in a line, after which a carriage return goes on.
+OVERWRITTEN = re.compile(r"^.*\r(?=[^\r\n])|\r+(?=\n)", re.MULTILINE)
 
 
 @dataclass(slots=True, eq=False)
@@ -50,7 +52,7 @@ class PageRun:
     log: Path
     timeout: int
     environment: Mapping[str, str]
-    last: Record | None = None
+    last: Record | None
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
     alone: bool = False
@@ -86,7 +88,7 @@ class PageRun:
             self.log.open("wb", buffering=0) as log,
         ):
             seconds, failure = self._execute(Path(folder), log, on_cell)
-        status: results.Status = "failed" if failure else "executed"
+        status = "failed" if failure else "executed"
         return PageResult(self.page, status, self.place, seconds, failure, self.log)
 
     def _execute(
@@ -223,20 +225,10 @@ class LoggingClient(nbclient.NotebookClient):
                 out.get("name") == msg["content"]["name"]
                 and not self.clear_before_next_output
             ):
-                out.text = last_states(out.text + text)
+                out.text = OVERWRITTEN.sub("", out.text + text)
                 return out
-        msg["content"]["text"] = last_states(text)
+        msg["content"]["text"] = OVERWRITTEN.sub("", text)
         output = super().process_message(msg, cell, cell_index)
         if [out.get("name") for out in cell.outputs[-2:]] == ["stderr", "stdout"]:
             cell.outputs[-2:] = cell.outputs[:-3:-1]  # their order is random
         return output
-
-
-def last_states(text: str) -> str:
-    """Return a text with each line as a terminal shows it, after its last carriage return."""
-    lines = (
-        [state for state in line.split("\r") if state] for line in text.split("\n")
-    )
-    return "\n".join(
-        states[-1] if states else "" for states in lines
-    ) + "\r" * text.endswith("\r")

@@ -4,7 +4,6 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 from nbformat import NotebookNode
 
@@ -19,7 +18,6 @@ from .page_folder import OUTPUTS, find_bundle
 from .page_rules import first_line
 
 LOG_LINES = 15
-Status = Literal["executed", "reused", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 
 # What a cell may put out. The course's style has no form for other kinds, such as HTML.
@@ -69,12 +67,13 @@ class Failure:
 class PageResult:
     """The result of one page in one build.
 
-    `folder` is the page's folder in the store, where a failed page may be absent. `log`
-    is the file with all that an executed page wrote.
+    `status` is executed, reused or failed. `folder` is the page's folder in the store,
+    where a failed page may be absent. `log` is the file with all that an executed page
+    wrote.
     """
 
     page: Page
-    status: Status
+    status: str
     folder: Path
     seconds: float = 0.0
     failure: Failure | None = None
@@ -209,9 +208,7 @@ def _failing_line(ran: NotebookNode) -> int:
     )
     # A syntax error that is found before the cell is compiled has a line, but no frame.
     found = found or re.findall(r"\(<\w+>, line (\d+)\)$", errors[-1].evalue)
-    # IPython counts from the first line that is not empty.
-    empty = len(ran.source) - len(ran.source.lstrip("\n"))
-    return int(found[-1]) + empty if found else 1
+    return int(found[-1]) if found else 1
 
 
 def failure_report(results: Sequence[PageResult]) -> str:

@@ -166,9 +166,6 @@ SVG, SHOW = "image/svg+xml", SOURCES[1]
             f"another {SVG}",
         ),
         (SHOW, redraw(2, 0, other_picture), f"another {SVG}"),
-        (SHOW, lambda ran: table(ran).metadata.clear(), "is 1, expected 2"),
-        ("page.show(text.metric_table)", id, "is 2, expected 1"),
-        ("for k in (1, 2):\n    page.show(plots.height)", id, "outside of loops"),
         (
             SHOW,
             lambda ran: function(ran).update(
