@@ -72,7 +72,7 @@ def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
     assert not trace.exists()
 
 
-DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>'
 FIGURE = "```{figure} a.svg\n:name: %s\nA drawing\n```"
 MAP = {"id": "L01", "title": "One", "page": "law", "outcomes": ["go"]}
 PAGES = {
