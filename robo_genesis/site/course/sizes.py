@@ -89,14 +89,6 @@ def count_minutes(page: Path) -> Minutes:
     return size(read_notebook(page) or text, page)[0]
 
 
-def visible_code(notebook: NotebookNode) -> list[str]:
-    """Return the code that a page shows without a click."""
-    code = (cell for cell in notebook.cells if cell.cell_type == "code")
-    return [
-        c.source for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))
-    ]
-
-
 def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
     """Return the time that a page takes, and its size by the names of `MEASURES`.
 
@@ -107,7 +99,12 @@ def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
         file: of the page.
     """
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
-    visible = visible_code(notebook)
+    visible = [
+        cell.source
+        for cell in notebook.cells
+        if cell.cell_type == "code"
+        and not HIDDEN.intersection(cell.metadata.get("tags", ()))
+    ]
     lines = [sum(map(bool, map(str.strip, code.splitlines()))) for code in visible]
     functions = sum(STUB in code for code in visible)
     work = sum(lines) / LINES_A_MINUTE

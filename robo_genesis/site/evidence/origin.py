@@ -38,9 +38,9 @@ def origin(
         page: `lesson/page` of that page, None where it declares no bundle.
 
     Returns:
-        Keys: () where a cell shows chosen values, None where neither a measuring page's
-        cell nor a bundle made the node. The cell: None for a node that no cell made, or
-        that was read from a bundle.
+        Keys: () where a cell shows chosen values, None where neither a cell nor a bundle
+        made the node. The cell: None for a node that no cell made, or that was read from
+        a bundle.
     """
     cell = None
     for element in above(node):
@@ -48,7 +48,7 @@ def origin(
             return tuple(element["evidence_runs"]), None
         if element.get("nb_element") in MADE_BY_CELL:
             cell = element
-    if cell is None or page is None:
+    if cell is None:
         return None, None
     chosen = INPUTS in cell.get("cell_metadata", {}).get("tags", [])
     return () if chosen else (f"{page}/{BACKEND}",), cell

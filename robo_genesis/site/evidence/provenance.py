@@ -17,13 +17,14 @@ from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.util import logging
 
 from robo_genesis.core.markup import filled
 from robo_genesis.site.frame.executed import RECOMPUTED
 
 from . import ledger_data
 from .ledger_data import LEDGER, MEASURED, PRINTED, Item
-from .origin import above, origin
+from .origin import INPUTS, above, origin
 from .plain_nodes import html
 from .runs import all_runs, measured_pages
 
@@ -31,6 +32,13 @@ LINE = Path(__file__).with_suffix(".html")  # The template of the line
 LOG = "the engine's log"
 TITLE = 80  # Longest title in the ledger, in characters
 ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
+
+UNBOUND = (
+    "a cell shows an output, but the page declares no bundle. Give its front matter "
+    f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
+)
+
+logger = logging.getLogger(__name__)
 
 # The kind of an item that belongs to no run, by the keys of its origin.
 WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {None: "illustration", (): "settings"}
@@ -50,6 +58,10 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
         is_picture = isinstance(node, nodes.image)
         made = keys is not None and (texts or isinstance(node, nodes.table))
         if not (is_picture or made):
+            continue
+        if cell is not None and keys and page is None:
+            if not texts:
+                logger.warning(UNBOUND, location=env.docname)
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
         item = describe(holder, node, env, texts)

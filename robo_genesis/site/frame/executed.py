@@ -59,12 +59,9 @@ class ExecutedPage(NotebookClientBase):
 
 def without_stack(output: NotebookNode) -> NotebookNode:
     """Return an output; of an expected error only the last line, as its stack has private paths."""
-    is_error = output.output_type == "error"
-    return (
-        NotebookNode(output | {"traceback": output.traceback[-1:]})
-        if is_error
-        else output
-    )
+    if output.output_type == "error":
+        return NotebookNode(output | {"traceback": output.traceback[-1:]})
+    return output
 
 
 def setup(app: Sphinx) -> None:
