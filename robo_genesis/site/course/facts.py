@@ -14,9 +14,8 @@ from robo_genesis.site.evidence.plain_nodes import html
 
 from .sizes import count_minutes
 
-DESCRIPTION = (
-    200  # Longest description, in characters: search engines show about as many
-)
+# Longest description, in characters: search engines show about as many
+DESCRIPTION = 200
 MINUTES = "minutes"  # The name of the time in a page's metadata
 
 
@@ -25,10 +24,8 @@ FORM = "lesson.yml"  # The repository's form for a mistake or a question
 
 def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     """Insert the time below the title, except on the home page, and the link at the end."""
-    section, repository = (
-        document.next_node(nodes.section),
-        app.config.course_repository,
-    )
+    section = document.next_node(nodes.section)
+    repository = app.config.course_repository
     if docname != app.config.root_doc:
         time = f"About {app.env.metadata[docname][MINUTES]}."
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))

@@ -13,15 +13,13 @@ from nbformat.v4 import new_markdown_cell, new_notebook
 from robo_genesis.pipeline.pages.book import LAB, WORK_SHEET, Page, read_notebook
 from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
 
-WORDS_A_MINUTE = (
-    150  # A slow pace, for technical prose; code, tables and formulas are not counted
-)
+# A slow pace, for technical prose; code, tables and formulas are not counted
+WORDS_A_MINUTE = 150
 LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
 MINUTES_A_QUESTION = 2
 MINUTES_A_CHECKPOINT = 1  # To think of an answer before a fold shows it
-MINUTES_A_FUNCTION = (
-    10  # An estimate of the time to write a function until its test passes
-)
+# An estimate of the time to write a function until its test passes
+MINUTES_A_FUNCTION = 10
 
 # An estimate of the time of one run of a lab, in which the engine compiles its kernels.
 MINUTES_A_RUN = 5

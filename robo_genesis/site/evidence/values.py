@@ -128,10 +128,8 @@ class EngineLink(PageRole):
     def shown(self) -> list[nodes.Node]:
         """Return the link; its text is as given."""
         if self.name == "engine-release":
-            target, text = (
-                f"releases/tag/v{project.engine_pin()}",
-                nodes.Text(self.text),
-            )
+            target = f"releases/tag/v{project.engine_pin()}"
+            text: nodes.Node = nodes.Text(self.text)
         else:
             installed = importlib.metadata.distribution("genesis-world")
             if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():

@@ -21,9 +21,8 @@ from robo_genesis.site.evidence.origin import above
 
 from . import case_labels
 
-SHEET = Path(__file__).with_name(
-    "palette.css"
-)  # Its template. Paper has the light theme
+# Its template. Paper has the light theme
+SHEET = Path(__file__).with_name("palette.css")
 NAMES = sorted({*course_marks()} - {"baseline"})
 
 # A case's name in prose.

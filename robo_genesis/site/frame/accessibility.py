@@ -9,10 +9,8 @@ rows to be read as blocks, stays a table.
 from bs4 import BeautifulSoup, Tag
 
 PHONE = 358  # Width of a page's column on a phone that is 390 pixels wide [CSS px]
-LETTER, PADDING = (
-    9,
-    22.4,
-)  # Width of a wide letter, and of a cell's padding on both sides [CSS px]
+# Width of a wide letter, and of a cell's padding on both sides [CSS px]
+LETTER, PADDING = 9, 22.4
 MOST_ROWS = 40  # Longer tables are lists of samples, and scroll
 
 # What the parts of a table are to a screen reader, however a style sheet shows them.

@@ -55,10 +55,8 @@ def write_viewer(app: Sphinx, exception: Exception | None) -> None:
     folder = Path(app.outdir) / FOLDER
     if exception is None and folder.is_dir():
         (folder / VIEWER).write_bytes(viewer())
-        lines = (
-            CREDITS + "".join(copy_licences(folder)) + "".join(model_credits(folder))
-        )
-        (folder / NOTICE).write_text(lines, "utf8")
+        lines = [CREDITS, *copy_licences(folder), *model_credits(folder)]
+        (folder / NOTICE).write_text("".join(lines), "utf8")
 
 
 def model_credits(folder: Path) -> Iterator[str]:

@@ -85,8 +85,7 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
     wheel = build_wheel(folder)
-    constraints = folder / CONSTRAINTS
-    shutil.copy(project.ROOT / "requirements.lock", constraints)
+    lock = project.ROOT / "requirements.lock"
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(config.torch_index, student.name)
     origin = partial(origin_of, page, bundle.read_manifest(run), commands, config)
@@ -103,7 +102,7 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
         "student": student,
         "executed": ran,
         "wheel": wheel,
-        "constraints": constraints,
+        "constraints": Path(shutil.copy(lock, folder / CONSTRAINTS)),
         "units": Path(shutil.copy(run / "arrays.json", own)),
         "arrays": [*_arrays(run, own)],  # (case, its CSV, its npz)
         "figures": [*_figures(page, executed, own)],

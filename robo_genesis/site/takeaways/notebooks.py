@@ -19,9 +19,8 @@ from .plain_markdown import Writer, plain
 
 SITE_ONLY = "site-only"  # The tag of a cell that makes sense only on the site
 
-AFTER_YOURS = (
-    "after-yours"  # The tag of a cell that students run after their own answer
-)
+# The tag of a cell that students run after their own answer
+AFTER_YOURS = "after-yours"
 WAITS = "# Write your own text first. Then remove the # from the lines below, and run this cell.\n"
 
 SOURCE, OUTPUTS = "source_hidden", "outputs_hidden"
