@@ -85,7 +85,7 @@ document.addEventListener("DOMContentLoaded", () => {
   /* The chosen posture in 3D, once a reader asks for it. Where that fails, map and values remain. */
   function modelOf(root, dt) {
     const [button, shown] = [".play", ".shown"].map((name) => root.querySelector(name));
-    const scene = new globalThis.stage.Scene(root);
+    const scene = new globalThis.Scene(root);
     let chosen;
 
     function pose(cell) {
@@ -128,6 +128,7 @@ document.addEventListener("DOMContentLoaded", () => {
         places = fill(table, open, choose);
       }
       const k = Number(measure.value);
+      const { label } = data.measures[k];
       const seen = all.map(({ numbers }) => numbers[k]).filter((value) => value !== null);
       const [low, high] = [Math.min(...seen), Math.max(...seen)];
       const compared = predict && (chosen === shown ? last : shown);
@@ -137,11 +138,9 @@ document.addEventListener("DOMContentLoaded", () => {
         const before = cell === compared;
         place.textContent = texts[k];
         if (tag) place.prepend(add(place, "b", {}, tag), " ");
-        place.setAttribute( // it begins with the text of the cell
-          "aria-label",
-          `${tag ? `${tag} ` : ""}${texts[k]} ${data.measures[k].label}` +
-            `${numbers[k] === null ? " not observed" : ""}: ${name}${before ? ", the last run" : ""}`,
-        );
+        const observed = numbers[k] === null ? " not observed" : "";
+        const spoken = `${place.textContent} ${label}${observed}: ${name}`;
+        place.setAttribute("aria-label", before ? `${spoken}, the last run` : spoken);
         place.classList.toggle("refused", state === "refused");
         place.classList.toggle("last", before);
         place.style.setProperty("--share", ((numbers[k] ?? low) - low) / (high - low || 1));
@@ -150,9 +149,8 @@ document.addEventListener("DOMContentLoaded", () => {
       });
       const text = [...places.values()].map((place) => place.textContent).join("");
       const notes = Object.entries(data.notes).filter(([sign]) => text.includes(sign));
-      table.caption.textContent = [
-        `${open.caption} Numbers: ${data.measures[k].label}.`, ...notes.map(([, note]) => note),
-      ].join(" ");
+      const caption = [`${open.caption} Numbers: ${label}.`, ...notes.map(([, note]) => note)];
+      table.caption.textContent = caption.join(" ");
       if (inside) places.get(chosen).focus();
     }
 

@@ -6,20 +6,17 @@
 /* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const { add, write } = globalThis.timePlot;
-  const { Scene } = globalThis.stage;
   const { kept, keep } = globalThis.memory;
   const HEIGHT = 150;
   const STRIDE = 5; // samples that one press advances where reduced motion is preferred
   const ROOM = 0.1; // share of an axis below which two labels would overlap
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-  const number = (text) => Number(text.trim().replace("−", "-"));
-
   /* Case → {time, values: [one array a channel], mark, levels}. The table's columns: time, then the
      channels of each case in turn. */
   function read(root, radios, channels) {
     const rows = [...root.parentElement.querySelectorAll("tbody tr")].map((row) =>
-      [...row.cells].map((cell) => number(cell.textContent)),
+      [...row.cells].map((cell) => Number(cell.textContent.replace("−", "-"))),
     );
     const time = rows.map((row) => row[0]);
     return Object.fromEntries(radios.map((radio, k) => {
@@ -29,8 +26,6 @@ document.addEventListener("DOMContentLoaded", () => {
       return [radio.value, { time, values, mark, levels: JSON.parse(levels) }];
     }));
   }
-
-  const capital = (words) => words[0].toUpperCase() + words.slice(1);
 
   /* Tick values: both ends, and zero between them where the labels do not overlap. */
   function tickValues(least, most) {
@@ -82,7 +77,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const runs = read(root, radios, channels);
     const [slider, speed] = ["input[type=range]", "select"].map((name) => root.querySelector(name));
     const [play, shown] = [".play", ".shown"].map((name) => root.querySelector(name));
-    const scene = new Scene(root);
+    const scene = new globalThis.Scene(root);
     const [terms, texts, places] = ["dt", "dd", ".plot"].map((name) => root.querySelectorAll(name));
     const svgs = [...places].map((place) => add(place, "svg", { role: "img" }));
     const rest = root.querySelector(".rest");
@@ -153,7 +148,7 @@ document.addEventListener("DOMContentLoaded", () => {
           times: time.slice(0, last + 1), values: values[k].slice(0, last + 1), mark,
           name: radios.length > 1 ? one : "", chosen: one === chosen(),
         }));
-        const title = `${capital(name)} [${unit}]`;
+        const title = `${name[0].toUpperCase()}${name.slice(1)} [${unit}]`;
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
         svgs[k].setAttribute("aria-label", about);
         const drawn = levels.filter(({ channel }) => channel === name);

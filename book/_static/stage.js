@@ -2,21 +2,16 @@
    model load when a reader asks for them. */
 "use strict";
 
-globalThis.stage = (() => {
+globalThis.Scene = (() => {
   /* Adds a script once for all replays of the page; a script that failed is added again. */
   const requested = {};
-  function script(source) {
-    requested[source] ??= new Promise((resolve, reject) => {
+  function script(src) {
+    requested[src] ??= new Promise((onload, onerror) => {
       const element = document.createElement("script");
-      element.src = source;
-      element.onload = resolve;
-      element.onerror = (event) => {
-        delete requested[source];
-        reject(event);
-      };
-      document.head.append(element);
+      document.head.append(Object.assign(element, { src, onload, onerror }));
     });
-    return requested[source];
+    requested[src].catch(() => delete requested[src]);
+    return requested[src];
   }
 
   /* The viewer needs WebGL 2: without it, the viewer would report success and show nothing. */
@@ -36,10 +31,11 @@ globalThis.stage = (() => {
   }
 
   /* The 3D model, in step with the replay. A classic script and a data: address work from disk. */
-  class Scene {
+  return class {
+    viewer = null;
+
     constructor(root) {
       this.root = root;
-      this.viewer = null;
     }
 
     /* Loads the model, and tells the reader how that went: without it there are `others`. */
@@ -104,7 +100,5 @@ globalThis.stage = (() => {
       }
       viewer.currentTime = Math.min(time, viewer.duration - 1e-7); // at its end it would start again
     }
-  }
-
-  return { Scene };
+  };
 })();
