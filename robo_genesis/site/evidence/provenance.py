@@ -50,7 +50,9 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     book, items = Path(env.srcdir), []
     known, page = all_runs(book), measured_pages(book).get(env.docname)
     recomputed = RECOMPUTED.get(env.docname, set())
-    ledger = app.builder.get_relative_uri(env.docname, LEDGER)
+    ledger = ""  # of a small book
+    if LEDGER in env.found_docs:
+        ledger = app.builder.get_relative_uri(env.docname, LEDGER)
     for node in list(doctree.findall(nodes.Element)):
         texts = printed_texts(node, recomputed)
         last = texts[-1] if texts else node
@@ -70,7 +72,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
         item = replace(item, kind=kind, runs=keys or ())
         items.append(item)
         line = ledger_data.provenance(kind, [known[key] for key in item.runs])
-        add_line(last if texts else holder, line, f"{ledger}#{item.row}")
+        add_line(last if texts else holder, line, f"{ledger}#{item.row}" * bool(ledger))
     env.metadata[env.docname][ITEMS] = items
 
 
@@ -149,7 +151,7 @@ def add_line(holder: nodes.Element, text: str, address: str) -> None:
 
     What a run measured or printed has an icon, and the words appear under the mouse or
     the focus. Anything else says so in words. `address` is that of its row in the
-    ledger.
+    ledger, empty without one.
     """
     line = html(filled(LINE, text=text, address=address))
     with_icon = text.startswith((MEASURED, PRINTED))

@@ -139,7 +139,8 @@ def scene_of(scenery: Scenery, links: Sequence[str]) -> trimesh.Scene:
                 shown = trimesh.Trimesh(
                     mesh.vertices, mesh.faces, process=False, visual=look
                 )
-                scene.add_geometry(shown, f"{name}_part", parent_node_name=name)
+                part_name = f"{name}_{len(scene.geometry)}"  # another one for each part
+                scene.add_geometry(shown, part_name, parent_node_name=name)
 
     add(WORLD, "scene")
     for link in links:

@@ -98,6 +98,12 @@ def keys(model, case, link, path):
     return values(model, sampler.input)[:, 0], values(model, sampler.output)
 
 
+def test_each_part_is_drawn_with_its_shadow_and_its_copy_at_the_target(model):
+    drawn = [node.mesh for node in model.nodes if node.mesh is not None]
+    # Five parts with the floor, the shadows of four, one copy.
+    assert sorted(drawn) == [*range(10)] == [*range(len(model.meshes))]
+
+
 def test_the_validator_finds_nothing(glb, tmp_path):
     found = report(glb, tmp_path)
     assert (found["issues"]["numErrors"], found["issues"]["numWarnings"]) == (0, 0)
