@@ -65,7 +65,7 @@ document.addEventListener("DOMContentLoaded", () => {
       const now = { ...line(run, mark), chosen: true };
       const axes = pair.filter(Boolean).map((cell) => cell.map.axes[key]);
       draw(svg, {
-        title: last ? `${title}; thin: before` : title, height: HEIGHT, end: until,
+        title, height: HEIGHT, end: until,
         curves: last ? [line(last, "ghost"), now] : [now],
         ticks: axes[0].ticks, levels: axes[0].levels,
         low: Math.min(...axes.map(({ low }) => low)), high: Math.max(...axes.map(({ high }) => high)),
