@@ -74,6 +74,7 @@ lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l09)
 	@$(COURSE) lesson "$(NEW)"
 
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
+	@test -f book/_build/html/index.html || { echo "There is nothing to serve yet. Run make book first."; exit 1; }
 	@"$(PYTHON)" -m http.server --bind 127.0.0.1 --directory book/_build/html $(PORT)
 
 live: $(ENVIRONMENT) ## show the book on localhost while it is written (PORT=8000)

@@ -155,6 +155,7 @@ SITE: dict[str, dict[str, Any]] = {
     "--site-url": {"default": "", "help": "address of the published site"},
     "--solutions": {**SWITCH, "default": "1", "help": "0: leave them out"},
 }
+PORT = {"type": int, "default": 8000, "help": "of localhost; 0: a free one"}
 LESSON = {"default": "", "help": "l04, for example; by default all"}
 
 # Command → the verb of its result, and its options.
@@ -190,18 +191,7 @@ COMMANDS: dict[Callable[..., Any], tuple[str, dict[str, dict[str, Any]]]] = {
         },
     ),
     lesson: ("added", {"new": {"help": "name of the lesson, such as l09"}}),
-    live: (
-        "shown",
-        FOLDERS
-        | SITE
-        | {
-            "--port": {
-                "type": int,
-                "default": 8000,
-                "help": "of localhost; 0: a free one",
-            }
-        },
-    ),
+    live: ("shown", FOLDERS | SITE | {"--port": PORT}),
     lock: ("written", {"--upgrade": {"default": "", "help": "packages to upgrade"}}),
     repin: ("changed", {"genesis": {"help": "version of the engine"}}),
     sizes: ("compared", {"--book": FOLDERS["--book"]}),

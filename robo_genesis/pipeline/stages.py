@@ -71,9 +71,8 @@ def run_build(build: Build) -> list[str]:
     """
     with build_lock(build.cache):
         target, progress = build.to or build.book, Progress(build.say)
-        inputs = up_to_date.inputs_digest(
-            project.ROOT, build.book
-        )  # before any is read
+        # The inputs are digested before any is read.
+        inputs = up_to_date.inputs_digest(project.ROOT, build.book)
         engine, pages, into = prepare(build)
         npm.packages()
         about = [*described(), f"Engine: {project.ENGINE} {engine}"]

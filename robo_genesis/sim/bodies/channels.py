@@ -49,7 +49,7 @@ def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], replay: Replay) 
 
     Raises:
         ValueError: the runs have no such link; as `Runs`.
-        KeyError: there is no such axis.
+        KeyError: an axis is not in `AXES`.
     """
     k, thing = links.index(replay.follows), replay.thing
     followed = [AXES[name] for name in replay.axes]
