@@ -112,6 +112,15 @@ def repin(options: Namespace) -> Sequence[str]:
     return run_repin(options.genesis)
 
 
+def seconds(options: Namespace) -> Sequence[str]:
+    """Write what each page took last into the table from which a first build estimates."""
+    from robo_genesis.pipeline.pages.book import find_pages
+    from robo_genesis.pipeline.pages.store import write_seconds
+
+    store = options.cache / project.STORE
+    return [str(write_seconds(options.book, store, find_pages(options.book)))]
+
+
 def sizes(options: Namespace) -> int:
     """Compare the size of each page with the limits."""
     from robo_genesis.pipeline.pages.book import find_pages
@@ -194,6 +203,7 @@ COMMANDS: dict[Callable[..., Any], tuple[str, dict[str, dict[str, Any]]]] = {
     live: ("shown", FOLDERS | SITE | {"--port": PORT}),
     lock: ("written", {"--upgrade": {"default": "", "help": "packages to upgrade"}}),
     repin: ("changed", {"genesis": {"help": "version of the engine"}}),
+    seconds: ("written", FOLDERS),
     sizes: ("compared", {"--book": FOLDERS["--book"]}),
 }
 

@@ -87,6 +87,7 @@ def lab(actual: str, more: str = "") -> str:
 def run_pages(pages: list[Page], folder: Path, **settings: Any) -> list[PageResult]:
     """Execute pages into the store of a folder; return their results."""
     settings = {
+        "seconds": {},
         "jobs": 1,
         "timeout": TIMEOUT,
         "environment": {},

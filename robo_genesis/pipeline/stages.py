@@ -27,7 +27,7 @@ from .pages.book import Page, find_pages
 from .pages.execute import execute_pages
 from .pages.page_index import PageIndex
 from .pages.results import PageResult, failure_report
-from .pages.store import Verify, forget, places
+from .pages.store import Verify, forget, places, typical_seconds
 from .release import missing_for_release
 
 
@@ -186,6 +186,7 @@ def execute(
     results = execute_pages(
         pages,
         into,
+        seconds=typical_seconds(build.book),
         jobs=build.jobs,
         timeout=build.timeout,
         environment=environment,

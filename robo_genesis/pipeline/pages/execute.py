@@ -2,7 +2,7 @@
 
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from math import inf
+from math import ceil
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
@@ -15,15 +15,17 @@ from .page_run import PageRun
 from .results import Failure, PageResult
 from .store import last_record, stored_result
 
-# Prints the name of a page and an event, or the running pages and "".
+# Prints what an event is about, a page or several, and the event.
 Say = Callable[[str, str], None]
 EVERY = 30.0  # Seconds without an event after which the running pages are reported
+UNKNOWN = 60.0  # Seconds that a page takes of which nothing is known
 
 
 def execute_pages(
     pages: Sequence[Page],
     places: Mapping[str, Path],
     *,
+    seconds: Mapping[str, float],
     jobs: int,
     timeout: int,
     environment: Mapping[str, str],
@@ -42,6 +44,7 @@ def execute_pages(
         pages: the pages of the book.
         places: where the store has each page, or will have it; see `store.places`. A
             page that fails leaves its place as it is.
+        seconds: what pages take, by name, if the store does not know it.
         jobs: how many pages run at once.
         timeout: seconds for one cell; a page's front matter may set another.
         environment: variables for the kernels.
@@ -63,11 +66,14 @@ def execute_pages(
                 continue
             place = places[page.docname]
             log, last = logs / f"{place.parent.name}.log", last_record(place.parent)
+            expected = last.seconds if last else seconds.get(page.docname, UNKNOWN)
             waiting.append(
-                PageRun(page, place, Path(scratch), log, timeout, environment, last)
+                PageRun(page, place, Path(scratch), log, timeout, environment, expected)
             )
         first = _first(waiting, environment)
         schedule = Schedule(in_order(waiting, first), first, jobs, say)
+        if waiting:
+            say("to execute", schedule.left)
         finished = [*results.values()]
         try:
             while schedule.waiting or schedule.running or finished:
@@ -103,6 +109,8 @@ class Schedule:
         self.waiting, self.first, self.jobs = waiting, first, jobs
         self.say = say
         self.running: dict[PageRun, Thread] = {}
+        # The number of pages that ended, what they should have taken and what they took.
+        self.ended, self.expected, self.elapsed = 0, 0.0, 0.0
         # A run that ended with its result, or with None where it waits for its turn.
         self.events: SimpleQueue[tuple[PageRun, PageResult | None]] = SimpleQueue()
 
@@ -129,15 +137,30 @@ class Schedule:
             run, result = self.events.get(timeout=EVERY)
         except Empty:
             states = [f"{n.page.docname}: {n.state}" for n in self.running]
-            self.say(f"{len(states)} running: {'; '.join(states)}", "")
+            self.say(f"{len(states)} running: {'; '.join(states)}", self.left)
             return []
         if result is None:
             return []
         del self.running[run]
         if run in self.first[:1]:
             self.first = []
-        self.say(run.page.docname, result.ended)
+        self.ended += 1
+        self.expected += run.expected
+        self.elapsed += result.seconds
+        left = "" if result.failure else f"; {self.left}"
+        self.say(run.page.docname, result.ended + left)
         return [result]
+
+    @property
+    def left(self) -> str:
+        """How many pages ended, and how long the others take if all are as slow as those."""
+        runs = [*self.waiting, *self.running]
+        expected = sum(run.expected for run in runs)
+        expected -= sum(min(run.elapsed, run.expected) for run in self.running)
+        pace = self.elapsed / self.expected if self.ended else 1.0
+        minutes = expected * pace / max(min(self.jobs, len(runs)), 1) / 60
+        done = f"{self.ended} of {self.ended + len(runs)} pages"
+        return f"{done}, about {ceil(minutes)} min left" if runs else done
 
     def stop(self) -> None:
         """Kill all kernels, also one that a thread is just about to start."""
@@ -161,18 +184,13 @@ def in_order(runs: Iterable[PageRun], first: Sequence[PageRun] = ()) -> list[Pag
     """Return runs in the order in which they start: the longest first, those with `alone` last.
 
     Args:
-        runs: the pages to execute. Those that were never executed come before the
-            others, the ones with the most cells first.
+        runs: the pages to execute.
         first: come before all others, in this order.
     """
 
-    def sooner(run: PageRun) -> tuple[int, bool, float, int]:
-        return (
-            first.index(run) if run in first else len(first),
-            bool(run.page.alone),
-            -run.last.seconds if run.last else -inf,
-            -len(run.page.code.sources),
-        )
+    def sooner(run: PageRun) -> tuple[int, bool, float]:
+        place = first.index(run) if run in first else len(first)
+        return place, bool(run.page.alone), -run.expected
 
     return sorted(runs, key=sooner)
 

@@ -19,11 +19,9 @@ from robo_genesis.core.project import ENGINE_PREFIXES, ROOT
 MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
 ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 
-# The first code of a kernel. Linux kills it when the thread that started it ends, also
-# by SIGKILL (1 is PR_SET_PDEATHSIG of <linux/prctl.h>, 9 SIGKILL). Its exit handler
-# runs after the engine's, and before ipykernel's, which hangs in about one of ten.
-START = "import atexit, ctypes, os; ctypes.CDLL(None).prctl(1, 9); atexit.register(os._exit, 0)"
-ARGUMENTS = [f"--IPKernelApp.exec_lines=exec({START!r}, {{}})"]
+# A kernel executes this file first, in a namespace of its own.
+START = f"exec(open({str(Path(__file__).with_name('kernel_start.py'))!r}).read(), {{}})"
+ARGUMENTS = [f"--IPKernelApp.exec_lines={START}"]
 
 
 class CleanKernelManager(AsyncKernelManager):

@@ -22,7 +22,7 @@ from robo_genesis.pipeline.command import ANSI
 
 from . import kernels, results
 from .book import Page, code_digest
-from .page_folder import PageRefused, Record, find_bundle, write_page
+from .page_folder import PageRefused, find_bundle, write_page
 from .results import Failure, PageResult
 
 # What a warning names in the place of a file: a temporary one with the number of the
@@ -38,7 +38,7 @@ class PageRun:
 
     `place` is the page's folder in the store; `scratch` is a temporary folder; `log` is
     the file that gets what cells and kernel write; `timeout` is in seconds, for one
-    cell; `last` is the record of the last stored run.
+    cell; `expected` is how many seconds it will take, about.
 
     `cell` is the number of the code cell that runs, from 1; 0 while the kernel starts.
     The page `waits` before its first cell that must run alone until `turn` is set, and
@@ -52,7 +52,7 @@ class PageRun:
     log: Path
     timeout: int
     environment: Mapping[str, str]
-    last: Record | None
+    expected: float
     begin: float = field(default_factory=time.monotonic)
     cell: int = 0
     alone: bool = False
@@ -63,19 +63,22 @@ class PageRun:
     @property
     def start_line(self) -> str:
         """What the line at the start of the run says."""
-        about = f", about {self.last.seconds:.0f} s" if self.last else ""
+        cells = len(self.page.code.sources)
         return (
-            f"started: {len(self.page.code.sources)} cells{about}; its log: {self.log}"
+            f"started: {cells} cells, about {self.expected:.0f} s; its log: {self.log}"
         )
 
     @property
     def state(self) -> str:
-        """Cell and elapsed time of the run, and what is left if it takes as long as the last."""
+        """Cell and elapsed time of the run."""
         number = f"cell {self.cell} of {len(self.page.code.sources)}"
         cell = (number if self.cell else "kernel starts") + " waits" * self.waits
-        elapsed = time.monotonic() - self.begin
-        left = self.last.seconds - elapsed if self.last else 0.0
-        return f"{cell}, {elapsed:.0f} s" + f", ~{left:.0f} s left" * (left > 0)
+        return f"{cell}, {self.elapsed:.0f} s"
+
+    @property
+    def elapsed(self) -> float:
+        """How long it runs [s]."""
+        return time.monotonic() - self.begin
 
     def execute(self, on_cell: Callable[[], None]) -> PageResult:
         """Execute the page in an empty temporary folder; store it unless it failed.

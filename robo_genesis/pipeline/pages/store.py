@@ -1,10 +1,13 @@
 """The store of executed pages, `<page>/<fingerprint>/`; each folder is one, see `page_folder`."""
 
+import json
 import shutil
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
+
+from robo_genesis.core.files import write_whole
 
 from .book import Page
 from .page_folder import (
@@ -18,6 +21,9 @@ from .sources import Tree, page_fingerprint
 
 # Takes a bundle's folder; returns the manifest or raises BundleRefused.
 Verify = Callable[[Path], Any]
+
+# What each page took where the table was written, for the estimates of a first build.
+SECONDS = "_seconds.json"
 
 KEPT = 3  # Folders that are kept of each page; RENDER=0 and RENDER=1 have one each
 
@@ -72,6 +78,20 @@ def last_record(place: Path) -> Record | None:
     with suppress(PageRefused, IndexError):
         return read_record(folders(place)[0])
     return None
+
+
+def typical_seconds(book: Path) -> dict[str, float]:
+    """Return the book's table of what each page took, by name; empty if it has none."""
+    table = book / SECONDS
+    return json.loads(table.read_text("utf8")) if table.exists() else {}
+
+
+def write_seconds(book: Path, store: Path, pages: Iterable[Page]) -> Path:
+    """Write what each page took in its last execution, and return the table's path."""
+    last = {page.docname: last_record(executions(store, page)) for page in pages}
+    table = {name: round(record.seconds) for name, record in last.items() if record}
+    write_whole(book / SECONDS, (json.dumps(table, indent=1) + "\n").encode())
+    return book / SECONDS
 
 
 def forget(store: Path, pages: Iterable[Page], into: Mapping[str, Path]) -> None:

@@ -3,7 +3,7 @@ import signal
 import sys
 import threading
 from pathlib import Path
-from types import SimpleNamespace
+from unittest.mock import Mock
 
 import nbformat
 import psutil
@@ -21,7 +21,7 @@ from tiny_book import (
 from robo_genesis.core.project import engine_cache_environment, engine_cache_folder
 from robo_genesis.pipeline.pages import execute as execution
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import in_order
+from robo_genesis.pipeline.pages.execute import Schedule, in_order
 from robo_genesis.pipeline.pages.kernels import CleanKernelManager
 from robo_genesis.pipeline.pages.page_folder import PageRefused
 from robo_genesis.pipeline.pages.page_run import PageRun
@@ -159,7 +159,7 @@ def test_a_page_is_reused_unless_it_is_to_be_executed_again(lab):
     again = execute(lab, say=lambda *words: said.append(words))["lab"]
     assert (again.status, again.folder) == ("executed", first.folder)
     assert "outputs/cpu/manifest.json changed since" in said[0][1]
-    assert re.match(r"started: 2 cells, about \d+ s; its log: .*lab\.log$", said[1][1])
+    assert re.match(r"started: 2 cells, about \d+ s; its log: .*lab\.log$", said[2][1])
     assert execute(lab)["lab"].status == "reused"
 
 
@@ -285,12 +285,7 @@ def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
     results = execute(tmp_path, jobs=2, environment=environment, say=say)
     assert {result.status for result in results.values()} == {"executed"}
     if saved:
-        assert [name for name, event in said if event == "started"] == [
-            "c",
-            "a",
-            "b",
-            "d",
-        ]
+        assert [name for name, event in said if event == "started"] == [*"abcd"]
     else:
         start, end = "started", "execute"
         order = [
@@ -301,24 +296,22 @@ def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
             ("a", start),
             ("d", start),
         ]
-        assert said[:6] == order
+        assert said[1:7] == order
 
 
-def test_new_pages_start_first_the_ones_with_many_cells_before_others_then_the_longest(
-    tmp_path,
-):
-    cells = {"b": 1, "c": 1, "d": 9, "e": 2}
-    books = {name: notebook(*[cell("1")] * n) for name, n in cells.items()}
-    make_book(tmp_path, **books, f=notebook(*[cell("1", ":tags: [alone]\n")] * 9))
-    last = {"c": SimpleNamespace(seconds=30.0), "d": SimpleNamespace(seconds=2.0)}
+def test_the_longest_pages_start_first_those_that_measure_time_last(tmp_path):
+    seconds = {"b": 20.0, "c": 30.0, "d": 2.0, "f": 90.0}
+    books = dict.fromkeys("bcd", notebook(cell("1")))
+    make_book(tmp_path, **books, f=notebook(cell("1", ":tags: [alone]\n")))
     runs = [
-        PageRun(page, tmp_path, tmp_path, tmp_path / n, 1, {}, last.get(n))
+        PageRun(page, *[tmp_path] * 3, 1, {}, seconds[page.docname])
         for page in find_pages(tmp_path / "book")
-        for n in [page.docname]
     ]
-    order = [run.page.docname for run in in_order(runs)]
-    assert order == ["e", "b", "c", "d", "f"]
-    assert runs[1].state == "kernel starts, 0 s, ~30 s left"
+    assert [run.page.docname for run in in_order(runs)] == ["c", "b", "d", "f"]
+    schedule = Schedule(runs, [], 2, Mock())
+    assert schedule.left == "0 of 4 pages, about 2 min left"
+    schedule.ended, schedule.expected, schedule.elapsed = 1, 10.0, 100.0
+    assert schedule.left == "1 of 5 pages, about 12 min left"
 
 
 def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatch):
@@ -326,7 +319,7 @@ def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatc
     make_book(tmp_path, page=notebook(cell("1"), cell("import time\ntime.sleep(2)")))
     said = []
     execute(tmp_path, say=lambda *words: said.append(" ".join(words)))
-    pattern = re.compile(r"1 running: page: cell 2 of 2, \d s ")
+    pattern = re.compile(r"1 running: page: cell 2 of 2, \d s 0 of 1 pages, about 1 min left")
     assert any(map(pattern.fullmatch, said)), said
 
 
