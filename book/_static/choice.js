@@ -22,8 +22,6 @@ document.addEventListener("change", ({ target, detail }) => {
   if (detail !== "kept") question.querySelector("output").textContent = said ?? "";
 });
 
-document.addEventListener(
-  "toggle",
-  ({ target }) => target.closest("fieldset.choice")?.classList.add("answered"),
-  true, // the event does not bubble
-);
+document.addEventListener("toggle", ({ target }) => {
+  target.closest("fieldset.choice")?.classList.add("answered");
+}, true); // the event does not bubble

@@ -20,9 +20,9 @@ document.addEventListener("DOMContentLoaded", () => {
 
   const cellsOf = (map) => map.rows.flatMap((row) => row.cells);
 
-  /* A table of cells, one stop for the Tab key. Rows begin at the top, columns have labels below. */
+  /* A table of cells, one stop for the Tab key, each the `place` of its cell. Rows begin at the top,
+     columns have labels below. */
   function fill(table, map, choose) {
-    const found = new Map();
     table.replaceChildren();
     table.setAttribute("role", "grid");
     table.createCaption();
@@ -30,10 +30,9 @@ document.addEventListener("DOMContentLoaded", () => {
       const line = add(table, "tr");
       add(line, "th", { scope: "row" }, label);
       cells.forEach((cell, column) => {
-        const place = add(line, "td", { role: "gridcell" });
-        found.set(cell, place);
-        place.addEventListener("click", () => choose(cell));
-        place.addEventListener("keydown", (event) => {
+        cell.place = add(line, "td", { role: "gridcell" });
+        cell.place.addEventListener("click", () => choose(cell));
+        cell.place.addEventListener("keydown", (event) => {
           const [down, right] = KEYS[event.key] ?? [];
           if (down === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
           event.preventDefault();
@@ -45,14 +44,13 @@ document.addEventListener("DOMContentLoaded", () => {
     const foot = add(table, "tr");
     add(foot, "td");
     for (const label of map.columns) add(foot, "th", { scope: "col" }, label);
-    return found;
   }
 
   /* The curves of a run over those of the last one. */
   function curvesOf(root, { of, dt, until, drawn }) {
     const plots = root.querySelector(".plots");
     const svgs = drawn.map(({ key }) => add(plots, "svg", { role: "img", "data-curve": key }));
-    let pair = [];
+    let pair; // the run and the one before
 
     function drawOne({ key, name, title, unit, zero, first }, svg) {
       const [run, last] = pair;
@@ -65,9 +63,8 @@ document.addEventListener("DOMContentLoaded", () => {
       const now = { ...line(run, mark), chosen: true };
       const axes = pair.filter(Boolean).map((cell) => cell.map.axes[key]);
       draw(svg, {
-        title, height: HEIGHT, end: until,
-        curves: last ? [line(last, "ghost"), now] : [now],
-        ticks: axes[0].ticks, levels: axes[0].levels,
+        ...axes[0], title, height: HEIGHT, end: until,
+        curves: last ? [{ ...line(last, "ghost"), name: "last run" }, now] : [now],
         low: Math.min(...axes.map(({ low }) => low)), high: Math.max(...axes.map(({ high }) => high)),
       });
       const grey = last ? ` Grey: the last run, ${last.name}, ${last.map.setting}.` : "";
@@ -75,7 +72,7 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     const redraw = () => drawn.forEach((curve, k) => drawOne(curve, svgs[k]));
-    new ResizeObserver(() => pair.length && redraw()).observe(plots);
+    new ResizeObserver(redraw).observe(plots);
     return (run, last) => {
       pair = [run, last];
       redraw();
@@ -96,13 +93,11 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     button.addEventListener("click", async () => {
-      button.disabled = true;
+      button.hidden = true;
       await scene.open("robot", "The map and its values do not need it.");
-      button.disabled = false;
       button.hidden = Boolean(scene.viewer);
       pose(chosen);
     });
-    button.hidden = false;
     return pose;
   }
 
@@ -115,7 +110,6 @@ document.addEventListener("DOMContentLoaded", () => {
     for (const map of data.maps) for (const cell of cellsOf(map)) cell.map = map;
     const all = data.maps.flatMap(cellsOf);
     let open; // the map that the table shows
-    let places; // its cells in the table
     let chosen = all.find((cell) => cell.opens) ?? all[0];
     let shown = null; // it differs from `chosen` while a question is open
     let last = null; // the run before, drawn as a ghost
@@ -125,7 +119,7 @@ document.addEventListener("DOMContentLoaded", () => {
       if (open !== chosen.map) {
         open = chosen.map;
         which.value = data.maps.indexOf(open);
-        places = fill(table, open, choose);
+        fill(table, open, choose);
       }
       const k = Number(measure.value);
       const { label } = data.measures[k];
@@ -133,8 +127,8 @@ document.addEventListener("DOMContentLoaded", () => {
       const [low, high] = [Math.min(...seen), Math.max(...seen)];
       const compared = predict && (chosen === shown ? last : shown);
       const inside = table.contains(document.activeElement);
-      places.forEach((place, cell) => {
-        const { name, tag, state, texts, numbers } = cell;
+      for (const cell of cellsOf(open)) {
+        const { place, name, tag, state, texts, numbers } = cell;
         const before = cell === compared;
         place.textContent = texts[k];
         if (tag) place.prepend(add(place, "b", {}, tag), " ");
@@ -146,12 +140,13 @@ document.addEventListener("DOMContentLoaded", () => {
         place.style.setProperty("--share", ((numbers[k] ?? low) - low) / (high - low || 1));
         place.setAttribute("aria-selected", cell === chosen);
         place.tabIndex = cell === chosen ? 0 : -1;
-      });
-      const text = [...places.values()].map((place) => place.textContent).join("");
-      const notes = Object.entries(data.notes).filter(([sign]) => text.includes(sign));
-      const caption = [`${open.caption} Numbers: ${label}.`, ...notes.map(([, note]) => note)];
-      table.caption.textContent = caption.join(" ");
-      if (inside) places.get(chosen).focus();
+      }
+      const text = cellsOf(open).map(({ place }) => place.textContent).join("");
+      table.caption.textContent = `${open.caption} Numbers: ${label}.`;
+      for (const [sign, note] of Object.entries(data.notes)) {
+        if (text.includes(sign)) table.caption.append(` ${note}`);
+      }
+      if (inside) chosen.place.focus();
     }
 
     function choose(cell) {
@@ -184,9 +179,7 @@ document.addEventListener("DOMContentLoaded", () => {
       legend.textContent = `From ${from} to ${to}: what happens to the ${about.noun}?`;
       question.replaceChildren(legend);
       for (const [key, word] of [...Object.entries(words), ["", "Skip"]]) {
-        add(question, "button", { type: "button" }, word).addEventListener("click", () => {
-          answer(about, at, key, words);
-        });
+        add(question, "button", { type: "button" }, word).onclick = () => answer(about, at, key, words);
       }
       question.hidden = false;
       output.textContent = legend.textContent;
@@ -198,10 +191,8 @@ document.addEventListener("DOMContentLoaded", () => {
       const verdict = key ? (key === right ? "Yes" : "No") : "Skipped";
       const [before, now] = [shown, chosen].map(({ values }) => values[about.column]);
       asked += 1;
-      show(
-        `${verdict}. The ${about.noun}: ${words[right]}, first ${before}, now ${now}.${margin} `,
-      );
-      places.get(chosen).focus({ preventScroll: true }); // the button has gone
+      show(`${verdict}. The ${about.noun}: ${words[right]}, first ${before}, now ${now}.${margin} `);
+      chosen.place.focus({ preventScroll: true }); // the button has gone
     }
 
     function show(feedback) {
@@ -243,13 +234,10 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* Reads depth, point and closed form of a pixel from the arrays of a recorded view. */
   async function startPicture(root, { size, K, pose, unit, names, planes, spheres, frames }) {
-    const [depths, numbers] = await Promise.all(
-      [frames.depth, frames.segmentation].map(decode),
-    );
+    const [depths, numbers] = await Promise.all([frames.depth, frames.segmentation].map(decode));
     const [width, height] = size;
-    const find = (name) => root.querySelector(name);
-    const [column, row] = ["column", "row"].map((name) => find(`[name=${name}]`));
-    const [stage, cross] = [".stage", ".cross"].map(find);
+    const [column, row, stage, cross] = ["[name=column]", "[name=row]", ".stage", ".cross"]
+      .map((selector) => root.querySelector(selector));
     const centre = pose.map((line) => line[3]);
 
     /* From the camera through the middle of a pixel, with 1 along the optical axis. */
@@ -301,20 +289,17 @@ document.addEventListener("DOMContentLoaded", () => {
       show();
     }
 
-    cross.hidden = false;
     stage.onpointerdown = stage.onpointermove = point;
     stage.ondragstart = () => false;
     for (const input of [column, row]) input.addEventListener("input", show);
     show();
   }
 
-  for (const root of document.querySelectorAll(".explorer")) {
+  async function start(root) {
     const data = JSON.parse(root.dataset.explorer);
-    const panel = root.querySelector(".panel");
-    root.querySelector(".without-script")?.remove();
-    if (data.maps) {
-      panel.hidden = false; // curves are drawn as wide as they are shown
-      startMap(root, data);
-    } else startPicture(root, data).then(() => { panel.hidden = false; });
+    await (data.maps ? startMap : startPicture)(root, data);
+    root.classList.add("ready");
   }
+
+  document.querySelectorAll(".explorer").forEach(start);
 });

@@ -14,7 +14,6 @@ globalThis.memory = (() => {
 
   const read = () => JSON.parse(store?.getItem(STORE) ?? "{}");
   const write = (all) => store?.setItem(STORE, JSON.stringify(all));
-  const forget = () => store?.removeItem(STORE);
   const ofPage = (all) => ((all.pages ??= {})[page] ??= {});
 
   /* A value of this page by its name. */
@@ -26,13 +25,12 @@ globalThis.memory = (() => {
     write(all);
   }
 
-  return { read, write, kept, keep, forget, keeps: Boolean(store) };
+  return { read, write, kept, keep, keeps: Boolean(store) };
 })();
 
 document.addEventListener("DOMContentLoaded", () => {
-  const { read, write, kept, keep, forget, keeps } = globalThis.memory;
+  const { read, write, kept, keep, keeps } = globalThis.memory;
   const article = document.querySelector("article");
-  const title = article?.querySelector("h1")?.firstChild?.textContent;
   const make = (name, properties) => Object.assign(document.createElement(name), properties);
 
   /* Answers by the text of their question, which stays when questions move: the number of the option,
@@ -63,7 +61,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const go = make("a", { href: last.href, textContent: last.title });
     const away = make("button", { type: "button", textContent: "Forget all" });
     away.addEventListener("click", () => {
-      forget();
+      write({});
       place.replaceChildren("Forgotten.");
       place.focus();
       for (const mark of document.querySelectorAll(".finished")) mark.remove();
@@ -87,6 +85,7 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* A page of a lesson: it is the last one, and its end offers to mark it. */
   if (!article || !keeps || !/\/lessons\//.test(location.pathname)) return;
+  const title = article.querySelector("h1").firstChild.textContent;
   write({ ...read(), last: { href: location.href.split("#")[0], title } });
   const box = make("input", { type: "checkbox", id: "finished", checked: kept("finished") });
   box.addEventListener("change", () => keep("finished", box.checked || undefined));

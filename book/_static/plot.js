@@ -26,34 +26,31 @@ globalThis.timePlot = (() => {
     return Math.max(Math.min(y, beside) - height, height - Math.max(y, beside), 0);
   }));
 
-  /* Writes the name of a curve beside it, where the others are farthest and none of `names` is; adds
-     the text, its place and its sample to them. Where all curves lie close together, no name would say
-     which is which. */
-  function writeName(svg, { name, mark, points }, others, names, [left, right, top, bottom]) {
+  /* Writes the name of a curve beside it, where other curves and names are farthest, and if there is
+     room not on a level; returns the text and its sample. All these are lines of points, and the name's
+     is added to `names`. Where all curves lie close together, no name would say which is which. */
+  function writeName(svg, { name, mark, points }, others, names, levels, [left, right, top, bottom]) {
     const half = 3.8 * name.length; // half of its width
     let best = { weight: 0 };
     for (let at = 0; at < points.length; at += Math.ceil(points.length / TRIED)) {
       const [x, y] = points[at];
       if (y < top || others.some((other) => Math.abs(other[at][1] - y) < 6)) continue;
-      const beside = [[0, -9], [0, 11], [half + 6, 0], [-half - 6, 0]];
-      for (const [dx, dy] of beside) {
+      for (const [dx, dy] of [[0, -9], [0, 11], [half + 6, 0], [-half - 6, 0]]) {
         const [middle, height] = [x + dx, y + dy];
         const span = [middle - half, middle + half];
         if (span[0] < left || span[1] > right || height < top + 5 || height > bottom - 5) continue;
-        const overlaps = ({ height: other, span: [from, to] }) => (
-          Math.abs(other - height) < 13 && span[0] < to && from < span[1]
-        );
-        if (names.some(overlaps)) continue;
-        const gap = Math.min(30, ...others.map((other) => distance(other, span, height)));
+        const room = (lines, most) => Math.min(most, ...lines.map((one) => distance(one, span, height)));
+        const gap = room([...others, ...names], 30);
         const own = Math.min(9, distance(points, dx ? [span[0] + 3, span[1] - 3] : span, height));
         if (gap < APART || own < 7) continue;
-        const weight = gap + own;
+        const weight = gap + own + room(levels, 9);
         if (weight > best.weight) best = { weight, middle, height, span, at };
       }
     }
-    if (!best.weight) return;
+    if (!best.weight) return [];
+    names.push(best.span.map((end) => [end, best.height]));
     const place = { x: best.middle, y: best.height + 4, "text-anchor": "middle", class: `name ${mark}` };
-    names.push({ ...best, text: add(svg, "text", place, name) });
+    return [{ text: add(svg, "text", place, name), at: best.at }];
   }
 
   /* Draws a plot from the start; all lengths are CSS pixels.
@@ -73,8 +70,7 @@ globalThis.timePlot = (() => {
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.setAttribute("height", height);
     add(svg, "text", { x: 0, y: 14, class: "title" }, title);
-    const exact = (n) => Math.abs(Number((end / 4).toFixed(n)) - end / 4) < 1e-9;
-    const digits = [1, 2, 3].find(exact) ?? 4;
+    const digits = String(Number((end / 4).toFixed(4))).split(".")[1]?.length ?? 1;
     for (const share of [0, 0.25, 0.5, 0.75, 1]) {
       const at = x(share * end);
       add(svg, "line", { x1: at, x2: at, y1: EDGE.top, y2: floor, class: "grid" });
@@ -97,15 +93,16 @@ globalThis.timePlot = (() => {
       return { line: add(svg, "polyline", line), points: pairs };
     });
     const names = [];
-    for (const curve of placed.filter(({ name }) => name)) {
+    const heights = levels.map(({ value }) => [[x(0), y(value)], [x(end), y(value)]]);
+    const texts = placed.filter(({ name }) => name).flatMap((curve) => {
       const others = placed.filter((one) => one !== curve).map(({ points }) => points);
-      writeName(svg, curve, others, names, [EDGE.left, width - EDGE.right, EDGE.top, floor]);
-    }
+      return writeName(svg, curve, others, names, heights, [x(0), x(end), EDGE.top, floor]);
+    });
     function grow(sample) {
       for (const { line, points } of lines) {
         line.setAttribute("points", points.slice(0, sample + 1).join(" "));
       }
-      for (const { text, at } of names) text.style.display = at > sample ? "none" : "";
+      for (const { text, at } of texts) text.style.display = at > sample ? "none" : "";
     }
     return { x, y, floor, top: EDGE.top, share: (pixels) => (pixels - EDGE.left) / across, grow };
   }

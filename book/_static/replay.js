@@ -10,7 +10,7 @@ document.addEventListener("DOMContentLoaded", () => {
   const HEIGHT = 150;
   const STRIDE = 5; // samples that one press advances where reduced motion is preferred
   const ROOM = 0.1; // share of an axis below which two labels would overlap
-  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
   /* Case → {time, values: [one array a channel], mark, levels}. The table's columns: time, then the
      channels of each case in turn. */
@@ -36,7 +36,7 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* Draws one plot of all cases; returns the function that moves its cursor, and shows the part of
      the curves that was seen. */
-  function draw(svg, { curves, levels, title, top: highest }) {
+  function draw(svg, { curves, levels, title, top: highest, pick }) {
     const drawn = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
     const all = [...curves.flatMap((c) => c.values), ...drawn.map((l) => l.value)]
       .filter((value) => value <= (highest ?? Infinity));
@@ -53,9 +53,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const line = add(svg, "line", { y1: top, y2: floor, class: "cursor" });
     const dot = add(svg, "circle", { r: 4.5, class: `dot ${mark}` });
     svg.onpointerdown = svg.onpointermove = (event) => {
-      if (event.buttons !== 1) return;
-      const detail = share(event.clientX - svg.getBoundingClientRect().left);
-      svg.dispatchEvent(new CustomEvent("pick", { detail, bubbles: true }));
+      if (event.buttons === 1) pick(share(event.clientX - svg.getBoundingClientRect().left));
     };
     return (time, sample, seen) => {
       grow(seen);
@@ -65,9 +63,6 @@ document.addEventListener("DOMContentLoaded", () => {
       dot.setAttribute("cy", Math.max(y(values[sample]), top)); // at the edge, if it is not drawn
     };
   }
-
-  const questionAbove = (root) => [...document.querySelectorAll("fieldset.choice")]
-    .findLast((one) => one.compareDocumentPosition(root) & Node.DOCUMENT_POSITION_FOLLOWING);
 
   function start(root) {
     const { subject, thing } = root.dataset;
@@ -87,11 +82,11 @@ document.addEventListener("DOMContentLoaded", () => {
     /* Of a blind replay, nothing shows before the question above has an answer, and its feedback waits
        for the curves. They appear with the time: `seen` is the last sample so far. */
     const blind = block.classList.contains("growing") && !kept(root.dataset.name);
-    const question = blind && questionAbove(root);
+    const question = blind && [...document.querySelectorAll("fieldset.choice")]
+      .findLast((one) => one.compareDocumentPosition(root) & Node.DOCUMENT_POSITION_FOLLOWING);
     let seen = blind ? 0 : last;
     let cursors = [];
-    let playing = null; // {clock, time}: of the last frame [ms], and the time of the run there [s]
-    let frame = 0; // the request for the next frame while playing
+    let playing = null; // {clock, time, next}: of the last frame [ms], of the run [s], the next frame
     let loading = false;
 
     const chosen = () => radios.find((radio) => radio.checked).value;
@@ -152,7 +147,7 @@ document.addEventListener("DOMContentLoaded", () => {
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
         svgs[k].setAttribute("aria-label", about);
         const drawn = levels.filter(({ channel }) => channel === name);
-        return draw(svgs[k], { curves, levels: drawn, title, top });
+        return draw(svgs[k], { curves, levels: drawn, title, top, pick });
       });
       showSample();
     }
@@ -169,16 +164,15 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     function stop() {
+      cancelAnimationFrame(playing.next);
       playing = null;
-      cancelAnimationFrame(frame);
       label();
       showSample(); // back onto a sample of the record
     }
 
     function label() {
       const step = `Next ${(STRIDE * run().time[1]).toFixed(timeDigits)} s`;
-      play.textContent = calm.matches ? step : playing ? "Pause" : "Play";
-      speed.closest("p").hidden = calm.matches;
+      play.textContent = calm ? step : playing ? "Pause" : "Play";
     }
 
     function advance(clock) {
@@ -188,7 +182,7 @@ document.addEventListener("DOMContentLoaded", () => {
       slider.value = Math.min(Math.floor(playing.time / time[1] + 1e-6), last);
       if (playing.time >= time[last]) return stop();
       showSample(playing.time);
-      frame = requestAnimationFrame(advance);
+      playing.next = requestAnimationFrame(advance);
     }
 
     /* Loads the model. Where that fails, the plots play alone. */
@@ -205,12 +199,12 @@ document.addEventListener("DOMContentLoaded", () => {
       if (loading) return;
       if (!scene.viewer && !playing) await load();
       if (sample() === last) slider.value = 0;
-      else if (calm.matches) slider.value = sample() + STRIDE;
-      if (calm.matches) return showSample();
+      else if (calm) slider.value = sample() + STRIDE;
+      if (calm) return showSample();
       if (playing) return stop();
       playing = { time: run().time[sample()] };
       label();
-      frame = requestAnimationFrame(advance);
+      playing.next = requestAnimationFrame(advance);
     });
 
     function jump() {
@@ -218,6 +212,12 @@ document.addEventListener("DOMContentLoaded", () => {
       showSample();
       if (!scene.viewer && !loading) load(); // the picture shows the start
     }
+
+    function pick(share) {
+      slider.value = Math.round(share * last);
+      jump();
+    }
+
     slider.addEventListener("input", jump);
     rest?.addEventListener("click", () => {
       slider.max = last = all;
@@ -226,17 +226,12 @@ document.addEventListener("DOMContentLoaded", () => {
       slider.focus({ preventScroll: true });
       drawPlots();
     });
-    root.querySelector(".plots").addEventListener("pick", (event) => {
-      slider.value = Math.round(event.detail * last);
-      jump();
-    });
     for (const radio of radios) radio.addEventListener("change", drawPlots);
-    calm.addEventListener("change", () => (playing ? stop() : label()));
 
     slider.max = last;
-    for (const part of [play, root.querySelector(".panel")]) part.hidden = false;
+    if (calm) speed.closest("p").style.visibility = "hidden";
+    root.classList.add("ready");
     if (!blind) block.classList.remove("veiled", "growing"); // it was shown before
-    if (!question || question.querySelector("input:checked")) block.classList.remove("veiled");
     if (question) {
       question.classList.add("waits");
       question.addEventListener("change", ({ target }) => {

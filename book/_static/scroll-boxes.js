@@ -11,19 +11,13 @@
   };
   const BOXES = Object.keys(NAMES).map((kind) => `main :is(${kind})`).join(", ");
 
-  function scrolls(box) {
-    const { overflowX, overflowY } = getComputedStyle(box);
-    return (
-      (box.scrollWidth > box.clientWidth && /auto|scroll/.test(overflowX)) ||
-      (box.scrollHeight > box.clientHeight && /auto|scroll/.test(overflowY))
-    );
-  }
-
   function mark(box) {
     const name = NAMES[Object.keys(NAMES).find((kind) => box.matches(kind))];
-    const scrolling = scrolls(box);
+    const { overflowX, overflowY } = getComputedStyle(box);
+    const across = box.scrollWidth > box.clientWidth && /auto|scroll/.test(overflowX);
+    const down = box.scrollHeight > box.clientHeight && /auto|scroll/.test(overflowY);
     for (const [key, value] of [["tabindex", 0], ["role", "group"], ["aria-label", name]]) {
-      if (scrolling) box.setAttribute(key, value);
+      if (across || down) box.setAttribute(key, value);
       else box.removeAttribute(key);
     }
   }
@@ -38,11 +32,9 @@
   }
 
   /* A fold that opens: the observer can miss a box whose size is the one that it last told. */
-  document.addEventListener(
-    "toggle",
-    ({ target }) => target.querySelectorAll(BOXES).forEach(mark),
-    true, // the event does not bubble
-  );
+  document.addEventListener("toggle", ({ target }) => {
+    target.querySelectorAll(BOXES).forEach(mark);
+  }, true); // the event does not bubble
 
   /* An element that gets the focus inside such a box is scrolled into full view. */
   document.addEventListener("focusin", ({ target }) => {

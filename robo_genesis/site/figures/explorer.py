@@ -148,7 +148,7 @@ def picture(
     texts = (base64.b64encode(frame.read_bytes()).decode() for frame in numbers)
     data["frames"] = dict(zip(FRAMES[1:], texts, strict=True))
     shown = image(directive.env, f"{file}.png", rgb.read_bytes(), view["alt"])
-    cross = '<span class="cross" hidden></span>'
+    cross = '<span class="cross"></span>'
     figure = replays.stage(shown, cross, view["caption"], file)
     return [opening("with-picture", data), figure, panel(data)]
 

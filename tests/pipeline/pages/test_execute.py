@@ -319,7 +319,9 @@ def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatc
     make_book(tmp_path, page=notebook(cell("1"), cell("import time\ntime.sleep(2)")))
     said = []
     execute(tmp_path, say=lambda *words: said.append(" ".join(words)))
-    pattern = re.compile(r"1 running: page: cell 2 of 2, \d s 0 of 1 pages, about 1 min left")
+    pattern = re.compile(
+        r"1 running: page: cell 2 of 2, \d s 0 of 1 pages, about 1 min left"
+    )
     assert any(map(pattern.fullmatch, said)), said
 
 

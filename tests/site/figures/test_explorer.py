@@ -155,6 +155,55 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(
 
 
 @pytest.fixture
+def curves(folder, tmp_path) -> nodes.Node:
+    """Two runs at different heights."""
+    cells = [
+        {"name": f"run at {z} m", "sentence": "A run.", "opens": z == 0, "z": [z] * 60}
+        | {"numbers": [z], "values": [f"{z}"], "texts": [f"{z} m"]}
+        for z in (0, 1)
+    ]
+    axis = {"low": -1, "high": 2, "levels": [], "ticks": [{"value": 0, "label": "0"}]}
+    grid = {"label": "Grid", "caption": "Two runs.", "columns": ["a", "b"]}
+    grid |= {"setting": "still", "axes": {"z": axis}}
+    drawn = {"key": "z", "name": "Height", "title": "Height [m]", "first": 0}
+    drawn |= {"unit": 1, "zero": 0}
+    data = {
+        "columns": ["height [m]"],
+        "maps": [grid | {"rows": [{"label": "z", "cells": cells}]}],
+        "measures": [{"label": "height [m]", "noun": "height"}],
+        "notes": {},
+        "curves": {"of": "box", "dt": 0.01, "until": 0.6, "drawn": [drawn]},
+    }
+    return block_of(tmp_path, folder, data, "grid")
+
+
+BESIDE = """svg => {
+  const of = kind => svg.querySelector(kind).getBoundingClientRect();
+  const name = of(".name");
+  const apart = ({ top, bottom }) => Math.abs(top + bottom - name.top - name.bottom) / 2;
+  const over = [...svg.querySelectorAll("text:not(.name)")].filter(text => {
+    const { left, right, top, bottom } = text.getBoundingClientRect();
+    return left < name.right && name.left < right && top < name.bottom && name.top < bottom;
+  });
+  return [apart(of(".curve.ghost")), apart(of(".curve.chosen")), over.length];
+}"""
+"""From the name to the last and to the chosen run [px], and how many texts it covers."""
+
+
+@pytest.mark.browser
+def test_the_curve_of_the_last_run_has_its_name_beside_it(curves, open_block):
+    page = open_block(curves, **PHONE)
+    name = page.locator(".time-plot .name")
+    assert name.count() == 0  # there is one run
+    page.get_by_label("Predict first").uncheck()
+    page.get_by_role("gridcell", name="1 m height").tap()
+    assert name.text_content() == "last run"
+    last, chosen, covered = page.locator(".time-plot").evaluate(BESIDE)
+    assert last < 15 < chosen
+    assert covered == 0
+
+
+@pytest.fixture
 def picture(tmp_path, folder) -> nodes.Node:
     """A picture whose floor has a hole and whose sphere is 1 mm too deep."""
     start, directions = rays(K, TRANSFORM, CAMERA_RES)
