@@ -39,9 +39,8 @@ def install() -> int:
         )
         extra = ["--extra-index-url", index] if index else []
         return subprocess.run([*pip, *extra, *packages]).returncode
-    uv = [PYTHON, "-m", "uv", "pip", "install", f"--python={PYTHON}"]
-    command = [*uv, "--compile-bytecode", *packages]
-    return subprocess.run(command, env=uv_environment(PYTHON, index)).returncode
+    uv = [PYTHON, "-m", "uv", "pip", "install", f"--python={PYTHON}", *packages]
+    return subprocess.run(uv, env=uv_environment(PYTHON, index)).returncode
 
 
 def torch_index() -> str:

@@ -36,7 +36,8 @@ def execute_pages(
     """Execute the pages that the store does not have yet; try all of them.
 
     The longest start first. From its first cell tagged `alone`, a page runs when no
-    other does; it starts last. If no kernel is compiled yet, the first lab starts
+    other does: it starts after the others, and waits there until all have ended or
+    wait. If no kernel is compiled yet, the first lab starts
     first, and until it ends only pages with kernels of their own run beside it: the
     engine saves kernels when a page ends, so others would compile the same ones.
 
@@ -115,12 +116,12 @@ class Schedule:
         self.events: SimpleQueue[tuple[PageRun, PageResult | None]] = SimpleQueue()
 
     def start_pages(self) -> None:
-        """Start pages while there is room, unless one is alone or waits for that."""
+        """Start pages while there is room, unless one is alone."""
         while (
             self.waiting
             and (not self.first or self.waiting[0] in self.first)
-            and len(self.running) < self.jobs
-            and not any(run.alone for run in self.running)
+            and sum(not run.waits for run in self.running) < self.jobs
+            and not any(run.alone and not run.waits for run in self.running)
         ):
             run = self.waiting.pop(0)
             self.say(run.page.docname, run.start_line)

@@ -228,13 +228,14 @@ ENDS = "\ntime.sleep(1)\n(here / 'ended').touch()"
 
 LATER = """\
 import pathlib
-assert len([*pathlib.Path({place!r}).glob("measured-*")]) == 2"""
+assert len([*pathlib.Path({place!r}).glob("measured-*")]) == {count}"""
 
 
 def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
     """Three pages meet in their first cells; two of them then measure, one after the other.
 
-    The fourth, for which there is no room at first, waits until both have measured.
+    The fourth, for which there is no room at first, starts while both wait, and then
+    measures last.
     """
     meets, measures = (
         {n: code.format(place=str(tmp_path), name=n) for n in "abc"}
@@ -244,7 +245,8 @@ def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
     pages = {
         name: notebook(cell(meets[name]), cell(measures[name], tag)) for name in "ab"
     }
-    later = notebook(cell(LATER.format(place=str(tmp_path))), cell("1", tag))
+    first, last = (LATER.format(place=str(tmp_path), count=n) for n in (0, 2))
+    later = notebook(cell(first), cell(last, tag))
     make_book(tmp_path, **pages, c=notebook(cell(meets["c"] + ENDS)), d=later)
     results = execute(tmp_path, jobs=3, timeout=60)
     assert {result.status for result in results.values()} == {"executed"}, results
