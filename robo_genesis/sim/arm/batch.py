@@ -72,7 +72,8 @@ class Batch:
         else:
             self.robot.control_dofs_position(values[0], self.dofs)
         self.target[chosen] = values
-        self._read_again([k for k in chosen if self.begin[k] == len(self.sent)])
+        if begins := [k for k in chosen if self.begin[k] == len(self.sent)]:
+            self._read_again(begins)
 
     def step(self, steps: int) -> None:
         """Step all environments, and record each state and the command that led to it."""
