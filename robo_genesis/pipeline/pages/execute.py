@@ -154,11 +154,16 @@ class Schedule:
 
     @property
     def left(self) -> str:
-        """How many pages ended, and how long the others take if all are as slow as those."""
+        """How many pages ended, and how long the others take.
+
+        They are slower than expected as those were, with half of all pages as it was
+        expected: the first ones compile.
+        """
         runs = [*self.waiting, *self.running]
         expected = sum(run.expected for run in runs)
+        usual = max((expected + self.expected) / 2, 1.0)
+        pace = (self.elapsed + usual) / (self.expected + usual)
         expected -= sum(min(run.elapsed, run.expected) for run in self.running)
-        pace = self.elapsed / self.expected if self.ended else 1.0
         minutes = expected * pace / max(min(self.jobs, len(runs)), 1) / 60
         done = f"{self.ended} of {self.ended + len(runs)} pages"
         return f"{done}, about {ceil(minutes)} min left" if runs else done

@@ -313,7 +313,7 @@ def test_the_longest_pages_start_first_those_that_measure_time_last(tmp_path):
     schedule = Schedule(runs, [], 2, Mock())
     assert schedule.left == "0 of 4 pages, about 2 min left"
     schedule.ended, schedule.expected, schedule.elapsed = 1, 10.0, 100.0
-    assert schedule.left == "1 of 5 pages, about 12 min left"
+    assert schedule.left == "1 of 5 pages, about 3 min left"
 
 
 def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatch):
