@@ -76,8 +76,9 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
 def hinge_of(link: Any) -> Hinge | None:
     """Return the joint that turns a link of the engine, None if it has another kind."""
     for joint in link.joints:
-        if joint.n_dofs == 1 and np.any(joint.dofs_motion_ang):
-            return Hinge(joint.name, np.array([joint.pos, joint.dofs_motion_ang[0]]))
+        axes = getattr(joint, "desc", joint).dofs_motion_ang  # a newer engine describes it
+        if joint.n_dofs == 1 and np.any(axes):
+            return Hinge(joint.name, np.array([joint.pos, axes[0]]))
     return None
 
 
