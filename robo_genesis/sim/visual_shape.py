@@ -76,9 +76,8 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
 def hinge_of(link: Any) -> Hinge | None:
     """Return the joint that turns a link of the engine, None if it has another kind."""
     for joint in link.joints:
-        axes = getattr(
-            joint, "desc", joint
-        ).dofs_motion_ang  # a newer engine describes it
+        described = getattr(joint, "desc", joint)  # so in newer engines
+        axes = described.dofs_motion_ang
         if joint.n_dofs == 1 and np.any(axes):
             return Hinge(joint.name, np.array([joint.pos, axes[0]]))
     return None
