@@ -37,9 +37,9 @@ def execute_pages(
 
     The longest start first. From its first cell tagged `alone`, a page runs when no
     other does: it starts after the others, and waits there until all have ended or
-    wait. If no kernel is compiled yet, the first lab starts
-    first, and until it ends only pages with kernels of their own run beside it: the
-    engine saves kernels when a page ends, so others would compile the same ones.
+    wait. If no kernel is compiled yet, the first lab starts first, and until it ends
+    only pages with kernels of their own run beside it: the engine saves kernels when a
+    page ends, so others would compile the same ones.
 
     Args:
         pages: the pages of the book.
@@ -74,7 +74,7 @@ def execute_pages(
         first = _first(waiting, environment)
         schedule = Schedule(in_order(waiting, first), first, jobs, say)
         if waiting:
-            say("to execute", schedule.left)
+            say(f"{len(waiting)} pages to execute", schedule.left)
         finished = [*results.values()]
         try:
             while schedule.waiting or schedule.running or finished:
@@ -156,8 +156,8 @@ class Schedule:
     def left(self) -> str:
         """How many pages ended, and how long the others take.
 
-        They are slower than expected as those were, with half of all pages as it was
-        expected: the first ones compile.
+        The pace is that of the ended pages, but half of all pages count as expected:
+        the first ones compile for the others, and are no measure for them.
         """
         runs = [*self.waiting, *self.running]
         expected = sum(run.expected for run in runs)

@@ -1,8 +1,8 @@
 """What each kernel of a build executes first, in a namespace of its own.
 
-The last two parts cost nothing to leave out but time, about a quarter of a cold build:
-the engine's compiler asks Python's library the same questions for each kernel and each
-expression. A page that is executed elsewhere does without them.
+The last two parts only save time: the engine's compiler asks Python's library the same
+questions for each kernel and each expression. A page that is executed elsewhere does
+without them.
 """
 
 import atexit
