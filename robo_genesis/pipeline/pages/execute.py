@@ -157,7 +157,7 @@ class Schedule:
         """How many pages ended, and how long the others take.
 
         The pace is that of the ended pages, but half of all pages count as expected:
-        the first ones compile for the others, and are no measure for them.
+        the first ones compile for the others, so they measure little.
         """
         runs = [*self.waiting, *self.running]
         expected = sum(run.expected for run in runs)
