@@ -78,7 +78,7 @@ def arrays_of(trace) -> dict[str, np.ndarray]:
 def episodes(joints) -> Experiment:
     """A run of the lecture that passes its checks."""
     error = (spec.ASKEW.beliefs - spec.STARTS)[:, 0]
-    levels = [error > -3.75e-3, error > -6.5e-3, error > -9.5e-3]
+    levels = [error > -3.75e-3, error > -6.5e-3, error > -8.3e-3]
     level = np.select(levels, [7, 3, 2], 1)
     askew = batch(spec.ASKEW, level, falls_in=(level == 3) & (error > -4.5e-3))
     exact = batch(spec.EXACT, np.full(len(spec.FEW), 7))
