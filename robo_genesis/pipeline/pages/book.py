@@ -56,9 +56,16 @@ class Page:
         )
 
     @property
-    def own_kernels(self) -> bool:
-        """Whether an early cell begins with a long compilation in a folder of its own."""
-        return any("own-kernels" in tags for tags in self._tags())
+    def compiles_first(self) -> int:
+        """The number of its last code cell tagged `compiles-first`; 0 if none is.
+
+        Where no kernel is compiled yet, no other page starts before the end of this
+        cell.
+        """
+        tagged = (
+            n for n, tags in enumerate(self._tags(), 1) if "compiles-first" in tags
+        )
+        return max(tagged, default=0)
 
     def _tags(self) -> list[list[str]]:
         return [cell.metadata.get("tags", []) for cell in code_cells(self.notebook)]

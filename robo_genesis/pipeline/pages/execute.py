@@ -37,9 +37,9 @@ def execute_pages(
 
     The longest start first. From its first cell tagged `alone`, a page runs when no
     other does: it starts after the others, and waits there until all have ended or
-    wait. If no kernel is compiled yet, the first lab starts first, and until it ends
-    only pages with kernels of their own run beside it: the engine saves kernels when a
-    page ends, so others would compile the same ones.
+    wait. If no kernel is compiled yet, one page starts before the others, which would
+    compile the same kernels: the engine saves them when a process ends. It is the page
+    with cells tagged `compiles-first`, until their end, or else the first lab.
 
     Args:
         pages: the pages of the book.
@@ -95,7 +95,7 @@ class Schedule:
     def __init__(
         self,
         waiting: list[PageRun],
-        first: list[PageRun],
+        first: PageRun | None,
         jobs: int,
         say: Say,
     ) -> None:
@@ -103,7 +103,7 @@ class Schedule:
 
         Args:
             waiting: in the order in which they start.
-            first: those that start before the first of them has ended.
+            first: the one that starts before the others, if there is one.
             jobs: how many run at once.
             say: prints each event.
         """
@@ -119,7 +119,7 @@ class Schedule:
         """Start pages while there is room, unless one is alone."""
         while (
             self.waiting
-            and (not self.first or self.waiting[0] in self.first)
+            and self.first in (None, self.waiting[0])
             and sum(not run.waits for run in self.running) < self.jobs
             and not any(run.alone and not run.waits for run in self.running)
         ):
@@ -140,11 +140,11 @@ class Schedule:
             states = [f"{n.page.docname}: {n.state}" for n in self.running]
             self.say(f"{len(states)} running: {'; '.join(states)}", self.left)
             return []
+        if run is self.first and (result or run.cell > run.page.compiles_first > 0):
+            self.first = None
         if result is None:
             return []
         del self.running[run]
-        if run in self.first[:1]:
-            self.first = []
         self.ended += 1
         self.expected += run.expected
         self.elapsed += result.seconds
@@ -186,28 +186,27 @@ class Schedule:
         self.events.put((run, result))
 
 
-def in_order(runs: Iterable[PageRun], first: Sequence[PageRun] = ()) -> list[PageRun]:
-    """Return runs in the order in which they start: the longest first, those with `alone` last.
+def in_order(runs: Iterable[PageRun], first: PageRun | None = None) -> list[PageRun]:
+    """Return runs in the order in which they start.
 
-    Args:
-        runs: the pages to execute.
-        first: come before all others, in this order.
+    After the `first`, the longest come first, those with `alone` last.
     """
 
-    def sooner(run: PageRun) -> tuple[int, bool, float]:
-        place = first.index(run) if run in first else len(first)
-        return place, bool(run.page.alone), -run.expected
+    def sooner(run: PageRun) -> tuple[bool, bool, float]:
+        return run is not first, bool(run.page.alone), -run.expected
 
     return sorted(runs, key=sooner)
 
 
-def _first(waiting: Sequence[PageRun], environment: Mapping[str, str]) -> list[PageRun]:
-    """Return the first lab, then the pages beside it, if no kernel is compiled yet."""
-    together = [run for run in waiting if not run.page.alone]
-    labs = [run for run in together if run.page.page == "lab"]
-    if not (labs and project.nothing_compiled(environment)):
-        return []
-    return [labs[0], *(run for run in together if run.page.own_kernels)]
+def _first(
+    waiting: Sequence[PageRun], environment: Mapping[str, str]
+) -> PageRun | None:
+    """Return the page that starts before the others, if no kernel is compiled yet."""
+    if not project.nothing_compiled(environment):
+        return None
+    tagged = [run for run in waiting if run.page.compiles_first]
+    labs = [run for run in waiting if run.page.page == "lab" and not run.page.alone]
+    return next(iter(tagged + labs), None)
 
 
 def _stored(

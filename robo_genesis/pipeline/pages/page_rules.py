@@ -23,7 +23,7 @@ TAGS = (
     "hide-input",
     "hide-output",
     "inputs",
-    "own-kernels",
+    "compiles-first",
     "raises-exception",
     "remove-cell",
     "remove-input",

@@ -252,28 +252,23 @@ def test_cells_that_measure_time_run_when_no_other_page_does(tmp_path):
     assert {result.status for result in results.values()} == {"executed"}, results
 
 
-ENDS_AFTER_C = (
-    "\nimport time\nwhile not [*pathlib.Path({store!r}).glob('*/executed.ipynb')]:"
+# What a cell waits for: the file that another page's first cell writes.
+WRITES = "import pathlib\npathlib.Path({place!r}).touch()"
+ENDS_AFTER = (
+    "import pathlib, time\nwhile not pathlib.Path({place!r}).exists(): time.sleep(0.1)"
 )
-ENDS_AFTER_C += " time.sleep(0.1)\ntime.sleep(1)"
 
 
+@pytest.mark.parametrize("tagged", [False, True])
 @pytest.mark.parametrize("saved", [False, True])
-def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
-    tmp_path, saved
-):
-    """The page with kernels of its own ends before the lab; that starts no other page."""
-    lab = cell(WRITE_BUNDLE + ENDS_AFTER_C.format(store=str(tmp_path / "store" / "c")))
-    more, own = cell("1"), cell("1", ":tags: [own-kernels]\n")
-    own_first = notebook(
-        own, more, more
-    )  # more cells than the lab, which yet starts first
-    books = {
-        "a": notebook(more, more),
-        "b": notebook(lab, front=LAB_FRONT),
-        "c": own_first,
-    }
-    books["d"] = notebook(own, cell("1", ":tags: [alone]\n"))  # never among the first
+def test_one_page_compiles_before_the_others_start(tmp_path, saved, tagged):
+    """It is the first lab, until it ends, or the page with the tag, until its next cell."""
+    place = str(tmp_path / "a_started")
+    wait = cell(ENDS_AFTER.format(place=place))
+    lab = notebook(cell(WRITE_BUNDLE), front=LAB_FRONT)
+    books = {"a": notebook(cell(WRITES.format(place=place))), "b": lab}
+    if tagged:
+        books["c"] = notebook(cell("1", ":tags: [compiles-first]\n"), wait)
     make_book(tmp_path, **books)
     environment = engine_cache_environment(cache=tmp_path / "cache")
     kernels = engine_cache_folder(cache=tmp_path / "cache") / "kernels"
@@ -281,24 +276,15 @@ def test_beside_the_first_lab_runs_what_has_own_kernels_while_none_is_compiled(
     (kernels / "manager" / ("T1.qdc" if saved else "asked.txt")).touch()
     said = []
 
-    def say(name, event):  # an event is cut to its first word
-        said.append((name, event[:7]))
+    def say(name, event):  # a page and the first word of its event
+        said.append(f"{name} {event.split()[0].strip(':')}")
 
     results = execute(tmp_path, jobs=2, environment=environment, say=say)
     assert {result.status for result in results.values()} == {"executed"}
-    if saved:
-        assert [name for name, event in said if event == "started"] == [*"abcd"]
-    else:
-        start, end = "started", "execute"
-        order = [
-            ("b", start),
-            ("c", start),
-            ("c", end),
-            ("b", end),
-            ("a", start),
-            ("d", start),
-        ]
-        assert said[1:7] == order
+    order = ["a started", "b started"]
+    if not saved:
+        order = ["c started", "a started"] if tagged else ["b started", "b executed"]
+    assert said[1:3] == order
 
 
 def test_the_longest_pages_start_first_those_that_measure_time_last(tmp_path):
