@@ -9,11 +9,10 @@ import atexit
 import ctypes
 import inspect
 import os
+import sys
 import textwrap
 from functools import lru_cache
 from typing import Any
-
-import trimesh
 
 # Linux kills the kernel when the thread that started it ends, also by SIGKILL (1 is
 # PR_SET_PDEATHSIG of <linux/prctl.h>, 9 SIGKILL).
@@ -48,19 +47,30 @@ def wrap_once(self: textwrap.TextWrapper, text: str) -> list[str]:
 
 textwrap.TextWrapper.wrap = wrap_once  # type: ignore[method-assign]
 
-# For each pair of a robot's shapes that may overlap, the engine fills both with voxels.
-voxelized = trimesh.Trimesh.voxelized
-filled: dict[tuple[Any, ...], trimesh.voxel.VoxelGrid] = {}
+
+class KeepVoxels:
+    """Finds no module; before the engine is imported, it lets meshes keep their voxels.
+
+    For each pair of a robot's shapes that may overlap the engine fills both.
+    """
+
+    @staticmethod
+    def find_spec(name: str, *_: Any) -> None:
+        """Change the class of meshes when the engine is looked for."""
+        if name != "genesis":
+            return
+        sys.meta_path.remove(KeepVoxels)
+        from trimesh import Trimesh
+
+        voxelized, kept = Trimesh.voxelized, {}
+
+        def voxelized_once(mesh: Trimesh, pitch: float) -> Any:
+            key = mesh.vertices.tobytes(), mesh.faces.tobytes(), pitch
+            if key not in kept:
+                kept[key] = voxelized(mesh, pitch)
+            return kept[key]
+
+        Trimesh.voxelized = voxelized_once
 
 
-def voxelized_once(
-    mesh: trimesh.Trimesh, pitch: float, **options: Any
-) -> trimesh.voxel.VoxelGrid:
-    """Return the voxels of a mesh; the engine does not change them."""
-    key = (mesh.vertices.tobytes(), mesh.faces.tobytes(), pitch, *options.items())
-    if key not in filled:
-        filled[key] = voxelized(mesh, pitch, **options)
-    return filled[key]
-
-
-trimesh.Trimesh.voxelized = voxelized_once
+sys.meta_path.insert(0, KeepVoxels)
