@@ -70,7 +70,7 @@ class KeepVoxels:
                 kept[key] = voxelized(mesh, pitch)
             return kept[key]
 
-        Trimesh.voxelized = voxelized_once
+        Trimesh.voxelized = voxelized_once  # type: ignore[assignment, method-assign]
 
 
 sys.meta_path.insert(0, KeepVoxels)
