@@ -130,8 +130,8 @@ def commands_come_first(run: Experiment) -> Findings:
 
 def pictures_show_the_states(run: Experiment) -> Findings:
     """In a run with a camera, the last picture of the first film is the frame at the
-    end of the run, within one of 255 levels in the mean. The picture at the beginning
-    of the move is not.
+    end of the run, in which a pixel is the mean of 5 × 5, within one of 255 levels in
+    the mean. The picture at the beginning of the move is not.
     """
     yield noted("films", len(spec.FILMS) * run.rendered)
     if run.rendered:

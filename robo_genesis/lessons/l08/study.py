@@ -16,7 +16,7 @@ from . import spec
 
 
 def episodes(
-    page: Any, gs: Any, *names: str, view: dict[str, Any] | None = None
+    page: Any, gs: Any, *names: str, **cameras: dict[str, Any]
 ) -> tuple[World, Batch]:
     """Record batches of a page that differ in starts and beliefs alone, one after the other.
 
@@ -24,13 +24,13 @@ def episodes(
         page: an open page.
         gs: the engine after `gs.init`.
         names: of the page's cases.
-        view: arguments of a camera, None without one.
+        cameras: arguments of each; see `table.build`.
 
     Returns:
         The scene, and the batch of the first case.
     """
     cases = page.experiment.cases
-    world = picking.build(gs, cases[names[0]], view)
+    world = picking.build(gs, cases[names[0]], **cameras)
     joints = describe(page, world.robot)
     page.links = [*page.links, "object"]
     runs = {name: picking.run(world, joints, cases[name]) for name in names}
@@ -65,5 +65,5 @@ def demonstrate(page: Any, world: World, batch: Batch) -> None:
                 page.joints,
                 *(of[k, row] for of in (trace.q, trace.object_pos, trace.object_quat)),
             )
-            pictures.append(film.shrunk(frames.capture(world.cameras["world"])))
+            pictures.append(frames.capture(world.cameras["film"], film.PICTURE))
         page.frames |= film.sheets(name, np.stack(pictures))

@@ -125,6 +125,7 @@ def build(
     case: SceneCase,
     view: dict[str, Any] | None = None,
     wrist: dict[str, Any] | None = None,
+    film: dict[str, Any] | None = None,
     n_envs: int = 0,
     **options: Any,
 ) -> World:
@@ -135,6 +136,7 @@ def build(
         case: the settings.
         view: arguments of the camera in the world, None without one.
         wrist: arguments of the camera on the hand, None without one.
+        film: arguments of a second camera in the world, None without one.
         n_envs: number of environments, 0 for a scene without.
         options: further ones of `gs.options.RigidOptions`.
     """
@@ -192,7 +194,7 @@ def build(
             material=gs.materials.Rigid(rho=1000.0),
             surface=gs.surfaces.Default(color=(0.90, 0.50, 0.10, 1.0)),
         )
-    given = {"world": view and view | {"fov": case.fov}, "wrist": wrist}
+    given = {"world": view and view | {"fov": case.fov}, "wrist": wrist, "film": film}
     cameras = {name: scene.add_camera(**of) for name, of in given.items() if of}
     scene.build(n_envs=n_envs)
     if wrist:

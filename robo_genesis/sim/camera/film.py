@@ -6,12 +6,12 @@ import numpy as np
 
 from robo_genesis.core.scene import FRAME_SHAPE
 
-# Pixels of the camera, in each direction, that become one, and pictures in a row or
-# column of a sheet.
+# Pictures in a row or column of a sheet.
 SHRINK = 5
 
-# Rows, columns and colours of a picture.
+# Rows, columns and colours of a picture; width and height of its camera [pixel].
 PICTURE = (FRAME_SHAPE[0] // SHRINK, FRAME_SHAPE[1] // SHRINK, FRAME_SHAPE[2])
+RES = (PICTURE[1], PICTURE[0])
 
 
 def sheet_names(film: str, count: int) -> tuple[str, ...]:

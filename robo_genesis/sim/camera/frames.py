@@ -42,8 +42,8 @@ def read_renderer(scene: Any) -> Renderer:
     return Renderer(vendor, name)
 
 
-def capture(camera: Any) -> np.ndarray:
-    """Render one frame, shape (540, 720, 3), uint8.
+def capture(camera: Any, shape: tuple[int, ...] = FRAME_SHAPE) -> np.ndarray:
+    """Render one frame (rows, columns, 3) of the camera's shape, uint8.
 
     Raises:
         FrameError: the frame is not usable.
@@ -51,15 +51,15 @@ def capture(camera: Any) -> np.ndarray:
     rgb = camera.render(force_render=True)[
         0
     ]  # also where no step has changed the scene
-    require_frame(rgb)
+    require_frame(rgb, shape)
     return np.array(rgb)
 
 
-def require_frame(rgb: Any) -> None:
-    """Raise FrameError unless `rgb` is a non-empty RGB picture of the course's shape."""
+def require_frame(rgb: Any, expected: tuple[int, ...] = FRAME_SHAPE) -> None:
+    """Raise FrameError unless `rgb` is a non-empty RGB picture of the expected shape."""
     shape = np.shape(rgb)
-    if shape != FRAME_SHAPE:
-        raise FrameError(f"The camera returned shape {shape}, expected {FRAME_SHAPE}.")
+    if shape != expected:
+        raise FrameError(f"The camera returned shape {shape}, expected {expected}.")
     picture = np.asarray(rgb)
     if picture.tobytes() == picture[0, 0].tobytes() * (shape[0] * shape[1]):
         raise FrameError(
