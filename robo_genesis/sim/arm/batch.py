@@ -51,8 +51,8 @@ class Batch:
         self.readings = [self._rows()]
         self.sent: list[FloatArray] = []
         self.begin = np.zeros(len(self.cases), int)
-        self.effort_limit = to_numpy(robot.get_dofs_force_range(self.dofs)[1]).reshape(
-            self.q_start.shape
+        self.effort_limit = np.broadcast_to(
+            to_numpy(robot.get_dofs_force_range(self.dofs)[1]), self.q_start.shape
         )
 
     def command(self, q_target: FloatArray, envs: Sequence[int] | None = None) -> None:
@@ -172,22 +172,28 @@ def reset_batch(
     for case in cases:
         require_built(scene, case)
         joint_control.validate(case, joints)
-    dofs = joints.dofs
     arrays: dict[str, Any] = {
-        name: np.stack(each) if scene.n_envs else each[0]
+        name: np.stack([getattr(case, name) for case in cases])
         for name in ("q_start", "q_target", "kp", "kv", "effort_limit")
-        for each in [[getattr(case, name) for case in cases]]
     }
+    for name, rows in arrays.items():
+        # A scene without `batch_dofs_info` has one set of gains and limits.
+        shared = not name.startswith("q_") and (rows == rows[0]).all()
+        if shared or not scene.n_envs:
+            arrays[name] = rows[0]
     batch = replace(cases[0], **arrays)
     scene.reset()
-    joint_control.set_up(robot, dofs, batch)
+    joint_control.set_up(robot, joints.dofs, batch)
     return batch
 
 
 def set_link_mass(
-    robot: Any, link: str, masses: FloatArray, envs: Sequence[int]
+    robot: Any, link: str, masses: FloatArray, envs: Sequence[int] | None = None
 ) -> FloatArray:
-    """Give a link another mass in some environments; return all masses as read back (B,) [kg].
+    """Give a link another mass, in all or some environments; return what reads back [kg].
+
+    That is one mass for each environment, or one for all in a scene without
+    `batch_links_info`.
 
     Centre of mass and inertia of the link remain. A reset of the scene keeps the
     masses. A newer engine computes what follows from a mass again when it is written,
@@ -195,10 +201,9 @@ def set_link_mass(
     environment that keeps its mass.
 
     Args:
-        robot: of a scene with `batch_links_info`, without which there is one mass for
-            all.
+        robot: of a scene; `envs` require `batch_links_info`.
         link: its name.
-        masses: (k,) [kg], one for each environment of `envs`.
+        masses: (k,) [kg], one for each environment of `envs`; (1,) for all.
         envs: k environments.
     """
     at = [robot.get_link(link).idx_local]
@@ -206,5 +211,9 @@ def set_link_mass(
     new = hasattr(robot, "set_links_mass")
     write = robot.set_links_mass if new else robot.set_links_inertial_mass
     read = robot.get_links_mass if new else robot.get_links_inertial_mass
-    write(np.array(masses, dtype=np.float32)[:, None], at, list(envs))
-    return np.asarray(to_numpy(read(at))[:, 0])
+    values = np.array(masses, dtype=np.float32)
+    if envs is None:
+        write(values, at)
+    else:
+        write(values[:, None], at, list(envs))
+    return np.ravel(to_numpy(read(at)))

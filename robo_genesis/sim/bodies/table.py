@@ -140,8 +140,6 @@ def build(
         n_envs: number of environments, 0 for a scene without.
         options: further ones of `gs.options.RigidOptions`.
     """
-    if n_envs:  # each environment has gains of its own
-        options = {"batch_dofs_info": True} | options
     scene = new_scene(gs, case, options, first_only=n_envs > 0)
 
     def block(
