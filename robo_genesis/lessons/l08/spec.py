@@ -91,8 +91,8 @@ CASES = {"exact": EXACT, "askew": ASKEW}
 # Batches of the lecture that repeat `exact`, and `askew` in another order.
 COPIES = {"again": EXACT, "permuted": PERMUTED}
 
-# Episodes of `ASKEW` that the replay shows, and their environments. Each is well inside its kind, so
-# that engine versions agree about how it ends.
+# Episodes of `ASKEW` that the replay shows, and their environments. Engine versions agree
+# about how each ends.
 SHOWN = {"placed": 105, "slipped": 199, "tipped": 224, "pushed": 238}
 
 # Places of their robots in one view [m].
