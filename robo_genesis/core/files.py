@@ -129,22 +129,18 @@ def put(source: Path, folder: Path) -> None:
 
 
 def files_below(
-    folder: Path, skip: tuple[str, ...] = (), left_out: Sequence[str] = MADE_BY_TOOLS
+    folder: Path, left_out: Sequence[str] = MADE_BY_TOOLS
 ) -> Iterator[Path]:
     """Yield all files below a folder.
 
     Args:
         folder: it need not exist.
-        skip: how the names begin that are left out at the top.
         left_out: patterns of names of files and folders that are left out anywhere.
     """
     ignored = shutil.ignore_patterns(*left_out)
     for here, folders, files in os.walk(folder):
-        top = skip if Path(here) == folder else ()
         gone = ignored(here, [*folders, *files])
-        folders[:] = [
-            name for name in folders if name not in gone and not name.startswith(top)
-        ]
+        folders[:] = [name for name in folders if name not in gone]
         yield from (Path(here, name) for name in files if name not in gone)
 
 

@@ -63,27 +63,11 @@ def require_history(root: Path) -> None:
             ) from None
 
 
-def unclean(
-    root: Path, reason: str = "A release is built from one commit"
-) -> list[str]:
-    """Return why a checkout differs from its commit, nothing if it does not.
-
-    Args:
-        root: the checkout.
-        reason: why it must not differ, as the messages say it.
-    """
-    try:
-        changed = git(
-            root, "status", "--porcelain", "--untracked-files=all"
-        ).splitlines()
-    except ProjectError as error:
-        return [
-            f"{root} is not a git checkout: {error} {reason}: clone the repository; run it there."
-        ]
-    if not changed:
-        return []
-    names = quoted([line[3:] for line in changed])
-    return [
-        f"The tree has {len(changed)} changed or new files ({names}). {reason}: commit or "
-        "stash them (git stash --include-untracked)."
-    ]
+def require_clean(root: Path) -> None:
+    """Raise ProjectError unless a checkout is its last commit."""
+    status = git(root, "status", "--porcelain", "--untracked-files=all")
+    if changed := [line[3:] for line in status.splitlines()]:
+        raise ProjectError(
+            f"The tree has {len(changed)} changed or new files ({quoted(changed)}). A worktree has "
+            "the last commit alone: commit or stash them (git stash --include-untracked)."
+        )
