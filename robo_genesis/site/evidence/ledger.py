@@ -11,7 +11,7 @@ from typing import Any
 from docutils import nodes
 from sphinx.application import Sphinx
 
-from robo_genesis.core.files import write_whole
+from robo_genesis.core.files import bytes_digest, write_whole
 from robo_genesis.core.markup import filled
 from robo_genesis.pipeline.pages.book import page_files
 from robo_genesis.site.pages import PageDirective
@@ -43,7 +43,7 @@ def run_list(app: Sphinx, docname: str) -> str:
         if run.manifest is not None:
             name = f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
             content = ledger_data.archive(run.folder)
-            archives[run.key] = name, ledger_data.sha256(content)
+            archives[run.key] = name, bytes_digest(content)
             write_whole(Path(app.outdir) / DOWNLOADS / name, content)
     return _filled("ledger_runs.html", docname, runs=runs, archives=archives)
 
