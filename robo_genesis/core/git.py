@@ -8,10 +8,10 @@ from .project import ProjectError
 from .text import quoted
 
 
-def git(root: Path, *arguments: str, **variables: str) -> str:
+def git(root: Path, *arguments: str) -> str:
     """Return the output of git in a folder; a query does not rewrite the user's index.
 
-    Of the variables that only git reads, such as GIT_DIR, it gets the given ones alone.
+    It gets none of the variables that only git reads, such as GIT_DIR.
 
     Raises:
         ProjectError: git is not installed, or it failed; the message contains its
@@ -24,7 +24,7 @@ def git(root: Path, *arguments: str, **variables: str) -> str:
     try:
         done = subprocess.run(
             command,
-            env=others | variables,
+            env=others,
             capture_output=True,
             encoding="utf8",
             errors="replace",
@@ -46,21 +46,6 @@ def git_or_none(root: Path, *arguments: str) -> str | None:
         return git(root, *arguments)
     except ProjectError:
         return None
-
-
-def require_history(root: Path) -> None:
-    """Raise ProjectError if git cannot read the repository that a checkout has.
-
-    Pages, bundles and sitemap would lose commits and dates without a message.
-    """
-    if any((folder / ".git").exists() for folder in (root, *root.parents)):
-        try:
-            git(root, "rev-parse", "--git-dir")
-        except ProjectError as error:
-            raise ProjectError(
-                f"{error}\nPages and bundles name their commit, and the sitemap has dates: let git "
-                "read this checkout as its message says, or build a copy without .git."
-            ) from None
 
 
 def require_clean(root: Path) -> None:
