@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.files import derived_value
-from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import outputs
@@ -34,7 +33,7 @@ def verify_result(
     """
     try:
         manifest = verify(bundle)
-        compared = outputs_compared(result, bundle, manifest)
+        compared = outputs_compared(result, bundle)
     except BundleRefused:
         if result.status == "reused":
             (result.folder / RECORD).unlink()
@@ -43,7 +42,7 @@ def verify_result(
     return manifest
 
 
-def outputs_compared(result: PageResult, bundle: Path, manifest: Manifest) -> int:
+def outputs_compared(result: PageResult, bundle: Path) -> int:
     """Compare the outputs of a page with its bundle, and return their number.
 
     A page is compared once: the result is kept for the record of its files with their
@@ -60,6 +59,6 @@ def outputs_compared(result: PageResult, bundle: Path, manifest: Manifest) -> in
 
     def compare() -> int:
         executed = executed_cells(folder)
-        return outputs.require_shown(result.page, executed, bundle, manifest)
+        return outputs.require_shown(result.page, executed, bundle)
 
     return int(derived_value("shown", inputs, compare))

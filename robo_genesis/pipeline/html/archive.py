@@ -1,7 +1,7 @@
 """The whole site as one archive, for reading without a network, and the digests of its files."""
 
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
 
@@ -31,12 +31,18 @@ def pack(html: Path) -> Path:
     Args:
         html: the folder of the site.
     """
-    files = sorted(path for path in html.rglob("*") if path.is_file())
-    names = (f"{FOLDER}/{path.relative_to(html).as_posix()}" for path in files)
+    files = [(f"{FOLDER}/{n}", without_offer(n, data)) for n, data in contents(html)]
     archive = html / ARCHIVE
     archive.parent.mkdir()
-    archive.write_bytes(zipped(zip(names, map(content, files), strict=True)))
+    archive.write_bytes(zipped(files))
     return archive
+
+
+def contents(folder: Path) -> Iterator[tuple[str, bytes]]:
+    """Yield name and content of each file below a folder."""
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            yield path.relative_to(folder).as_posix(), path.read_bytes()
 
 
 def zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
@@ -50,10 +56,9 @@ def zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
     return target.getvalue()
 
 
-def content(path: Path) -> bytes:
-    """Return a file for the archive: its content, a page's without the offer of the archive."""
-    data = path.read_bytes()
-    if path.suffix != ".html" or OFFER[1:].encode() not in data:
+def without_offer(name: str, data: bytes) -> bytes:
+    """Return the content of a file, of a page without its offer of the archive."""
+    if not name.endswith(".html") or OFFER[1:].encode() not in data:
         return data
     page = BeautifulSoup(data, "html.parser")
     for offer in page.select(OFFER):
@@ -68,9 +73,7 @@ def write_sums(html: Path) -> None:
         html: the folder of the site with its archive, which has no SHA256SUMS: its own
             digest is in the file.
     """
-    files = sorted(path for path in html.rglob("*") if path.is_file())
-    contents = ((p.relative_to(html).as_posix(), p.read_bytes()) for p in files)
-    (html / SUMS).write_bytes(sums(contents))
+    (html / SUMS).write_bytes(sums(contents(html)))
 
 
 def sums(files: Iterable[tuple[str, bytes]]) -> bytes:

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.pipeline.html.archive import zipped
-
 from .runs import PageRun
 
 LEDGER = "evidence/ledger"  # The page
@@ -77,13 +75,3 @@ def csv_bytes(rows: Sequence[Sequence[str]]) -> bytes:
     stream = io.StringIO()
     csv.writer(stream).writerows(rows)
     return stream.getvalue().encode()
-
-
-def archive(folder: Path) -> bytes:
-    """Return a bundle as a zip whose bytes depend only on the names and contents of its files.
-
-    Args:
-        folder: an accepted bundle.
-    """
-    files = (path for path in sorted(folder.rglob("*")) if path.is_file())
-    return zipped((str(p.relative_to(folder)), p.read_bytes()) for p in files)

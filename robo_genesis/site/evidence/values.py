@@ -25,7 +25,7 @@ from robo_genesis.core import project
 from robo_genesis.core.text import format_value, listed, quoted, scaled_value
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.lessons import find_page
-from robo_genesis.pipeline.pages.page_index import measuring_page, page_outputs
+from robo_genesis.pipeline.pages.page_index import measuring_page, page_bundle
 from robo_genesis.pipeline.pages.values import value_of
 from robo_genesis.site.pages import PageRole
 
@@ -50,7 +50,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
             metrics; or the metric has no value in this unit.
         BundleRefused: the bundle cannot be read.
     """
-    folder = page_outputs(lesson_page) / BACKEND
+    folder = page_bundle(lesson_page)
     manifest = read_manifest(folder)
     origin = (
         f"Measured by {lesson_page} on {BACKEND}, Genesis {manifest.engine.version}, "
@@ -111,7 +111,7 @@ def require_passed(lesson_page: str, check: str) -> None:
         LookupError: the page has no such check; the message lists those that it has.
         ValueError: the check failed, or the page has no bundle that can be read.
     """
-    folder = page_outputs(lesson_page) / BACKEND
+    folder = page_bundle(lesson_page)
     checks = {record.name: record for record in read_manifest(folder).checks}
     if check not in checks:
         raise LookupError(

@@ -38,11 +38,9 @@ from sphinx.application import Sphinx
 from robo_genesis.core.files import bytes_digest, write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
-from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.html.archive import SUMS, sums, zipped
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
-from robo_genesis.pipeline.pages.page_index import page_outputs
-from robo_genesis.site.evidence.runs import BACKEND
+from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.site.pages import PageDirective
 
 from .directive import folder, links
@@ -73,8 +71,7 @@ class DatasetDownload(PageDirective):
         writer = writer_of(source, self.env.docname)
         title = f"> {self.config.html_title}. © {self.config.author}. {writer.address}"
         readme = f"{title.rstrip()}\n\n{plain(source.read_text('utf8'), writer)}"
-        bundle_folder = page_outputs(lesson_page) / BACKEND
-        run = accepted_experiment(bundle_folder, bundle.read_manifest(bundle_folder))
+        run = accepted_experiment(page_bundle(lesson_page))
         recorded = find(f"robo_genesis.lessons.{lesson}.dataset.recorded")
         content = archive(recorded(run), readme)
         name = f"{lesson_page.replace('/', '-')}-lerobot.zip"

@@ -25,8 +25,8 @@ def test_an_accepted_page_is_compared_again_when_its_record_changed(
     result = PageResult(page, "reused", tmp_path)
     compare = Mock(side_effect=[7, BundleRefused("shown", "other"), 8])
     monkeypatch.setattr(outputs, "require_shown", compare)
-    assert [outputs_compared(result, bundle, None) for _ in range(2)] == [7, 7]
+    assert [outputs_compared(result, bundle) for _ in range(2)] == [7, 7]
     (tmp_path / RECORD).write_text(os.urandom(16).hex())
     with pytest.raises(BundleRefused, match="other"):  # a refusal is not kept
-        outputs_compared(result, bundle, None)
-    assert outputs_compared(result, bundle, None) == 8
+        outputs_compared(result, bundle)
+    assert outputs_compared(result, bundle) == 8
