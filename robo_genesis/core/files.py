@@ -218,7 +218,7 @@ def derived(
 
 @lru_cache(maxsize=1)
 def _installed() -> str:
-    return json_digest(installed(sys.path))
+    return json_digest(installed())
 
 
 def _forget(folder: Path) -> None:

@@ -81,7 +81,7 @@ def inputs_beside_pages(root: Path) -> dict[str, Any]:
         "contract": project.environment_contract(),
         "variables": {name: os.environ.get(name) or "" for name in VARIABLES},
         "python": [platform.python_version(), sys.executable],
-        "installed": project.installed(sys.path),
+        "installed": project.installed(),
     }
 
 
