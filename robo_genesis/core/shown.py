@@ -11,8 +11,6 @@ from importlib import import_module
 from inspect import isfunction
 from typing import TYPE_CHECKING, Any
 
-from .palette import VALID_COLOURS, outside_the_palette
-
 if TYPE_CHECKING:  # a build without new runs draws nothing
     from matplotlib.figure import Figure
 
@@ -96,12 +94,7 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
         if isinstance(result, str):
             return {TEXT: result}
         if isinstance(result, Figure):
-            drawn = svg(result)
-            if colours := outside_the_palette(drawn):
-                raise ShownError(
-                    f"{name} draws in {', '.join(colours)}. {VALID_COLOURS}"
-                )
-            return {DRAWING: drawn}
+            return {DRAWING: svg(result)}
     raise ShownError(
         f"{name} returned {type(result).__name__}. Return Markdown, as `tables.markdown` does, or "
         "a Matplotlib Figure, as `plotting.stacked` does of frames."
