@@ -160,7 +160,7 @@ class LessonPage:
             arguments: its further arguments, JSON values, written out in the call.
 
         Raises:
-            ShownError: function, arguments or result are not of this kind.
+            ShownError: function or result are not of this kind.
         """
         name = shown.name_of(function)
         metadata = shown.metadata(name, arguments)

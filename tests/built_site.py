@@ -12,6 +12,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
+from unittest.mock import patch
 
 import pytest
 from browsers import launched
@@ -58,7 +59,8 @@ OUTSIDE = dict(os.environ)
 def executed_pages() -> PageIndex:
     """Return the executed pages from which the site was built."""
     pages = find_pages(BOOK)
-    into = places(pages, CACHE / STORE, OUTSIDE)
+    with patch.dict(os.environ, OUTSIDE, clear=True):
+        into = places(pages, CACHE / STORE)
     results = [stored_result(page, into[page.docname]) for page in pages]
     absent = [
         page.docname for page, found in zip(pages, results, strict=True) if not found

@@ -141,12 +141,6 @@ def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
     [
         (lambda run: "", (), "cannot be shown"),
         ("a table", (), r"'a table'. Give a function of a lesson and not its result"),
-        (
-            text.metric_table,
-            (1, {2}),
-            r"arguments \(1, \{2\}\). Valid are JSON values",
-        ),
-        (text.metric_table, (float("nan"),), "Valid are JSON values"),
     ],
 )
 def test_anything_else_is_refused(page, displayed, function, arguments, message):

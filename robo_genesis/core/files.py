@@ -129,22 +129,18 @@ def put(source: Path, folder: Path) -> None:
 
 
 def files_below(
-    folder: Path, skip: tuple[str, ...] = (), left_out: Sequence[str] = MADE_BY_TOOLS
+    folder: Path, left_out: Sequence[str] = MADE_BY_TOOLS
 ) -> Iterator[Path]:
     """Yield all files below a folder.
 
     Args:
         folder: it need not exist.
-        skip: how the names begin that are left out at the top.
         left_out: patterns of names of files and folders that are left out anywhere.
     """
     ignored = shutil.ignore_patterns(*left_out)
     for here, folders, files in os.walk(folder):
-        top = skip if Path(here) == folder else ()
         gone = ignored(here, [*folders, *files])
-        folders[:] = [
-            name for name in folders if name not in gone and not name.startswith(top)
-        ]
+        folders[:] = [name for name in folders if name not in gone]
         yield from (Path(here, name) for name in files if name not in gone)
 
 
@@ -157,18 +153,19 @@ def files_digest(base: Path, files: Iterable[Path]) -> str:
     """
     found = hashlib.sha256()
     for path in sorted(files):
-        content = (
-            hashlib.sha256(path.read_bytes()).hexdigest()
-            if path.is_file()
-            else "absent"
-        )
+        content = bytes_digest(path.read_bytes()) if path.is_file() else "absent"
         found.update(os.fsencode(path.relative_to(base)) + f"\0{content}\n".encode())
     return found.hexdigest()
 
 
+def bytes_digest(content: bytes) -> str:
+    """Return the hexadecimal SHA-256 of some bytes."""
+    return hashlib.sha256(content).hexdigest()
+
+
 def json_digest(value: Any) -> str:
     """Return the SHA-256 of a JSON value."""
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+    return bytes_digest(json.dumps(value, sort_keys=True).encode())
 
 
 def derived_value(kind: str, inputs: Any, make: Callable[[], Any]) -> Any:
@@ -221,7 +218,7 @@ def derived(
 
 @lru_cache(maxsize=1)
 def _installed() -> str:
-    return hashlib.sha256(json.dumps(installed(sys.path)).encode()).hexdigest()
+    return json_digest(installed())
 
 
 def _forget(folder: Path) -> None:

@@ -8,10 +8,10 @@ from .project import ProjectError
 from .text import quoted
 
 
-def git(root: Path, *arguments: str, **variables: str) -> str:
+def git(root: Path, *arguments: str) -> str:
     """Return the output of git in a folder; a query does not rewrite the user's index.
 
-    Of the variables that only git reads, such as GIT_DIR, it gets the given ones alone.
+    It gets none of the variables that only git reads, such as GIT_DIR.
 
     Raises:
         ProjectError: git is not installed, or it failed; the message contains its
@@ -24,7 +24,7 @@ def git(root: Path, *arguments: str, **variables: str) -> str:
     try:
         done = subprocess.run(
             command,
-            env=others | variables,
+            env=others,
             capture_output=True,
             encoding="utf8",
             errors="replace",
@@ -48,42 +48,11 @@ def git_or_none(root: Path, *arguments: str) -> str | None:
         return None
 
 
-def require_history(root: Path) -> None:
-    """Raise ProjectError if git cannot read the repository that a checkout has.
-
-    Pages, bundles and sitemap would lose commits and dates without a message.
-    """
-    if any((folder / ".git").exists() for folder in (root, *root.parents)):
-        try:
-            git(root, "rev-parse", "--git-dir")
-        except ProjectError as error:
-            raise ProjectError(
-                f"{error}\nPages and bundles name their commit, and the sitemap has dates: let git "
-                "read this checkout as its message says, or build a copy without .git."
-            ) from None
-
-
-def unclean(
-    root: Path, reason: str = "A release is built from one commit"
-) -> list[str]:
-    """Return why a checkout differs from its commit, nothing if it does not.
-
-    Args:
-        root: the checkout.
-        reason: why it must not differ, as the messages say it.
-    """
-    try:
-        changed = git(
-            root, "status", "--porcelain", "--untracked-files=all"
-        ).splitlines()
-    except ProjectError as error:
-        return [
-            f"{root} is not a git checkout: {error} {reason}: clone the repository; run it there."
-        ]
-    if not changed:
-        return []
-    names = quoted([line[3:] for line in changed])
-    return [
-        f"The tree has {len(changed)} changed or new files ({names}). {reason}: commit or "
-        "stash them (git stash --include-untracked)."
-    ]
+def require_clean(root: Path) -> None:
+    """Raise ProjectError unless a checkout is its last commit."""
+    status = git(root, "status", "--porcelain", "--untracked-files=all")
+    if changed := [line[3:] for line in status.splitlines()]:
+        raise ProjectError(
+            f"The tree has {len(changed)} changed or new files ({quoted(changed)}). A worktree has "
+            "the last commit alone: commit or stash them (git stash --include-untracked)."
+        )

@@ -8,7 +8,7 @@ import shlex
 import sys
 import sysconfig
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from importlib.machinery import PathFinder
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
@@ -131,7 +131,7 @@ def installed_version(package: str) -> str | None:
         return None
 
 
-def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
+def installed() -> list[tuple[str, str, int]]:
     """Return each installed package by folder, name with version, and time of installation.
 
     The course itself is excluded: pip leaves its metadata in a checkout.
@@ -139,7 +139,7 @@ def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
     suffixes = (".dist-info", ".egg-info", ".egg-link", ".pth")
     return sorted(
         (str(folder), path.name, path.stat().st_mtime_ns)
-        for folder in (Path(place or ".") for place in places)
+        for folder in (Path(place or ".") for place in sys.path)
         if folder.is_dir()
         for path in folder.iterdir()
         if path.suffix in suffixes and not path.name.startswith(f"{WHEEL}.")
@@ -254,24 +254,19 @@ def remove_stale_kernel_lock(cache: Path = CACHE) -> None:
         path.unlink(missing_ok=True)
 
 
-def environment_contract(
-    environment: Mapping[str, str] | None = None,
-) -> dict[str, str]:
+def environment_contract() -> dict[str, str]:
     """Return the variables that decide what a page measures.
-
-    Args:
-        environment: variables, by default those of this process.
 
     Returns:
         Backend and render, with defaults if they are not set, and of the engine's
         switches and the folders of libraries those that are set; the folders of
         compiled code are not included.
     """
-    given = os.environ if environment is None else environment
     # Not a switch in a manifest: the engine appends to LD_LIBRARY_PATH.
     names = (BACKEND, RENDER, "LD_LIBRARY_PATH")
-    requested = {name: given[name] for name in names if given.get(name)}
-    return {BACKEND: BUILD_BACKEND, RENDER: "1"} | requested | engine_switches(given)
+    requested = {name: os.environ[name] for name in names if os.environ.get(name)}
+    defaults = {BACKEND: BUILD_BACKEND, RENDER: "1"}
+    return defaults | requested | engine_switches(os.environ)
 
 
 def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:

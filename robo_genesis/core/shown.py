@@ -6,13 +6,10 @@ Any other output of a cell is only compared with the copy in the bundle.
 """
 
 import io
-import json
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import isfunction
 from typing import TYPE_CHECKING, Any
-
-from .palette import VALID_COLOURS, outside_the_palette
 
 if TYPE_CHECKING:  # a build without new runs draws nothing
     from matplotlib.figure import Figure
@@ -69,21 +66,8 @@ def find(name: str) -> Callable[..., Any]:
 
 
 def metadata(name: str, arguments: Sequence[Any]) -> dict[str, Any]:
-    """Return the metadata of an output.
-
-    Raises:
-        ShownError: an argument is not a JSON value.
-    """
-    try:
-        kept = json.loads(json.dumps(list(arguments), allow_nan=False))
-    except (TypeError, ValueError):
-        kept = None
-    if kept != list(arguments):
-        raise ShownError(
-            f"{name} was given the arguments {tuple(arguments)!r}. Valid are JSON values: text, "
-            "finite numbers, true, false, None, and lists and dictionaries of them."
-        )
-    return {METADATA: {"function": name, "arguments": kept}}
+    """Return the metadata of an output; the arguments are JSON values."""
+    return {METADATA: {"function": name, "arguments": list(arguments)}}
 
 
 def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str, str]:
@@ -110,12 +94,7 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
         if isinstance(result, str):
             return {TEXT: result}
         if isinstance(result, Figure):
-            drawn = svg(result)
-            if colours := outside_the_palette(drawn):
-                raise ShownError(
-                    f"{name} draws in {', '.join(colours)}. {VALID_COLOURS}"
-                )
-            return {DRAWING: drawn}
+            return {DRAWING: svg(result)}
     raise ShownError(
         f"{name} returned {type(result).__name__}. Return Markdown, as `tables.markdown` does, or "
         "a Matplotlib Figure, as `plotting.stacked` does of frames."

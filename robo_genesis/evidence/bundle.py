@@ -211,12 +211,12 @@ def evidence_key(facts: Mapping[str, Any]) -> str:
     return json_digest({name: facts[name] for name in KEYED} | {"engine": engine})
 
 
-def list_files(folder: Path) -> dict[str, str]:
-    """Return the digest of each file of a bundle but the manifest, by name."""
+def list_files(folder: Path, record: str = MANIFEST) -> dict[str, str]:
+    """Return the digest of each file of a folder by name, but of the file that lists them."""
     return {
         path.relative_to(folder).as_posix(): sha256(path)
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path != folder / MANIFEST
+        if path.is_file() and path != folder / record
     }
 
 

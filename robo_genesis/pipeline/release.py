@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from robo_genesis.core.files import locked
-from robo_genesis.core.git import git, unclean
+from robo_genesis.core.git import git, require_clean
 from robo_genesis.core.project import BOOK, COMPILED, ROOT, ProjectError
 from robo_genesis.lessons import find_lesson
 
@@ -38,10 +38,9 @@ def worktree(
         shared: the names of the caches that the worktree uses as well.
 
     Raises:
-        ProjectError: the checkout has changes, or another process uses the folder.
+        ProjectError: the checkout has changes or is none, or another process uses the folder.
     """
-    if problems := unclean(root, "A worktree has the last commit alone"):
-        raise ProjectError("\n".join(problems))
+    require_clean(root)
     with locked(folder.with_suffix(".lock"), f"Another user of {folder}"):
         remove(root, folder)
         git(root, "worktree", "add", "--quiet", "--detach", str(folder), "HEAD")
@@ -76,10 +75,6 @@ def build(options: Namespace) -> int:
     Raises:
         ProjectError: the tree has changes, or the build failed.
     """
-    if options.book != BOOK:
-        raise ProjectError(
-            f"A release builds the commit's own book, not {options.book}."
-        )
     names = ("render", "jobs", "site_url", "solutions", "timeout")
     settings = [
         f"--{name.replace('_', '-')}={getattr(options, name)}" for name in names

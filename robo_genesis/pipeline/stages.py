@@ -11,7 +11,6 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle, settle_below
-from robo_genesis.core.git import require_history
 from robo_genesis.evidence.refusals import BundleRefused
 
 from . import npm, up_to_date
@@ -139,7 +138,6 @@ def prepare(
         build: where book and caches are.
         store: a folder of the caches.
     """
-    require_history(project.ROOT)
     settle_below(build.book / "evidence")
     settle_below(build.cache / project.STORE)
     settle((build.to or build.book) / project.PUBLISHED)

@@ -10,9 +10,15 @@ import platform
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.core import project
-from robo_genesis.core.files import files_below, files_digest, json_digest
+from robo_genesis.core.files import (
+    MADE_BY_TOOLS,
+    files_below,
+    files_digest,
+    json_digest,
+)
 from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import PUBLISHED
 
@@ -54,21 +60,29 @@ def inputs_digest(root: Path, book: Path) -> str:
         root: the checkout.
         book: the folder of the pages.
     """
-    code = (path for name in FOLDERS for path in files_below(root / name))
-    pages = files_below(book, (PUBLISHED, f".{PUBLISHED}"))
+    published = (f"{PUBLISHED}*", f".{PUBLISHED}*")
+    pages = files_below(book, (*MADE_BY_TOOLS, *published))
     return json_digest(
-        {
+        inputs_beside_pages(root)
+        | {
             "book": [str(book), files_digest(book, pages)],
-            "code": files_digest(root, code),
-            "files": files_digest(root, (root / name for name in FILES)),
-            "contract": project.environment_contract(),
-            "variables": {name: os.environ.get(name) or "" for name in VARIABLES},
-            "python": [platform.python_version(), sys.executable],
-            "installed": project.installed(sys.path),
             # a recorded run names a commit in the history
             "commit": git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository"),
         }
     )
+
+
+def inputs_beside_pages(root: Path) -> dict[str, Any]:
+    """Return what decides every page beside the files of the book, as JSON values."""
+    code = (path for name in FOLDERS for path in files_below(root / name))
+    return {
+        "code": files_digest(root, code),
+        "files": files_digest(root, (root / name for name in FILES)),
+        "contract": project.environment_contract(),
+        "variables": {name: os.environ.get(name) or "" for name in VARIABLES},
+        "python": [platform.python_version(), sys.executable],
+        "installed": project.installed(),
+    }
 
 
 def site_digest(published: Path) -> str:

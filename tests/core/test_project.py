@@ -1,4 +1,6 @@
+import os
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
@@ -52,12 +54,11 @@ def test_without_a_checkout_the_pin_is_that_of_the_installed_package(monkeypatch
         project.engine_pin()
 
 
-def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path):
+def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path, monkeypatch):
     for name in ("robo_genesis.egg-info", "numpy-2.0.dist-info"):
         (tmp_path / name).mkdir()
-    assert [name for _, name, _ in project.installed([str(tmp_path)])] == [
-        "numpy-2.0.dist-info"
-    ]
+    monkeypatch.setattr("sys.path", [str(tmp_path)])
+    assert [name for _, name, _ in project.installed()] == ["numpy-2.0.dist-info"]
 
 
 def test_a_missing_lock_is_refused_with_the_command_that_writes_it(tmp_path):
@@ -116,4 +117,5 @@ def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_f
     switches["LD_LIBRARY_PATH"] = "/opt/rocm/lib"
     given = {**switches, **folders, "ROBO_GENESIS_RENDER": "0", "HOME": "/"}
     defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "0"}
-    assert project.environment_contract(given) == switches | defaults
+    with patch.dict(os.environ, given, clear=True):
+        assert project.environment_contract() == switches | defaults

@@ -256,7 +256,8 @@ def test_sphinx_ends_with_a_killed_build(tmp_path):
     try:
         assert psutil.wait_procs(below, timeout=5)[1] == []
     finally:
-        kill_with_descendants(child.pid for child in below)
+        for child in below:
+            kill_with_descendants(child.pid)
     assert marker.read_text() == "the old site"
     pipe.unlink()
     pipe.write_text("text")

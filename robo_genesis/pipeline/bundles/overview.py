@@ -1,8 +1,7 @@
-"""`make verify`: the states of all bundles, or of one, with what its refusal means.
+"""`make verify`: the states of all bundles, or of one.
 
 One line for each bundle that is recorded in the book and for each of the last build:
-lesson, backend, state, reason. For one folder, also what a refusal means for somebody
-who recorded it at home.
+lesson, backend, state, reason.
 """
 
 from collections.abc import Iterator
@@ -10,7 +9,6 @@ from pathlib import Path
 
 from robo_genesis.core.project import BOOK, PUBLISHED
 from robo_genesis.core.text import printable
-from robo_genesis.evidence.bundle import read_manifest
 
 from .status import (
     Status,
@@ -24,35 +22,8 @@ NO_BUNDLE = (
 )
 
 
-OWN = "Otherwise your bundle answers your own question and is not evidence for the course's page."
-EDITED = (
-    "The recorded {} are not those of the recorded {}. If you edited neither file, your copy of "
-    "the course {}: use one copy for both."
-)
-
-# What a refusal means for somebody who recorded a bundle at home, by its code; other
-# codes mean damage, for which the message is enough.
-ADVICE = {
-    "stale": "Engine, settings, cells or modules differ from those of this course. Install the "
-    "versions of the lock (pip install -r requirements.lock), then run the unchanged page "
-    f"again. {OWN}",
-    "older-schema": "The bundle was recorded with an older state of this course. "
-    "Run the page again with the present one.",
-    "failed": "The files are sound, but a check of the run itself failed. If you changed the "
-    "experiment, this can be your result; otherwise, restart the kernel and run all cells.",
-    "metrics": EDITED.format("metrics", "arrays", "computes metrics in another way"),
-    "checks": EDITED.format("outcomes of the checks", "runs", "has other checks"),
-    "cases": f"The bundle does not have exactly the page's runs. Run the page again. {OWN}",
-}
-
-RUN_BY_HAND = (
-    "A notebook that is run by hand does not name its code cells, so nobody can tell whether they "
-    "are the page's. To record them, run: make evidence LESSON={lesson} BACKEND=cpu TO=folder."
-)
-
-
 def verify(folder: Path | None, book: Path = BOOK) -> int:
-    """Print a line for each bundle, and advice for one folder.
+    """Print a line for each bundle.
 
     Args:
         folder: of one bundle; None for all of a book.
@@ -61,14 +32,11 @@ def verify(folder: Path | None, book: Path = BOOK) -> int:
     Returns:
         0 all verified, or no bundle; 1 any is inconclusive, stale, failed or refused.
     """
-    notes: list[str] = []
     if folder:
-        status, notes = one_bundle(folder, book)
-        bundles = [(folder.parent.name, status)]
+        bundles = [(folder.parent.name, bundle_status(folder, book=book))]
     else:
         bundles = list(all_bundles(book))
-    lines = [line(*bundle) for bundle in bundles] or [NO_BUNDLE]
-    print(*lines, *map(printable, notes), sep="\n")
+    print(*[line(*bundle) for bundle in bundles] or [NO_BUNDLE], sep="\n")
     return int(any(status.state != "verified" for _, status in bundles))
 
 
@@ -80,17 +48,6 @@ def all_bundles(book: Path) -> Iterator[tuple[str, Status]]:
     for folder in recorded_folders(book / PUBLISHED):
         lesson = folder.parent.name
         yield f"{lesson} built", bundle_status(folder, lesson, "lab")
-
-
-def one_bundle(folder: Path, book: Path) -> tuple[Status, list[str]]:
-    """Return the status of one bundle, and lines for the person who recorded it."""
-    status = bundle_status(folder, book=book)
-    text = ADVICE.get(status.code or "")
-    if status.code == "stale":  # so its manifest could be read
-        run = read_manifest(folder)
-        if run.source.page is None:
-            text = RUN_BY_HAND.format(lesson=run.lesson)
-    return status, [f"What this means: {text}"] if text else []
 
 
 def line(place: str, status: Status) -> str:

@@ -59,7 +59,7 @@ class Status:
     | `failed` | sound, but its own checks did not all pass |
     | `refused` | damaged, mislabelled, incomplete or of an unknown form |
 
-    `code` is the code of the refusal, None without one. `reason` names the found and
+    `reason` names the found and
     the expected value; `summary` is the short form for a reader of the site.
     """
 
@@ -67,7 +67,6 @@ class Status:
     backend: str
     reason: str
     manifest: Manifest | None
-    code: str | None = None
     summary: str = ""
 
     @property
@@ -132,16 +131,16 @@ def bundle_status(
     try:
         manifest = verify_bundle(folder, lesson=lesson, page=page, book=book, once=once)
     except BundleRefused as refusal:
-        code, summary = refusal.code, SUMMARIES.get(refusal.code, UNREADABLE)
-        if code == "stale":
+        state = STATE_OF_CODE.get(refusal.code, "refused")
+        summary = SUMMARIES.get(refusal.code, UNREADABLE)
+        if refusal.code == "stale":
             summary = why_stale(refusal)
-        state = STATE_OF_CODE.get(code, "refused")
-        return Status(state, backend, str(refusal), None, code, summary)
+        return Status(state, backend, str(refusal), None, summary)
     lines = not_shown(folder, manifest)
     if not lines:
         return Status("verified", backend, "", manifest)
     reason = f"Not shown of what the lesson claims: {'; '.join(lines)}."
-    return Status("inconclusive", backend, reason, manifest, summary=reason)
+    return Status("inconclusive", backend, reason, manifest, reason)
 
 
 def not_shown(folder: Path, manifest: Manifest) -> list[str]:

@@ -1,12 +1,13 @@
 """The whole site as one archive, for reading without a network, and the digests of its files."""
 
-import hashlib
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from io import BytesIO
 from pathlib import Path
-from typing import BinaryIO
 
 from bs4 import BeautifulSoup
+
+from robo_genesis.core.files import bytes_digest
 
 # The archive's place in the site, for the link of the home page: unpack it, open
 # `index.html`.
@@ -20,7 +21,7 @@ OFFER = ".offline-offer"
 LEVEL = 3
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
-# The file with the digests, as `sha256sum -c` reads them. It does not list itself.
+# The file with the digests. It does not list itself.
 SUMS = "SHA256SUMS"
 
 
@@ -30,27 +31,34 @@ def pack(html: Path) -> Path:
     Args:
         html: the folder of the site.
     """
-    files = sorted(path for path in html.rglob("*") if path.is_file())
-    names = (f"{FOLDER}/{path.relative_to(html).as_posix()}" for path in files)
+    files = [(f"{FOLDER}/{n}", without_offer(n, data)) for n, data in contents(html)]
     archive = html / ARCHIVE
     archive.parent.mkdir()
-    write_zip(archive, zip(names, map(content, files), strict=True))
+    archive.write_bytes(zipped(files))
     return archive
 
 
-def write_zip(target: Path | BinaryIO, files: Iterable[tuple[str, bytes]]) -> None:
-    """Write an archive of files by name whose bytes depend on nothing else."""
+def contents(folder: Path) -> Iterator[tuple[str, bytes]]:
+    """Yield name and content of each file below a folder."""
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            yield path.relative_to(folder).as_posix(), path.read_bytes()
+
+
+def zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
+    """Return an archive of files by name whose bytes depend on nothing else."""
+    target = BytesIO()
     with zipfile.ZipFile(target, "w") as packed:
         for name, content in files:
             entry = zipfile.ZipInfo(name, DATE)
             entry.external_attr = 0o644 << 16
             packed.writestr(entry, content, zipfile.ZIP_DEFLATED, LEVEL)
+    return target.getvalue()
 
 
-def content(path: Path) -> bytes:
-    """Return a file for the archive: its content, a page's without the offer of the archive."""
-    data = path.read_bytes()
-    if path.suffix != ".html" or OFFER[1:].encode() not in data:
+def without_offer(name: str, data: bytes) -> bytes:
+    """Return the content of a file, of a page without its offer of the archive."""
+    if not name.endswith(".html") or OFFER[1:].encode() not in data:
         return data
     page = BeautifulSoup(data, "html.parser")
     for offer in page.select(OFFER):
@@ -65,10 +73,9 @@ def write_sums(html: Path) -> None:
         html: the folder of the site with its archive, which has no SHA256SUMS: its own
             digest is in the file.
     """
-    files = {
-        path.relative_to(html).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in html.rglob("*")
-        if path.is_file()
-    }
-    lines = (f"{digest}  {name}\n" for name, digest in sorted(files.items()))
-    (html / SUMS).write_text("".join(lines), "utf8")
+    (html / SUMS).write_bytes(sums(contents(html)))
+
+
+def sums(files: Iterable[tuple[str, bytes]]) -> bytes:
+    """Return the digests of files by name, as `sha256sum -c` reads them."""
+    return "".join(f"{bytes_digest(data)}  {name}\n" for name, data in files).encode()

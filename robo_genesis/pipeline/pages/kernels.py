@@ -3,7 +3,7 @@
 import os
 import subprocess
 import uuid
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
@@ -69,7 +69,7 @@ class CleanKernelManager(AsyncKernelManager):
     def kill(self) -> None:
         """Kill the kernel, if it was started, and all processes below it."""
         if self.process:
-            kill_with_descendants([self.process.pid])
+            kill_with_descendants(self.process.pid)
 
 
 def users_variables() -> dict[str, str]:
@@ -106,18 +106,17 @@ def clean_environment(home: Path, extra: Mapping[str, str]) -> dict[str, str]:
     }
 
 
-def kill_with_descendants(pids: Iterable[int]) -> None:
-    """Kill processes and everything below them; processes that are gone are skipped.
+def kill_with_descendants(pid: int) -> None:
+    """Kill a process and everything below it; processes that are gone are skipped.
 
     Kernels lead sessions of their own, so no process group contains them all. The
-    processes are stopped first, so that they start no other while the list is made.
+    process is stopped first, so that it starts no other while the list is made.
     """
     doomed: list[psutil.Process] = []
-    for pid in pids:
-        with suppress(psutil.NoSuchProcess):
-            process = psutil.Process(pid)
-            process.suspend()
-            doomed += [process, *process.children(recursive=True)]
+    with suppress(psutil.NoSuchProcess):
+        process = psutil.Process(pid)
+        process.suspend()
+        doomed = [process, *process.children(recursive=True)]
     for process in doomed:
         with suppress(psutil.NoSuchProcess):
             process.kill()

@@ -65,16 +65,13 @@ def keep_outputs(folder: Path, executed: NotebookNode) -> None:
     write_json(folder / MANIFEST, manifest)
 
 
-def require_shown(
-    page: Page, executed: NotebookNode, folder: Path, manifest: bundle.Manifest
-) -> int:
+def require_shown(page: Page, executed: NotebookNode, folder: Path) -> int:
     """Require that all outputs of an executed page are those of its bundle.
 
     Args:
         page: the page as it is now.
         executed: its code cells with outputs.
         folder: its bundle, which was accepted.
-        manifest: of that bundle.
 
     Returns:
         The number of outputs that were computed again.
@@ -91,7 +88,7 @@ def require_shown(
     for number, (printed, cell) in enumerate(cells, start=1):
         place = f"{page.docname}, code cell {number}"
         for output in shown_outputs(cell):
-            experiment = experiment or accepted_experiment(folder, manifest)
+            experiment = experiment or accepted_experiment(folder)
             _compare(place, output, experiment)
             compared += 1
         if printed and (reason := values.contradiction(printed, cell, folder)):
@@ -121,13 +118,13 @@ def require_printed(docname: str, executed: NotebookNode, folder: Path) -> None:
                 )
 
 
-def accepted_experiment(folder: Path, manifest: bundle.Manifest) -> Experiment:
+def accepted_experiment(folder: Path) -> Experiment:
     """Return the experiment of an accepted bundle, with the metrics that were accepted.
 
     Metrics that another machine computes again may differ in the last digit.
     """
     recorded = bundle.read_metrics(folder)
-    run = from_bundle(folder, manifest, recorded)
+    run = from_bundle(folder, bundle.read_manifest(folder), recorded)
     metrics = {
         case: type(computed)(
             **{name: recorded[case][name].value for name in computed.about("unit")}

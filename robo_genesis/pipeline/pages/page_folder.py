@@ -13,9 +13,9 @@ import nbformat
 from nbformat import NotebookNode
 from pydantic import ValidationError
 
-from robo_genesis.core.files import files_below, replaced
+from robo_genesis.core.files import replaced
 from robo_genesis.core.project import ENGINE, ProjectError, installed_version
-from robo_genesis.evidence.bundle import MANIFEST, Sha256, Strict, sha256
+from robo_genesis.evidence.bundle import MANIFEST, Sha256, Strict, list_files
 
 from .book import Page, code_cells, code_digest
 from .outputs import keep_outputs
@@ -77,20 +77,11 @@ def write_page(
             code=code_digest(page),
             engine=installed_version(ENGINE),
             seconds=round(seconds, 3),
-            files=_digests(fresh),
+            files=list_files(fresh, RECORD),
         )
         (fresh / RECORD).write_text(
             record.model_dump_json(indent=1) + "\n", encoding="utf8"
         )
-
-
-def _digests(place: Path) -> dict[str, str]:
-    """Return the SHA-256 of each file by its name, except that of the record."""
-    return {
-        path.relative_to(place).as_posix(): sha256(path)
-        for path in sorted(files_below(place))
-        if path != place / RECORD
-    }
 
 
 def read_record(place: Path) -> Record:
@@ -113,7 +104,7 @@ def read_page(place: Path) -> NotebookNode:
     Raises:
         PageRefused: naming each file that is missing, was added or changed.
     """
-    record, digests = read_record(place), _digests(place)
+    record, digests = read_record(place), list_files(place, RECORD)
     names = {*digests, *record.files}
     damaged = [n for n in sorted(names) if digests.get(n) != record.files.get(n)]
     if damaged:

@@ -8,7 +8,7 @@ from typing import Self
 from nbformat import NotebookNode
 from pydantic import Field
 
-from robo_genesis.core.project import EXECUTED_PAGES
+from robo_genesis.core.project import BUILD_BACKEND, EXECUTED_PAGES
 from robo_genesis.evidence.bundle import Strict
 
 from .book import code_cells
@@ -111,12 +111,12 @@ def measuring_page(docname: str) -> str:
     )
 
 
-def page_outputs(lesson_page: str) -> Path:
-    """Return the folder of what a page's run left, with the bundle in `<backend>/`.
+def page_bundle(lesson_page: str) -> Path:
+    """Return the folder of the bundle that a page's run of this build left.
 
     Args:
         lesson_page: `l04/lab`. Without such a page in this build, the folder does not
             exist.
     """
     absent = Path(os.environ[EXECUTED_PAGES]).with_name("not executed") / lesson_page
-    return page_index().outputs.get(lesson_page, absent)
+    return page_index().outputs.get(lesson_page, absent) / BUILD_BACKEND

@@ -4,7 +4,6 @@ What MyST, Sphinx, YAML or nbformat report has no rule here.
 """
 
 from collections.abc import Iterator, Sequence
-from difflib import get_close_matches
 
 from nbformat import NotebookNode
 
@@ -85,10 +84,7 @@ def _of_metadata(cell: NotebookNode) -> Iterator[str]:
     known = TAGS if cell.cell_type == "code" else ("site-only",)
     for what, names, choices in (("tag", tags, known), ("option", given, valid)):
         for name in (str(name) for name in names if name not in choices):
-            near = "".join(
-                f" Is it {each}?" for each in get_close_matches(name, choices, 1, 0.7)
-            )
-            yield f"the {what} {name!r} is unknown.{near} Valid: {', '.join(choices)}."
+            yield f"the {what} {name!r} is unknown. Valid: {', '.join(choices)}."
     if "figure" in tags and not mystnb.get("image", {}).get("alt"):
         yield "a figure needs a text for those who do not see it: `mystnb: {image: {alt: …}}`."
     if ("raises-exception" in tags) != ("expects" in given):

@@ -178,7 +178,8 @@ def at_cell(
     failing = min(_failing_line(ran), len(lines))
     if error == CheckFailed.__name__:
         book = page.path.parents[page.docname.count("/")]
-        message += contradicted(book, f"{page.lesson}/{page.page}", message)
+        name = f"{page.lesson}/{page.page}"
+        message += contradicted(book, page.path, name, message)
     return Failure(
         error,
         message,

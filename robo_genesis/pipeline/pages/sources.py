@@ -7,8 +7,7 @@ covers whatever it imports.
 
 import os
 import platform
-import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import cache
 from itertools import accumulate
 from pathlib import Path
@@ -146,9 +145,7 @@ def running_modules(lesson: str) -> dict[str, str]:
     return measuring_modules(lesson, os.environ.get(project.PAGE_IMPORTS, "").split())
 
 
-def page_fingerprint(
-    page: "Page", tree: Tree, environment: Mapping[str, str] | None = None
-) -> str:
+def page_fingerprint(page: "Page", tree: Tree) -> str:
     """Return a digest of everything that decides the outputs of a page.
 
     It covers the lock, all installed versions, the version of Python, the environment
@@ -160,7 +157,6 @@ def page_fingerprint(
     Args:
         page: an executed page.
         tree: the files of the checkout.
-        environment: variables, by default those of this process.
 
     Returns:
         20 hex digits.
@@ -170,9 +166,9 @@ def page_fingerprint(
     code = {name: tree.code(path) for name, path in modules.items()}
     parts = {
         "lock": project.lock_digest(tree.root),
-        "installed": sorted({name for _, name, _ in project.installed(sys.path)}),
+        "installed": sorted({name for _, name, _ in project.installed()}),
         "python": platform.python_version(),
-        "environment": project.environment_contract(environment),
+        "environment": project.environment_contract(),
         "cells": page.code.digests,
         "modules": {name: [each.digest, each.claims] for name, each in code.items()},
         "data": tree.data_for(modules),

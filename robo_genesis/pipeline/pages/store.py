@@ -28,22 +28,16 @@ SECONDS = "_seconds.json"
 KEPT = 3  # Folders that are kept of each page; RENDER=0 and RENDER=1 have one each
 
 
-def places(
-    pages: Iterable[Page],
-    store: Path,
-    environment: Mapping[str, str] | None = None,
-) -> dict[str, Path]:
+def places(pages: Iterable[Page], store: Path) -> dict[str, Path]:
     """Return where the store has each page, or will have it, by name.
 
     Args:
         pages: the pages of the book.
         store: the folder of all executed pages.
-        environment: variables, by default those of this process.
     """
     store, tree = store.absolute(), Tree()
     return {
-        page.docname: executions(store, page)
-        / page_fingerprint(page, tree, environment)
+        page.docname: executions(store, page) / page_fingerprint(page, tree)
         for page in pages
     }
 

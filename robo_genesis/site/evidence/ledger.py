@@ -11,12 +11,12 @@ from typing import Any
 from docutils import nodes
 from sphinx.application import Sphinx
 
-from robo_genesis.core.files import write_whole
+from robo_genesis.core.files import bytes_digest, write_whole
 from robo_genesis.core.markup import filled
+from robo_genesis.pipeline.html.archive import contents, zipped
 from robo_genesis.pipeline.pages.book import page_files
 from robo_genesis.site.pages import PageDirective
 
-from . import ledger_data
 from .plain_nodes import late
 from .provenance import ITEMS
 from .runs import all_runs, badge, measured_pages
@@ -42,8 +42,8 @@ def run_list(app: Sphinx, docname: str) -> str:
     for run in runs:
         if run.manifest is not None:
             name = f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
-            content = ledger_data.archive(run.folder)
-            archives[run.key] = name, ledger_data.sha256(content)
+            content = zipped(contents(run.folder))
+            archives[run.key] = name, bytes_digest(content)
             write_whole(Path(app.outdir) / DOWNLOADS / name, content)
     return _filled("ledger_runs.html", docname, runs=runs, archives=archives)
 

@@ -1,13 +1,10 @@
 """Entries of the ledger: facts of runs, items with their digests, files to download."""
 
 import csv
-import hashlib
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-
-from robo_genesis.pipeline.html.archive import write_zip
 
 from .runs import PageRun
 
@@ -78,20 +75,3 @@ def csv_bytes(rows: Sequence[Sequence[str]]) -> bytes:
     stream = io.StringIO()
     csv.writer(stream).writerows(rows)
     return stream.getvalue().encode()
-
-
-def sha256(data: bytes) -> str:
-    """Return the hexadecimal SHA-256 of some bytes."""
-    return hashlib.sha256(data).hexdigest()
-
-
-def archive(folder: Path) -> bytes:
-    """Return a bundle as a zip whose bytes depend only on the names and contents of its files.
-
-    Args:
-        folder: an accepted bundle.
-    """
-    files = (path for path in sorted(folder.rglob("*")) if path.is_file())
-    stream = io.BytesIO()
-    write_zip(stream, ((str(p.relative_to(folder)), p.read_bytes()) for p in files))
-    return stream.getvalue()

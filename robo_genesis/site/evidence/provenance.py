@@ -19,6 +19,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
+from robo_genesis.core.files import bytes_digest
 from robo_genesis.core.markup import filled
 from robo_genesis.site.frame.executed import RECOMPUTED
 
@@ -120,7 +121,7 @@ def describe(
         file = f"{env.docname}-{anchor}{suffix}".replace("/", "-")
     title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
     title = textwrap.shorten(title, TITLE, placeholder=" …")
-    digest = ledger_data.sha256(content)
+    digest = bytes_digest(content)
     return Item(kind, title, env.docname, anchor, (), digest, file, data)
 
 

@@ -29,7 +29,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_status,
 )
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.page_index import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.site.course.course_map import MapDirective
 
 from .plain_nodes import html
@@ -84,7 +84,7 @@ class PageRun:
 def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> PageRun:
     """Return a page's run of this build; it does not change while Sphinx runs."""
     name = f"{lesson}/{page}"
-    folder, absent = page_outputs(name) / BACKEND, f"No bundle was recorded for {name}."
+    folder, absent = page_bundle(name), f"No bundle was recorded for {name}."
     status = bundle_status(folder, lesson, page, absent, book, once=True)
     return PageRun(name, folder, status)
 

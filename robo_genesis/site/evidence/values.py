@@ -15,8 +15,8 @@ Roles, as pages write them:
 """
 
 import importlib.metadata
+from html import escape
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -25,7 +25,7 @@ from robo_genesis.core import project
 from robo_genesis.core.text import format_value, listed, quoted, scaled_value
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.lessons import find_page
-from robo_genesis.pipeline.pages.page_index import measuring_page, page_outputs
+from robo_genesis.pipeline.pages.page_index import measuring_page, page_bundle
 from robo_genesis.pipeline.pages.values import value_of
 from robo_genesis.site.pages import PageRole
 
@@ -50,7 +50,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
             metrics; or the metric has no value in this unit.
         BundleRefused: the bundle cannot be read.
     """
-    folder = page_outputs(lesson_page) / BACKEND
+    folder = page_bundle(lesson_page)
     manifest = read_manifest(folder)
     origin = (
         f"Measured by {lesson_page} on {BACKEND}, Genesis {manifest.engine.version}, "
@@ -78,19 +78,20 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     return text, f"{origin}, {source}"
 
 
-class measured_value(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
-    """A measured value in prose; its attribute `provenance` names its run."""
-
-
 class Measured(PageRole):
-    """Insert one measured value."""
+    """Insert one measured value, which shows its provenance on hover, focus or touch."""
 
     def shown(self) -> list[nodes.Node]:
         """Return the value as text that carries its provenance."""
         lesson_page, _, name = self.text.partition(" ")
         text, origin = measured(lesson_page, name)
-        classes = ["measured", *(["measured-list"] if ", " in text else [])]
-        return [measured_value(self.rawtext, text, classes=classes, provenance=origin)]
+        kind = "measured measured-list" if ", " in text else "measured"
+        words = escape(origin)
+        opening = (
+            f'<span aria-description="{words}" class="{kind}" data-provenance="{words}" '
+            'role="note" tabindex="0">'
+        )
+        return [between("", nodes.Text(text), opening=opening, closing="</span>")]
 
 
 class Guard(PageRole):
@@ -110,7 +111,7 @@ def require_passed(lesson_page: str, check: str) -> None:
         LookupError: the page has no such check; the message lists those that it has.
         ValueError: the check failed, or the page has no bundle that can be read.
     """
-    folder = page_outputs(lesson_page) / BACKEND
+    folder = page_bundle(lesson_page)
     checks = {record.name: record for record in read_manifest(folder).checks}
     if check not in checks:
         raise LookupError(
@@ -143,15 +144,6 @@ class EngineLink(PageRole):
         ]
 
 
-def visit_measured(self: Any, node: measured_value) -> None:
-    """Write a value that shows its provenance on hover, focus or touch."""
-    names = ("data-provenance", "aria-description")
-    provenance = dict.fromkeys(names, node["provenance"])
-    self.body.append(
-        self.starttag(node, "span", "", tabindex="0", role="note", **provenance)
-    )
-
-
 def setup(app: Sphinx) -> None:
     """Register roles and writers."""
     app.add_role("measured", Measured())
@@ -161,7 +153,3 @@ def setup(app: Sphinx) -> None:
     app.add_node(between, html=WRITERS)
     app.add_node(late)
     app.connect("doctree-resolved", fill_in)
-    app.add_node(
-        measured_value,
-        html=(visit_measured, lambda self, _: self.body.append("</span>")),
-    )

@@ -41,10 +41,9 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.markup import filled
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
-from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
-from robo_genesis.pipeline.pages.page_index import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
@@ -81,8 +80,8 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        lesson, folder = lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND
-        run = accepted_experiment(folder, bundle.read_manifest(folder))
+        lesson, folder = lesson_page.split("/")[0], page_bundle(lesson_page)
+        run = accepted_experiment(folder)
         explored = find(f"robo_genesis.lessons.{lesson}.explorer.explored")
         key = f"{lesson_page}/{BACKEND}"
         file = "-".join([*key.split("/"), *name])

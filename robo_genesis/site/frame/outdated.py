@@ -11,10 +11,7 @@ A directive that shows what other pages contain calls `env.note_reread()`: its p
 read in each render.
 """
 
-import os
-import platform
 import shutil
-import sys
 from collections.abc import Set
 from pathlib import Path
 from typing import Any
@@ -41,16 +38,10 @@ def inputs_of_all_pages(book: Path) -> str:
     Args:
         book: the folder of the pages.
     """
-    names = ("requirements.lock", "package-lock.json", "README.md", "LICENSE")
-    code = [*files_below(project.ROOT / "robo_genesis")]
     runs = [folder / RECORD for folder in page_index().folders.values()]
     recorded = [path for place in recorded_folders(book) for path in files_below(place)]
-    files = [*code, *(project.ROOT / name for name in names), *runs, *recorded]
-    variables = {name: os.environ.get(name) for name in up_to_date.VARIABLES}
-    packages = project.installed(sys.path)
-    return json_digest(
-        [files_digest(Path("/"), files), variables, packages, platform.python_version()]
-    )
+    results = files_digest(Path("/"), [*runs, *recorded])
+    return json_digest([up_to_date.inputs_beside_pages(project.ROOT), results])
 
 
 def begin(app: Sphinx) -> None:

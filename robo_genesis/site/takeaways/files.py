@@ -37,7 +37,6 @@ from robo_genesis.pipeline.pages import page_index
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.site.evidence.ledger_data import csv_bytes
-from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.evidence.values import measured
 
 from .notebooks import (
@@ -80,7 +79,7 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
     """
     name = f"{page.lesson}-{page.page}"
     executed = page_index.executed_notebook(page.docname, page.notebook)
-    run = page_index.page_outputs(f"{page.lesson}/{page.page}") / BACKEND
+    run = page_index.page_bundle(f"{page.lesson}/{page.page}")
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)

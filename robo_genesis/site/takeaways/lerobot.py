@@ -22,9 +22,7 @@ have pictures, without the privileged columns. Layout and names are those of
 reads with.
 """
 
-import hashlib
 import json
-import zipfile
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -37,13 +35,12 @@ import pyarrow.parquet as pq
 from docutils import nodes
 from sphinx.application import Sphinx
 
-from robo_genesis.core.files import write_whole
+from robo_genesis.core.files import bytes_digest, write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.core.shown import find
-from robo_genesis.evidence import bundle
+from robo_genesis.pipeline.html.archive import SUMS, sums, zipped
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
-from robo_genesis.pipeline.pages.page_index import page_outputs
-from robo_genesis.site.evidence.runs import BACKEND
+from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.site.pages import PageDirective
 
 from .directive import folder, links
@@ -74,14 +71,13 @@ class DatasetDownload(PageDirective):
         writer = writer_of(source, self.env.docname)
         title = f"> {self.config.html_title}. © {self.config.author}. {writer.address}"
         readme = f"{title.rstrip()}\n\n{plain(source.read_text('utf8'), writer)}"
-        bundle_folder = page_outputs(lesson_page) / BACKEND
-        run = accepted_experiment(bundle_folder, bundle.read_manifest(bundle_folder))
+        run = accepted_experiment(page_bundle(lesson_page))
         recorded = find(f"robo_genesis.lessons.{lesson}.dataset.recorded")
         content = archive(recorded(run), readme)
         name = f"{lesson_page.replace('/', '-')}-lerobot.zip"
         file = folder(self.env) / f"{lesson}-dataset" / name
         write_whole(file, content)
-        link, digest = links(self.env)(file), hashlib.sha256(content).hexdigest()
+        link, digest = links(self.env)(file), bytes_digest(content)
         return self.parse_text_to_nodes(f"- {link}, SHA-256 `{digest}`")
 
 
@@ -100,13 +96,8 @@ def archive(data: Mapping[str, Any], readme: str) -> bytes:
     licence = (ROOT / "LICENSE").read_text("utf8")
     members["LICENSE"] = f"{licence}\n{data['credit']}\n".encode()
     members["README.md"] = f"{readme}\n".encode()
-    sums = (f"{hashlib.sha256(c).hexdigest()}  {path}\n" for path, c in members.items())
-    members["SHA256SUMS"] = "".join(sums).encode()
-    target = BytesIO()
-    with zipfile.ZipFile(target, "w") as whole:
-        for path, content in members.items():
-            whole.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)
-    return target.getvalue()
+    members[SUMS] = sums(members.items())
+    return zipped(members.items())
 
 
 def files(

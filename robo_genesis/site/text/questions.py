@@ -44,9 +44,9 @@ from robo_genesis.core.tables import comparison_sentence
 from robo_genesis.core.text import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
-from robo_genesis.pipeline.pages.page_index import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_bundle
+from robo_genesis.pipeline.pages.values import value_of
 from robo_genesis.site.evidence.plain_nodes import WRITERS, between, html
-from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.evidence.values import COUNTED, measured
 from robo_genesis.site.figures.case_labels import label
 from robo_genesis.site.pages import PageDirective
@@ -187,16 +187,16 @@ def asked_number(
         BundleRefused: the bundle cannot be read.
     """
     text, origin = measured(lesson_page, f"{name} {unit}".strip())
-    case, _, metric = name.partition(".")
-    record = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)[case][metric]
-    if record.value is None:
+    value, own_unit, _ = value_of(page_bundle(lesson_page), name)
+    if value is None:
         raise LookupError(f"{lesson_page} did not observe {name}. Ask with {{choice}}.")
     verdicts = JUDGED | {key: "No." for key in causes if key not in JUDGED}
-    value = 1000 * record.value if unit and unit not in COUNTED else record.value
+    if unit and unit not in COUNTED:
+        value *= 1000
     return {
         "value": value,
         "tolerance": abs(value) * percent / 100,
-        "unit": unit or ("" if record.unit == "1" else record.unit),
+        "unit": unit or ("" if own_unit == "1" else own_unit),
         "feedback": [
             (key, f"{verdict} {causes.get(key, '')}".strip())
             for key, verdict in verdicts.items()
@@ -231,7 +231,7 @@ def measured_order(
         )
     for case in cases[:1] if absent else cases:
         _, origin = measured(lesson_page, f"{case}.{metric}")
-    records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
+    records = bundle.read_metrics(page_bundle(lesson_page))
     unit = records[cases[0]][metric].unit
     first, second = (None if absent else records[case][metric].value for case in cases)
     noun = lesson.about_metrics("noun")[metric]

@@ -3,12 +3,7 @@
 import shutil
 
 import pytest
-from spoilers import (
-    SPOILED,
-    filed_as,
-    older_compiler,
-    on,
-)
+from spoilers import filed_as, older_compiler, on
 
 from robo_genesis.core.project import ProjectError, engine_pin
 from robo_genesis.pipeline.bundles import overview
@@ -89,27 +84,6 @@ def test_one_folder_is_checked_alone(check, recorded, folder, tmp_path):
     assert (status, len(lines)) == (0, 1)
     status, lines = check(tmp_path / "cpu")
     assert (status, lines[0].endswith(" There is no such folder.")) == (1, True)
-
-
-ADVICE = {
-    "an older engine": overview.ADVICE["stale"],
-    "no page digest": overview.RUN_BY_HAND.format(lesson="l04"),
-    "an earlier form": overview.ADVICE["older-schema"],
-    "a metric of another rule": overview.ADVICE["metrics"],
-    "a failed check": overview.ADVICE["failed"],
-    "no log": None,
-}
-
-
-@pytest.mark.parametrize(("how", "text"), ADVICE.items())
-def test_a_student_learns_what_a_refusal_means_and_nothing_about_damage(
-    check, folder, how, text
-):
-    SPOILED[how][1](folder)
-    status, lines = check(folder)
-    meant = [line for line in lines if line.startswith("What this means: ")]
-    assert status == 1
-    assert meant == [f"What this means: {text}"] * bool(text)
 
 
 def test_a_broken_book_is_named(recorded):

@@ -1,12 +1,21 @@
 """What is added to a complete site: its archive, and SHA256SUMS as `sha256sum -c` reads it."""
 
+import io
 import shutil
 import subprocess
 import zipfile
 
 import pytest
 
-from robo_genesis.pipeline.html.archive import ARCHIVE, FOLDER, SUMS, pack, write_sums
+from robo_genesis.pipeline.html.archive import (
+    ARCHIVE,
+    FOLDER,
+    SUMS,
+    contents,
+    pack,
+    write_sums,
+    zipped,
+)
 
 OFFER = f'<p class="offline-offer"><a href="{ARCHIVE}">x</a>'
 
@@ -41,3 +50,12 @@ def test_every_file_but_the_list_is_listed(html):
     command = [shutil.which("sha256sum"), "--check", "--strict", SUMS]
     done = subprocess.run(command, cwd=html, capture_output=True, text=True, check=True)
     assert done.stdout.count(": OK") == 4
+
+
+def test_the_same_files_give_the_same_bytes_whenever_they_were_written(tmp_path):
+    archives = []
+    for content in ("a log", "a log", "another log"):
+        (tmp_path / "log.txt").write_text(content)
+        archives.append(zipped(contents(tmp_path)))
+    assert archives[0] == archives[1] != archives[2]
+    assert zipfile.ZipFile(io.BytesIO(archives[0])).namelist() == ["log.txt"]

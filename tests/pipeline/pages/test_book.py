@@ -26,10 +26,10 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     (
         notebook(cell("1", ":tags: [solutions]\n")),
         9,
-        "'solutions' is unknown. Is it so",
+        "'solutions' is unknown. Valid: after",
     ),
     (notebook(cell("1", ":tags: [skip-execution]\n")), 9, "unknown. Valid: after"),
-    (notebook(cell("1", ":tag: [solution]\n")), 9, "'tag' is unknown. Is it tags"),
+    (notebook(cell("1", ":tag: [solution]\n")), 9, "'tag' is unknown. Valid: tags"),
     (notebook(cell("1", ":tags: [figure]\n")), 9, "a figure needs a text"),
     (notebook(raising("1", None)), 9, "the tag raises-exception needs"),
     (notebook(cell("1", ':expects: "KeyError: a"\n')), 9, "the tag raises-exception"),

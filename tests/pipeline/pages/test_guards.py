@@ -1,9 +1,13 @@
+from functools import partial
+
 import pytest
 
 from robo_genesis.pipeline.pages.guards import contradicted
 
-FRONT = "---\nrobo_genesis: {lesson: l04, page: lecture}\n---\n"
-PAGE = """# Title
+PAGE = """---
+robo_genesis: {lesson: l04, page: lecture}
+---
+# Title
 
 KP grows: the
 sag falls by 5 %. {guard}`sag` Another
@@ -15,21 +19,19 @@ WRITE = " Write again what the runs contradict: "
 
 
 @pytest.mark.parametrize(
-    ("page", "said"),
+    ("page", "own", "said"),
     [
-        ("l04/lecture", f"{WRITE}a/lecture.md, line 10 (order)."),
-        ("l04/lab", f"{WRITE}a/lecture.md, line 8 (order)."),
-        ("l05/lab", ""),
+        ("l04/lecture", "lecture.md", f"{WRITE}a/lecture.md, line 10 (order)."),
+        ("l04/lab", "lab.md", f"{WRITE}a/lecture.md, line 8 (order)."),
+        ("l05/lab", "lab.md", ""),
     ],
 )
 def test_a_failed_check_names_the_sentences_that_it_guards_on_all_pages(
-    tmp_path, page, said
+    tmp_path, page, own, said
 ):
     file = tmp_path / "a" / "lecture.md"
     file.parent.mkdir()
-    file.write_text(FRONT + PAGE)
-    assert (
-        contradicted(tmp_path, page, "L04 CHECK: FAILED [order] x is 1, expected 2")
-        == said
-    )
-    assert contradicted(tmp_path, page, "L04 CHECK: FAILED [other] x is 1") == ""
+    file.write_text(PAGE)
+    failed = partial(contradicted, tmp_path, file.with_name(own), page)
+    assert failed("L04 CHECK: FAILED [order] x is 1, expected 2") == said
+    assert failed("L04 CHECK: FAILED [other] x is 1") == ""

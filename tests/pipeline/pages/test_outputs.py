@@ -91,9 +91,8 @@ def executed(sound):
 
 def check(executed, folder, *sources: str) -> int:
     """Compare a page that a careful editor has changed in the bundle, too."""
-    manifest = bundle.read_manifest(folder)
     write_json(folder / bundle.PRINTED, outputs_of(executed))
-    return require_shown(page_of(*(sources or SOURCES)), executed, folder, manifest)
+    return require_shown(page_of(*(sources or SOURCES)), executed, folder)
 
 
 def refusal(*given) -> str:
@@ -218,12 +217,12 @@ def test_a_number_that_a_cell_prints_is_the_value_that_its_option_names(
     page.notebook.cells[0].metadata["prints"] = values
     write_json(folder / bundle.PRINTED, outputs_of(ran))
     if said is None:
-        assert require_shown(page, ran, folder, bundle.read_manifest(folder)) == 0
+        assert require_shown(page, ran, folder) == 0
     else:
         with pytest.raises(
             BundleRefused, match=f"^shown: .*code cell 1: .*{re.escape(said)}"
         ):
-            require_shown(page, ran, folder, bundle.read_manifest(folder))
+            require_shown(page, ran, folder)
 
 
 PRINTS = """\

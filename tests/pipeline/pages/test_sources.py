@@ -1,8 +1,10 @@
 """Which changes of the package change the evidence keys and the fingerprints of which pages."""
 
+import os
 import shutil
 from copy import deepcopy
 from dataclasses import replace
+from unittest.mock import patch
 
 import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook
@@ -54,7 +56,8 @@ def page(root):
 
 
 def key(page, root, **variables):
-    return page_fingerprint(page, Tree(root), variables)
+    with patch.dict(os.environ, variables, clear=True):
+        return page_fingerprint(page, Tree(root))
 
 
 def test_imports_are_followed_through_functions_and_relative_names(root, page):
@@ -202,7 +205,7 @@ def test_a_page_that_runs_alone_records_elapsed_times():
 def keys(root, pages):
     """Return fingerprint and modules of the evidence key of some pages of the course."""
     tree = Tree(root)
-    fingerprints = {(p.lesson, p.page): page_fingerprint(p, tree, {}) for p in pages}
+    fingerprints = {(p.lesson, p.page): page_fingerprint(p, tree) for p in pages}
     modules = {
         (p.lesson, p.page): measuring_modules(p.lesson, p.code.imports, root)
         for p in pages

@@ -9,14 +9,14 @@ import pytest
 from robo_genesis.core.project import engine_pin
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.pipeline.bundles.status import Status
-from robo_genesis.pipeline.pages.page_index import page_outputs
+from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.site.evidence.runs import PageRun, measured_line, status_list
 
 
 @pytest.fixture
 def accepted(outputs):
     """Return a run as the build accepted it, with another version, start or backend."""
-    manifest = read_manifest(page_outputs("l04/lab") / "cpu")
+    manifest = read_manifest(page_bundle("l04/lab"))
 
     def run(started="2026-11-22T10:00", backend="cpu", recorded=False) -> PageRun:
         shown = manifest.model_copy(update={"started": started})
