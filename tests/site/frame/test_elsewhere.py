@@ -4,6 +4,7 @@ The address is below a server's root: it decides links, sitemap, cards and the 4
 """
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from tiny_book import cell, make_book, notebook
 
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.html.checks import run_checks
+from robo_genesis.pipeline.html.render import DOCTREES
 
 ADDRESS = "https://example.org/robot/course/"
 PUBLIC, SECRET = "public_line = 1", "secret_line = 2"
@@ -28,7 +30,11 @@ def rendered(folder: Path) -> Path:
     """Render a book whose pages are taken as executed, pack it, and return its folder."""
     pages = {"solved": notebook(*SOLVED), "deep/page": "# A page\n\nAbout joint4.\n"}
     (folder / "book" / "deep").mkdir(parents=True)
-    return render_with(make_book(folder, **pages), folder, {"solved": [1.0, 1.0]})
+    html = render_with(make_book(folder, **pages), folder, {"solved": [1.0, 1.0]})
+    shutil.rmtree(
+        html.parent / DOCTREES
+    )  # they name the checkout and are not published
+    return html
 
 
 @pytest.fixture(scope="module")
