@@ -38,7 +38,7 @@ def worktree(
         shared: the names of the caches that the worktree uses as well.
 
     Raises:
-        ProjectError: the checkout has changes or is none, or another process uses the folder.
+        ProjectError: the checkout has changes or is not one, or another process uses the folder.
     """
     require_clean(root)
     with locked(folder.with_suffix(".lock"), f"Another user of {folder}"):
