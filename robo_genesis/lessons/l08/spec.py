@@ -16,6 +16,7 @@ from robo_genesis.core.scene import CAMERA, FloatArray, read_only
 from robo_genesis.sim.arm import franka, lifting, reaching
 from robo_genesis.sim.arm.picking import PickCase
 from robo_genesis.sim.bodies.table import SceneCase
+from robo_genesis.sim.camera import film
 
 from . import creep
 
@@ -131,6 +132,7 @@ ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact",
 
 # The camera; it shows one environment.
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
+FILM = VIEW | {"res": film.RES}
 
 # Words of a reader for runs.
 LABELS = (
