@@ -1,10 +1,14 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.files import derived_value
-from robo_genesis.evidence.refusals import BundleRefused
+from robo_genesis.core.project import BACKEND, RENDER, environment_contract
+from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.refusals import BundleRefused, expect
+from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import outputs
 from robo_genesis.pipeline.pages.page_folder import RECORD, executed_cells
@@ -33,6 +37,7 @@ def verify_result(
     """
     try:
         manifest = verify(bundle)
+        require_contract(manifest, environment_contract())
         compared = outputs_compared(result, bundle)
     except BundleRefused:
         if result.status == "reused":
@@ -62,3 +67,21 @@ def outputs_compared(result: PageResult, bundle: Path) -> int:
         return outputs.require_shown(result.page, executed, bundle)
 
     return int(derived_value("shown", inputs, compare))
+
+
+def require_contract(manifest: Manifest, contract: Mapping[str, str]) -> None:
+    """Raise BundleRefused if a bundle's backend or camera is not the requested one.
+
+    A page that declares no camera must have none.
+
+    Args:
+        manifest: of the bundle.
+        contract: the variables that requested it.
+    """
+    remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
+    backend, render = contract[BACKEND], contract[RENDER]
+    camera = render == "1" and find_page(manifest.lesson, manifest.page).camera
+    mode = "camera" if camera else "skip"
+    found = manifest.backend.requested
+    expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
+    expect("frames", "manifest.json", "render.mode", manifest.render.mode, mode, remedy)

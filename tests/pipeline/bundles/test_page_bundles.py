@@ -9,7 +9,7 @@ from nbformat.v4 import new_notebook
 
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles import page_bundles
-from robo_genesis.pipeline.bundles.page_bundles import outputs_compared
+from robo_genesis.pipeline.bundles.page_bundles import outputs_compared, require_contract
 from robo_genesis.pipeline.pages import outputs
 from robo_genesis.pipeline.pages.page_folder import RECORD
 from robo_genesis.pipeline.pages.results import PageResult
@@ -30,3 +30,18 @@ def test_an_accepted_page_is_compared_again_when_its_record_changed(
     with pytest.raises(BundleRefused, match="other"):  # a refusal is not kept
         outputs_compared(result, bundle)
     assert outputs_compared(result, bundle) == 8
+
+
+@pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])
+def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
+    contract = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
+    facts = SimpleNamespace(lesson="l04", page=page, render=SimpleNamespace(mode=mode))
+    facts.backend = SimpleNamespace(requested="cpu")
+    require_contract(facts, contract)
+    with pytest.raises(
+        BundleRefused, match=r"backend\.requested is cpu, expected auto"
+    ):
+        require_contract(facts, contract | {"ROBO_GENESIS_BACKEND": "auto"})
+    facts.render.mode = "another"
+    with pytest.raises(BundleRefused, match=rf"frames: .* expected {mode}"):
+        require_contract(facts, contract)
