@@ -113,9 +113,9 @@ class Recorder:
             following.mkdir(parents=True)
             self._write_files(following, experiment, shape)
             facts = self._facts(experiment, renderer)
-            key = bundle.evidence_key(facts)
-            more = {"evidence_key": key, "files": bundle.list_files(following)}
-            manifest = bundle.Manifest.model_validate(facts | more)
+            facts["evidence_key"] = bundle.evidence_key(facts)
+            facts["files"] = bundle.list_files(following)
+            manifest = bundle.Manifest.model_validate(facts)
             bundle.write_json(following / bundle.MANIFEST, manifest.model_dump())
         return self.folder
 
@@ -137,8 +137,12 @@ class Recorder:
         engine, backend = self.engine, self.engine.backend
         keyed = {name: getattr(engine, name) for name in bundle.KEYED_OF_ENGINE}
         drawn = (
-            {"mode": "camera", "vendor": renderer.vendor, "renderer": renderer.name}
-            | {"software": renderer.software}
+            {
+                "mode": "camera",
+                "vendor": renderer.vendor,
+                "renderer": renderer.name,
+                "software": renderer.software,
+            }
             if renderer
             else {"mode": "skip"}
         )

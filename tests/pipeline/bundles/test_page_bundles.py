@@ -9,7 +9,10 @@ from nbformat.v4 import new_notebook
 
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles import page_bundles
-from robo_genesis.pipeline.bundles.page_bundles import outputs_compared, require_contract
+from robo_genesis.pipeline.bundles.page_bundles import (
+    outputs_compared,
+    require_contract,
+)
 from robo_genesis.pipeline.pages import outputs
 from robo_genesis.pipeline.pages.page_folder import RECORD
 from robo_genesis.pipeline.pages.results import PageResult
