@@ -60,6 +60,13 @@ def test_a_stored_page_has_a_digest_of_each_file_and_the_time_of_each_cell(place
     }
 
 
+def test_the_table_of_seconds_has_what_the_last_execution_took(sound, place, tmp_path):
+    pages = find_pages(sound / "book")
+    written = store.write_seconds(tmp_path, tmp_path / "store", pages)
+    seconds = json.loads((place / "page.json").read_text())["seconds"]
+    assert json.loads(written.read_text()) == {"lab": round(seconds)}
+
+
 def fail_a_cell(place: Path) -> None:
     """Let the first cell have raised, and make the digest of the notebook right again."""
     ran = nbformat.read(place / "executed.ipynb", as_version=4)
