@@ -5,6 +5,7 @@ Each function starts a process of its own, because an engine starts once in a pr
 
 import json
 import os
+import shutil
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -97,7 +98,10 @@ def measure_starts() -> dict[str, float]:
     found: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder:
         changed = {}
-        if not project.nothing_compiled(os.environ):
+        if project.nothing_compiled(os.environ):
+            # a build that was killed leaves what Numba compiled
+            shutil.rmtree(os.environ[project.NUMBA], ignore_errors=True)
+        else:
             changed = project.engine_cache_environment(cache=Path(folder))
         for start in STARTS:
             times = last_value(run_python(["-c", SCRIPT], changed))

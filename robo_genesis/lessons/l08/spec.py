@@ -176,4 +176,6 @@ def parameters() -> dict[str, Any]:
 
 def lab_parameters() -> dict[str, Any]:
     """Return every configured input of the lab, as `parameters`."""
-    return inputs({"exact": EXACT} | LAB_EPISODE, VIEW, counted=list(EXPECTED_MODEL))
+    small = {name: value for name, value in FILM.items() if name != "GUI"}
+    cases = {"exact": EXACT} | LAB_EPISODE
+    return inputs(cases, VIEW, film=small, counted=list(EXPECTED_MODEL))

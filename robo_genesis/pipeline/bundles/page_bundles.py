@@ -33,7 +33,7 @@ def verify_result(
         progress: prints a line.
 
     Raises:
-        BundleRefused: by `verify`; `shown`.
+        BundleRefused: by `verify`; `backend` and `frames`, see `require_contract`; `shown`.
     """
     try:
         manifest = verify(bundle)

@@ -103,7 +103,8 @@ def check_current(manifest: Manifest, book: Path) -> None:
         )
         raise BundleRefused(
             "stale",
-            f"{MANIFEST}: {named}. The bundle answers an older question. "
+            f"{MANIFEST}: {named}. The bundle answers an older question, "
+            "or its notebook was run by hand. "
             f"Record it again: `make evidence LESSON={manifest.lesson}`.",
             differing,
         )

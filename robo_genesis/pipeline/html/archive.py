@@ -31,7 +31,7 @@ def pack(html: Path) -> Path:
     Args:
         html: the folder of the site.
     """
-    files = [(f"{FOLDER}/{n}", without_offer(n, data)) for n, data in contents(html)]
+    files = ((f"{FOLDER}/{n}", without_offer(n, data)) for n, data in contents(html))
     archive = html / ARCHIVE
     archive.parent.mkdir()
     archive.write_bytes(zipped(files))

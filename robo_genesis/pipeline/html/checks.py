@@ -46,7 +46,7 @@ class PageReader(HTMLParser):
         self.loaded: list[str] = []
         self.alt_texts: list[tuple[str, str]] = []
         self.texts: list[str] = []
-        self.has_policy = POLICY in text
+        self.policies: list[str | None] = []
         self.quotes = 0
         self.feed(text)
 
@@ -68,6 +68,8 @@ class PageReader(HTMLParser):
         if tag == "svg" and "drawing" in given.get("class", "").split():
             source = given.get("data-file", "")
             self.alt_texts.append((given.get("aria-label", ""), source))
+        if given.get("http-equiv") == POLICY_NAME:
+            self.policies.append(given.get("content"))
 
     def handle_endtag(self, tag: str) -> None:
         """Note the end of quoted text."""
@@ -120,7 +122,7 @@ def page_problems(page: PageReader) -> Iterator[tuple[str, str]]:
         stem = PurePosixPath(urlsplit(source).path).stem
         if not text.strip() or FILE_NAME.match(text) or text == stem:
             yield "alt texts", f"{source} has the alt text {text!r}."
-    if not page.has_policy:
+    if POLICY not in page.policies:
         yield "third parties", f"has no {POLICY_NAME} {POLICY!r}."
     for address in filter(ELSEWHERE.match, page.loaded):
         yield "third parties", address

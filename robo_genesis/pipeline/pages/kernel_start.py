@@ -59,15 +59,16 @@ class KeepVoxels:
         """Change the class of meshes when the engine is looked for."""
         if name != "genesis":
             return
-        sys.meta_path.remove(KeepVoxels)
+        sys.meta_path = [one for one in sys.meta_path if one is not KeepVoxels]
         from trimesh import Trimesh
 
         voxelized, kept = Trimesh.voxelized, {}
 
-        def voxelized_once(mesh: Trimesh, pitch: float) -> Any:
-            key = mesh.vertices.tobytes(), mesh.faces.tobytes(), pitch
+        def voxelized_once(mesh: Trimesh, *given: Any, **named: Any) -> Any:
+            shape = mesh.vertices.tobytes(), mesh.faces.tobytes()
+            key = *shape, given, *named.items()
             if key not in kept:
-                kept[key] = voxelized(mesh, pitch)
+                kept[key] = voxelized(mesh, *given, **named)
             return kept[key]
 
         Trimesh.voxelized = voxelized_once  # type: ignore[assignment, method-assign]

@@ -17,12 +17,12 @@ NO_SOLUTION = "The solution is left out on this site; the outputs are those of i
 TAGS = (
     "after-yours",
     "alone",
+    "compiles-first",
     "figure",
     "hide-cell",
     "hide-input",
     "hide-output",
     "inputs",
-    "compiles-first",
     "raises-exception",
     "remove-cell",
     "remove-input",

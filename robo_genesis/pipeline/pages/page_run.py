@@ -84,8 +84,8 @@ class PageRun:
         """Execute the page in an empty temporary folder; store it unless it failed.
 
         Args:
-            on_cell: called before the first cell, or the one after those that compile
-                first, and when a cell waits.
+            on_cell: called before the cell after those that compile first, and when a
+                cell waits.
         """
         with (
             tempfile.TemporaryDirectory(dir=self.scratch) as folder,
@@ -109,7 +109,7 @@ class PageRun:
 
         def cell_starts(cell: NotebookNode, cell_index: int) -> None:
             self.cell = results.cell_number(notebook, cell_index)
-            if self.cell == self.page.compiles_first + 1:
+            if self.cell == self.page.compiles_first + 1 > 1:
                 on_cell()
             if self.cell == self.page.alone:
                 asked = time.monotonic()

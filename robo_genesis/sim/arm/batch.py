@@ -167,7 +167,7 @@ def reset_batch(
 
     Returns:
         The cases as one: its arrays are (cases, joints), without environments
-            (joints,).
+            (joints,), as are gains and limits that all cases share.
     """
     for case in cases:
         require_built(scene, case)

@@ -110,7 +110,7 @@ def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
 def set_up(robot: Any, dofs: list[int], case: ControlCase) -> None:
     """Set gains, effort range and start of a case, at rest, and read them back.
 
-    The case's arrays are (d,), or (environments, d) in a batch.
+    The case's arrays are (d,), in a batch also (environments, d).
 
     Raises:
         CaseError: a value reads back differently from what was asked for.

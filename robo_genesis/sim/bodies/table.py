@@ -192,7 +192,10 @@ def build(
             material=gs.materials.Rigid(rho=1000.0),
             surface=gs.surfaces.Default(color=(0.90, 0.50, 0.10, 1.0)),
         )
-    given = {"world": view and view | {"fov": case.fov}, "wrist": wrist, "film": film}
+    given = {"wrist": wrist} | {
+        name: of and of | {"fov": case.fov}
+        for name, of in (("world", view), ("film", film))
+    }
     cameras = {name: scene.add_camera(**of) for name, of in given.items() if of}
     scene.build(n_envs=n_envs)
     if wrist:

@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.scene import FRAME_SHAPE
 
-# Pictures in a row or column of a sheet.
+# Pictures in a row or column of a sheet; a picture is smaller than a frame by this.
 SHRINK = 5
 
 # Rows, columns and colours of a picture; width and height of its camera [pixel].
@@ -17,13 +17,6 @@ RES = (PICTURE[1], PICTURE[0])
 def sheet_names(film: str, count: int) -> tuple[str, ...]:
     """Return the names of the frames that hold so many pictures."""
     return tuple(f"{film}_sheet_{k}" for k in range(-(-count // SHRINK**2)))
-
-
-def shrunk(frame: np.ndarray) -> np.ndarray:
-    """Return a picture of a frame: each pixel is the mean of a square of the frame."""
-    rows, columns, colours = PICTURE
-    squares = frame.reshape(rows, SHRINK, columns, SHRINK, colours)
-    return np.asarray(squares.mean(axis=(1, 3)).round().astype(np.uint8))
 
 
 def sheets(film: str, pictures: np.ndarray) -> dict[str, np.ndarray]:

@@ -5,6 +5,7 @@ flashes.
 """
 
 import shutil
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
@@ -57,10 +58,15 @@ def finish_site(app: Sphinx, error: Exception | None) -> None:
     if error is None:
         site = Path(app.outdir)
         drop_unused_files(site)
-        for path in site.rglob("*.html"):
-            html = path.read_text("utf8")
-            if f'http-equiv="{POLICY_NAME}"' not in html:
-                path.write_text(finish_page(html, path.parent), "utf8")
+        with ProcessPoolExecutor() as pool:
+            list(pool.map(finish_file, site.rglob("*.html")))
+
+
+def finish_file(path: Path) -> None:
+    """Finish a page of the site, unless it was finished by an earlier render."""
+    html = path.read_text("utf8")
+    if f'http-equiv="{POLICY_NAME}"' not in html:
+        path.write_text(finish_page(html, path.parent), "utf8")
 
 
 def finish_page(html: str, folder: Path) -> str:

@@ -48,12 +48,17 @@ def test_pictures_are_of_the_first_episodes_and_absent_without_a_camera(lab):
     shown = dataset.recorded(run)["pictures"]
     assert shown.shape == (3, 130, *film.PICTURE)
     assert shown[2, 7, 0, 0].tolist() == [107] * 3
-    last = np.full((540, 720, 3), 130, np.uint8)
-    outcomes = checks.pictures_show_the_states(
-        replace(run, frames=frames | {"final": last})
+    outcomes = checks.pictures_show_the_states(run)
+    assert [one.passed for one in outcomes] == [True, False, True]  # it has no end
+
+
+def test_a_film_ends_with_the_picture_that_was_taken_at_the_end(lab):
+    pictures = (
+        np.zeros((132, *film.PICTURE), np.uint8) + np.arange(132)[:, None, None, None]
     )
-    assert all(one.passed for one in outcomes)
-    outcomes = checks.pictures_show_the_states(
-        replace(run, frames=frames | {"final": last + 9})
-    )
-    assert [one.passed for one in outcomes] == [True, False, True]
+    for end, passed in ((130, True), (131, False)):
+        pictures[-1] = end
+        frames = film.sheets("film_0", pictures.astype(np.uint8))
+        run = replace(lab, rendered=True, frames=frames)
+        outcomes = checks.pictures_show_the_states(run)
+        assert [one.passed for one in outcomes] == [True, passed, True]

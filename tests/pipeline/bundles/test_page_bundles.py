@@ -1,4 +1,4 @@
-"""The verification stage compares each page once with its bundle."""
+"""The verification stage: the contract of a page, and one comparison with its bundle."""
 
 import os
 from types import SimpleNamespace

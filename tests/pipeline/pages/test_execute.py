@@ -296,7 +296,7 @@ def test_the_longest_pages_start_first_those_that_measure_time_last(tmp_path):
         for page in find_pages(tmp_path / "book")
     ]
     assert [run.page.docname for run in in_order(runs)] == ["c", "b", "d", "f"]
-    schedule = Schedule(runs, [], 2, Mock())
+    schedule = Schedule(runs, None, 2, Mock())
     assert schedule.left == "0 of 4 pages, about 2 min left"
     schedule.ended, schedule.expected, schedule.elapsed = 1, 10.0, 100.0
     assert schedule.left == "1 of 5 pages, about 3 min left"

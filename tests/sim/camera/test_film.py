@@ -18,11 +18,3 @@ def test_sheets_give_their_pictures_back():
     assert (
         frames["film_sheet_0"][height : 2 * height, width : 2 * width] == pictures[6]
     ).all()
-
-
-def test_a_pixel_is_the_mean_of_its_square():
-    frame = np.zeros(FRAME_SHAPE, np.uint8)
-    frame[5, 10:15] = 250
-    found = film.shrunk(frame)
-    assert found[1, 2].tolist() == [50, 50, 50]
-    assert found.sum() == 150
