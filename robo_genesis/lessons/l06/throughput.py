@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -103,7 +104,7 @@ def measure(
     protocol: Protocol = PROTOCOL,
     clock: Clock = time.perf_counter,
     memory: Callable[[], float] = timing.used_memory,
-    others: Callable[[Mapping[int, Any]], Mapping[str, Calls]] = lambda built: {},
+    others: Mapping[str, Calls] = MappingProxyType({}),
 ) -> tuple[dict[str, float], dict[str, int]]:
     """Time building and stepping of a scene for each number of environments.
 
@@ -112,7 +113,7 @@ def measure(
         protocol: what is timed.
         clock: returns a time [s].
         memory: returns the memory in use [MiB].
-        others: returns the further scenes, given scene and robot of each size.
+        others: the further scenes.
 
     Returns:
         Both groups of readings.
@@ -128,20 +129,17 @@ def measure(
         built[size] = scene, robot
     timed = {str(size): calls_of(*of) for size, of in built.items()}
     repeats = protocol.warm_up, protocol.steps, protocol.repeats
-    found |= timing.in_turn(timed | {**others(built)}, *repeats, clock)
+    found |= timing.in_turn(timed | {**others}, *repeats, clock)
     return found, {
         str(size): unequal(to_numpy(robot.get_dofs_position()))
         for size, (_, robot) in built.items()
     }
 
 
-def explanations(
-    built: Mapping[int, Any], build: Callable[..., Any]
-) -> dict[str, Calls]:
+def explanations(build: Callable[..., Any]) -> dict[str, Calls]:
     """Return the further scenes of `DEEPER`.
 
     Args:
-        built: scene and robot of each size.
         build: makes a scene of a size, also with other substeps or with a `sphere`.
     """
 
@@ -157,8 +155,6 @@ def explanations(
         for size in ENDS
     }
     return parts | {
-        name: timing.together(
-            [calls_of(*built[size]), *(calls(size) for _ in range(3))]
-        )
+        name: timing.together([calls(size) for _ in range(4)])
         for name, size in FOUR.items()
     }
