@@ -11,6 +11,7 @@ from robo_genesis.sim.arm.kinematics import hand_pose, rotate
 from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 from robo_genesis.sim.arm.picking import CLOSE, DONE, LIFT, LOWER, MOVE, PickCase
 from robo_genesis.sim.bodies import bowl
+from robo_genesis.sim.bodies.free_fall import GRAVITY
 
 PRESSES = 0.1  # Normal force from which a finger holds [N]
 
@@ -19,6 +20,12 @@ RAISED = 0.05  # Height that an object must gain in the lift [m]
 # An object is in the bowl if its centre is this near to the axis, and its lowest point
 # this far below the rim [m].
 CENTRED, BELOW = 0.06, 0.01
+
+# Half of the length of a pad [m].
+HALF_PAD = 8.5e-3
+
+# An object has left the pads' middle part by so much, beyond their end [m].
+LEAVING = 1e-3, 6e-3
 
 # Time at the end [s] in which an object at rest moves by less than this [m], as in L07.
 WINDOW, STILL = 0.2, 2e-4
@@ -122,6 +129,9 @@ class EpisodesMetrics(CaseMetrics):
         "object_pos_m",
         noun="speed at which the object slides in the fingers",
     )
+    growth: float | None = metric(
+        "1/s", "growth of the distance beyond a pad's end", *CARRIED, "q_rad_or_m"
+    )
 
 
 def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
@@ -140,7 +150,9 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         np.median(case.beliefs[:, 0] - at_closing(trace)[:, 0]),
         *grip(trace, level > RUNGS.index("carried")),
     ]
-    return EpisodesMetrics(*map(float, values))
+    growths = growth(trace)
+    typical = float(np.median(growths)) if len(growths) else None
+    return EpisodesMetrics(*map(float, values), typical)
 
 
 def hand_above(trace: Episodes) -> FloatArray:
@@ -163,6 +175,44 @@ def at_closing(trace: Episodes) -> FloatArray:
     """Return where the middle of the pads is (e, 3) when the fingers begin to close [m]."""
     hand = hand_pose(trace.q[first_closing(trace), np.arange(trace.phase.shape[1])])
     return hand.position + rotate(hand.quat, np.array([0.0, 0.0, HAND_TO_PAD]))
+
+
+def offset(trace: Episodes) -> FloatArray:
+    """Return how far the object is from the middle of the pads, along them (n+1, e) [m]."""
+    hand = hand_pose(trace.q)
+    middle, along = (
+        rotate(hand.quat, np.array(of)) for of in ((0, 0, HAND_TO_PAD), (1.0, 0, 0))
+    )
+    return np.asarray(
+        ((trace.object_pos - hand.position - middle) * along).sum(axis=-1)
+    )
+
+
+def growth(trace: Episodes) -> FloatArray:
+    """Return the rates at which objects leave the pads (k,) [1/s]: an object that is pressed
+    by both fingers beyond the end of a pad, at distances between both of `LEAVING`.
+
+    The rate is the slope of the logarithm of the distance; episodes with fewer than five
+    such samples have none.
+    """
+    beyond = np.abs(offset(trace)) - HALF_PAD
+    leaves = pressed(trace) & (trace.phase >= CLOSE) & (trace.phase <= MOVE)
+    leaves &= (beyond > LEAVING[0]) & (beyond < LEAVING[1])
+    rows = np.flatnonzero(leaves.sum(axis=0) >= 5)
+    return np.array(
+        [
+            np.polyfit(trace.t[leaves[:, k]], np.log(beyond[leaves[:, k], k]), 1)[0]
+            for k in rows
+        ]
+    )
+
+
+def leaving_rate(m: EpisodesMetrics, case: PickCase) -> float:
+    """Return the rate that force and creep predict for `growth` [1/s]: a load creeps with a
+    speed in proportion, and both fingers push a cylinder with 2 N e / r at the distance e.
+    """
+    weight = case.density * case.volume * GRAVITY
+    return 2 * m.press / (case.size[0] / 2) * m.creep / weight
 
 
 def first_closing(trace: Episodes) -> np.ndarray:

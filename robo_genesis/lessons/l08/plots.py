@@ -16,6 +16,9 @@ from . import creep, metrics, spec
 
 MEASURES = False
 
+CONES = {"askew": "default cone", "round": "elliptic cone"}
+OTHER = {"color": look("other")["color"]}
+
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the link origins of an episode."""
@@ -71,6 +74,41 @@ def slide(run: Experiment) -> Figure:
     ax.plot(trace.t[inside], 1000 * (above - above[0]), **look("baseline"))
     ax.set(xlabel="time [s]", ylabel="slid down [mm]")
     ax.set_title("Slide of the object in the closed fingers")
+    return figure
+
+
+def leaving(run: Experiment) -> Figure:
+    """Draw how far objects are beyond the end of the pads while both fingers press, with
+    both cones, from the beginning of closing.
+    """
+    figure, ax = plotting.axes(3.4)
+    for name, mark in (("askew", "first"), ("round", "baseline")):
+        trace = run.traces[name]
+        beyond = np.abs(metrics.offset(trace)) - metrics.HALF_PAD
+        closing = metrics.first_closing(trace)
+        start = beyond[closing, np.arange(len(closing))]
+        for row in np.flatnonzero((start > 5e-4) & (start < 2e-3)):
+            held = metrics.pressed(trace)[:, row] & (
+                trace.phase[:, row] <= picking.MOVE
+            )
+            times = trace.t[held] - trace.t[closing[row]]
+            ax.semilogy(times, 1000 * beyond[held, row], **look(mark) | {"lw": 0.8})
+        ax.plot([], [], label=CONES[name], **look(mark))
+    m, t = run.metrics["askew"], np.linspace(0, 1, 2)
+    ax.plot(
+        t,
+        0.6 * np.exp(metrics.leaving_rate(m, spec.ASKEW) * t),
+        ":",
+        label="slope κ",
+        **OTHER,
+    )
+    ax.set(
+        xlabel="time after closing begins [s]",
+        ylabel="beyond the end [mm]",
+        xlim=(0, 2),
+    )
+    ax.legend(loc="lower right")
+    ax.set_title("Distance of cylinders beyond the end of the pads")
     return figure
 
 

@@ -44,8 +44,9 @@ class SceneCase(Controlled):
     the middle of its lower face on its support, which is a shelf if it is not at z = 0.
     It starts `gap` [m] above the support; gravity does not act on it if it is
     `weightless`. `density` [kg/m³]; `friction` is that of the object, and with `pads`
-    that of the robot is set as well. `bowl` is a choice of collision geometry,
-    `bowl_at` (x, y) its place; a ball of `ball_radius` [m] falls into it, none if that
+    that of the robot is set as well. `cone` is "pyramid" or "elliptic"; gravity does
+    not act on the robot if it is `compensated`. `bowl` is a choice of collision
+    geometry, `bowl_at` (x, y) its place; a ball of `ball_radius` [m] falls into it, none if that
     is 0. `fov` is that of the camera in the world [degree].
     """
 
@@ -57,6 +58,8 @@ class SceneCase(Controlled):
     density: float = 400.0
     friction: float = 0.8
     pads: float | None = None
+    cone: str = "pyramid"
+    compensated: bool = False
     bowl: str = "default"
     bowl_at: tuple[float, float] = (0.55, 0.22)
     ball_radius: float = 0.008
@@ -140,6 +143,8 @@ def build(
         n_envs: number of environments, 0 for a scene without.
         options: further ones of `gs.options.RigidOptions`.
     """
+    if case.cone == "elliptic":
+        options["friction_cone"] = gs.friction_cone.elliptic
     scene = new_scene(gs, case, options, first_only=n_envs > 0)
 
     def block(
@@ -163,8 +168,12 @@ def build(
     fixed += [block((0.05, 0.05, -FLOOR - thick), *at, -thick, 0.5) for at in corners]
     if case.place[2]:
         fixed.append(block((0.16, 0.14, 0.02), *case.place, 0.5))
-    pads = gs.materials.Rigid(friction=case.pads) if case.pads else None
-    robot = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF), material=pads)
+    robot = scene.add_entity(
+        gs.morphs.MJCF(file=FRANKA_MJCF),
+        material=gs.materials.Rigid(
+            friction=case.pads, gravity_compensation=float(case.compensated)
+        ),
+    )
     morph = (
         gs.morphs.Box(size=case.size, pos=tuple(case.centre))
         if case.shape == "box"
