@@ -66,6 +66,8 @@ def cases() -> dict[str, PickCase]:
         "grid": batch(np.tile(PLACE, (len(errors), 1)), errors),
         "plain": batch(starts, noise),
         "corrected": batch(starts, noise + SAG),
+        "compensated": batch(starts, noise, compensated=True),
+        "elliptic": batch(starts, noise, cone="elliptic", steps=70),
         "timed": batch(
             np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)
         ),

@@ -147,6 +147,8 @@ LABELS = (
         "grid": "grid of errors",
         "plain": "plain",
         "corrected": "sag corrected",
+        "compensated": "no gravity on the robot",
+        "elliptic": "elliptic cone",
         "timed": "descent by a clock",
         "boxes": "yaw ignored",
         "paced": "three speeds",

@@ -23,6 +23,10 @@ RATE_TABLES = {
         "all seven rungs": ("askew", "resting"),
     },
     "expert": {spec.LABELS[name]: (name, "resting") for name in ("exact", "askew")},
+    "expert of 128 starts": {
+        spec.LABELS[name]: (name, "resting")
+        for name in ("plain", "corrected", "compensated", "elliptic")
+    },
     "counted": {
         "all phases done": ("boxes", "finished"),
         "horizontally in the bowl": ("boxes", "over_bowl"),

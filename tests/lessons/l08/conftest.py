@@ -9,25 +9,36 @@ from robot_runs import LINKS
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Demonstrations, Episodes
-from robo_genesis.lessons.l08 import spec
+from robo_genesis.lessons.l08 import metrics, spec
 from robo_genesis.lessons.l08.pages import LAB, LECTURE
 from robo_genesis.sim.arm import kinematics, picking
 from robo_genesis.sim.bodies import bowl
 
 SLIDE = 1.6e-3  # Speed of the object in the fingers [m/s]
 
+LEAVING = 2.8  # Rate at which a held object leaves the pads beyond their end [1/s]
+
 PADS = 4.75e-3  # How far the pads are from their command, towards the base [m]
 
 
 def batch(
-    case, level, hanging=False, early=False, falls_in=False, length=16, slide=SLIDE
+    case,
+    level,
+    hanging=False,
+    early=False,
+    falls_in=False,
+    length=16,
+    slide=SLIDE,
+    leaving=LEAVING,
 ) -> Episodes:
     """Return a batch whose episodes reach these rungs (e,), each with phases of `length` samples.
 
     Objects may hang over the bowl in the hand, be touched `early`, or fall into the
-    bowl although they were lost on the way.
+    bowl although they were lost on the way. Beyond the end of the pads, a held one
+    leaves them with the rate `leaving` [1/s].
     """
     rows, states = len(case.starts), np.arange(case.steps + 1)
+    short = 0.0 if case.compensated else PADS
     length = length * np.ones(rows)
     phase = (states[:, None, None] >= np.multiply.outer(length, range(1, 9))).sum(2)
     lost = np.array([0, picking.CLOSE, picking.MOVE, picking.LOWER])
@@ -37,12 +48,15 @@ def batch(
     begin = np.column_stack([case.starts, np.full(rows, case.size[2] / 2)])
     place = np.tile(begin, (len(states), 1, 1))
     place[..., 2] += 0.1 * carried - slide * case.dt * carried.cumsum(axis=0) * carried
+    pads = case.beliefs[:, 0] - short
+    beyond = np.maximum(case.starts[:, 0] - pads - metrics.HALF_PAD, 0)
+    place[..., 0] += beyond * (np.exp(leaving * case.dt * held.cumsum(axis=0)) - 1)
     hangs = (phase >= picking.MOVE) & hanging
     place[hangs, 2] += 2 * bowl.HEIGHT
     inside = (phase >= picking.MOVE) & (level == 7) | (phase >= picking.OPEN) & falls_in
     place[hangs | inside, :2] = case.bowl_at
     target = kinematics.Pose(
-        case.waypoints[1] - [PADS, 0, 0], np.tile([0.0, 1, 0, 0], (rows, 1))
+        case.waypoints[1] - [short, 0, 0], np.tile([0.0, 1, 0, 0], (rows, 1))
     )
     limits, how = ([-3.0] * 7, [4.0] * 7), {"iterations": 60, "damping": 0.01}
     start = np.tile(case.q_start[:7], (rows, 1))
@@ -82,9 +96,10 @@ def episodes(joints) -> Experiment:
     level = np.select(levels, [7, 3, 2], 1)
     askew = batch(spec.ASKEW, level, falls_in=(level == 3) & (error > -4.5e-3))
     exact = batch(spec.EXACT, np.full(len(spec.FEW), 7))
-    ordered = {n: of[:, spec.ORDER] for n, of in arrays_of(askew).items() if n != "t"}
-    copies = {"again": exact, "permuted": replace(askew, **ordered)}
-    return experiment(LECTURE, {"exact": exact, "askew": askew} | copies, joints)
+    ordered = {n: of[:, spec.ORDER] for n, of in arrays_of(exact).items() if n != "t"}
+    everywhere = batch(spec.ROUND, np.full(len(spec.STARTS), 7), leaving=0.2)
+    others = {"round": everywhere, "permuted": replace(exact, **ordered)}
+    return experiment(LECTURE, {"exact": exact, "askew": askew} | others, joints)
 
 
 @pytest.fixture(scope="session")
