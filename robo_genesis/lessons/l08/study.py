@@ -1,7 +1,6 @@
 """What the pages of L08 record of their batches."""
 
 from dataclasses import fields
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -52,18 +51,13 @@ def keep(page: Any, batch: Batch) -> None:
 def demonstrate(page: Any, world: World, batch: Batch) -> None:
     """Keep the commands of the lab's batch, and film some of its episodes.
 
-    For the films, the first environment takes the recorded states one after the other;
-    the last picture of each was taken before, of the world at the end of the run.
+    For the films, the first environment takes the recorded states one after the other.
     """
     trace, every = page.traces["exact"], spec.EXACT.commands
     parts = {of.name: getattr(trace, of.name) for of in fields(Episodes)}
     target = np.stack(batch.sent)[every - 1 :: every].astype(np.float32)
     page.traces["exact"] = Demonstrations(**parts, target=target)
-    if not page.render:
-        return
-    take = partial(frames.capture, world.cameras["film"], film.PICTURE)
-    end = take()
-    for row, name in enumerate(spec.FILMS):
+    for row, name in enumerate(spec.FILMS if page.render else ()):
         pictures = []
         for k in range(len(trace.t)):
             picking.pose(
@@ -71,5 +65,5 @@ def demonstrate(page: Any, world: World, batch: Batch) -> None:
                 page.joints,
                 *(of[k, row] for of in (trace.q, trace.object_pos, trace.object_quat)),
             )
-            pictures.append(take())
-        page.frames |= film.sheets(name, np.stack([*pictures, end]))
+            pictures.append(frames.capture(world.cameras["film"], film.PICTURE))
+        page.frames |= film.sheets(name, np.stack(pictures))

@@ -7,6 +7,7 @@ from lessons.changed_runs import put, trace
 
 from robo_genesis.lessons.l08 import checks, dataset, spec
 from robo_genesis.sim.camera import film
+from robo_genesis.sim.camera.geometry import intrinsics, looking, project
 
 
 def test_a_row_has_a_sample_and_the_command_after_it(lab):
@@ -48,17 +49,33 @@ def test_pictures_are_of_the_first_episodes_and_absent_without_a_camera(lab):
     shown = dataset.recorded(run)["pictures"]
     assert shown.shape == (3, 130, *film.PICTURE)
     assert shown[2, 7, 0, 0].tolist() == [107] * 3
-    outcomes = checks.pictures_show_the_states(run)
-    assert [one.passed for one in outcomes] == [True, False, True]  # it has no end
 
 
-def test_a_film_ends_with_the_picture_that_was_taken_at_the_end(lab):
-    pictures = (
-        np.zeros((132, *film.PICTURE), np.uint8) + np.arange(132)[:, None, None, None]
-    )
-    for end, passed in ((130, True), (131, False)):
-        pictures[-1] = end
-        frames = film.sheets("film_0", pictures.astype(np.uint8))
-        run = replace(lab, rendered=True, frames=frames)
-        outcomes = checks.pictures_show_the_states(run)
-        assert [one.passed for one in outcomes] == [True, passed, True]
+def painted(places):
+    """Return a picture (n, *PICTURE) of each place, with a blue square where it is seen."""
+    pictures = np.zeros((len(places), *film.PICTURE), np.uint8)
+    camera = intrinsics(42, film.RES), looking(spec.VIEW["pos"], spec.VIEW["lookat"])
+    for picture, pixel in zip(pictures, project(places, *camera), strict=True):
+        column, row = pixel.round().astype(int)
+        picture[row - 4 : row + 4, column - 4 : column + 4, 2] = 200
+    return pictures
+
+
+def test_a_film_shows_its_own_episode_at_its_own_time(lab):
+    places = lab.traces["exact"].object_pos[:, :3]
+    films = {name: painted(places[:, row]) for row, name in enumerate(spec.FILMS)}
+
+    def wrong(**others):
+        frames = {}
+        for name, pictures in (films | others).items():
+            frames |= film.sheets(name, pictures)
+        found = checks.pictures_show_the_states(
+            replace(lab, rendered=True, frames=frames)
+        )
+        return [one.label for one in found if not one.passed]
+
+    assert wrong() == []
+    assert wrong(film_1=films["film_2"]) == ["film_1.apart_px"]
+    late = np.concatenate([films["film_0"][:1], films["film_0"][:-1]])
+    assert wrong(film_0=late) == ["film_0.apart_px"]
+    assert wrong(film_2=0 * films["film_2"]) == ["film_2.apart_px"]
