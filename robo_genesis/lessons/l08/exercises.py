@@ -36,7 +36,7 @@ def grasp(grasp_pose: Written) -> Findings:
     for name, (place, height) in OBJECTS.items():
         right = np.array(lifting.waypoints(place, height)[:2])
         found = grasp_pose(np.array(place), height)
-        yield from same_array(f"{name}.pregrasp_and_grasp_m", found, right, 1e-9)
+        yield from same_array(f"{name}.pregrasp_and_grasp_m", found, right, 1e-6)
 
 
 AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
@@ -46,6 +46,7 @@ AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
 STATES: Examples = {
     "at_its_goal": (True, True, {}),
     "nan": (False, True, {("q", 2): nan}),
+    "nan_of_a_finger": (True, False, {("qd", 8): nan}),
     "near": (True, True, {("q", k): 0.9 * AT * (-1) ** k for k in range(ARM)}),
     "slow": (True, True, {("qd", k): 0.9 * SLOW * (-1) ** k for k in range(ARM)}),
     "last_joint_below": (False, True, {("q", 6): -1.1 * AT}),
@@ -87,6 +88,7 @@ EPISODES: Examples = {
     "success": (7,),
     "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
     "done_at_first": ("phase", 0, 8, 0),
+    "done_before_it_begins": ("phase", [0, 1], [8, 0], 0),
     "no_lift": ("phase", [3, 4], 2, 1),
     "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1),
     "rises_late": ("pos", (5, 2), 0.08, 2),
@@ -100,6 +102,8 @@ EPISODES: Examples = {
     "nan": ("lowest", (), nan, 5),
     "diagonal": ("pos", (END, slice(0, 2)), [0.5, 0.27], 5),
     "on_rim": ("lowest", (), 0.041, 5),
+    "at_the_depth": ("rim", 2, 0.02, "lowest", (), 0.01, 5),
+    "at_the_distance": ("rim", [0, 1], 0, "pos", (END, slice(0, 2)), [0.06, 0], 5),
     "high_rim": ("rim", 2, 0.2, "lowest", (), 0.18, 7),
     "moved_before": ("pos", 10, 0.55, 7),
     "moves_at_first": ("pos", (11, 0), 0.5503, 6),

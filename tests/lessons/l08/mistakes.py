@@ -15,11 +15,18 @@ MISTAKES = {
         "x, y, z = place": ["place[2] = 1; x, y, z = place"],
     },
     "ended": {
-        "near & slow": ["near | slow", "near", "slow", "near & slow & (since >= 5)"],
+        "near & slow": [
+            "near | slow",
+            "near",
+            "slow",
+            "near & slow & (since >= 5)",
+            "near & slow & np.isfinite(qd).all(axis=-1)",
+        ],
         "still & (since >= 5)": [
             "still",
             "still & (since > 5)",
             "still & near & (since >= 5)",
+            "(still | np.isnan(qd[..., 7:]).any(axis=-1)) & (since >= 5)",
         ],
         "np.abs(q[..., :7] - goal)": [
             "q[..., :7] - goal",
@@ -46,7 +53,7 @@ MISTAKES = {
         ],
         "all(axis=1)": ["any(axis=1)"],
         "(force >": ["(force >="],
-        "0] != of.DONE": ["0] < 9"],
+        "phase[0] != of.DONE": ["phase[0] < 9", "(phase == 0).any()"],
         "both[phase == of.LIFT].any()": [
             "both.any()",
             "(force > 0.1)[phase == 3].any(0).all()",
@@ -61,7 +68,8 @@ MISTAKES = {
         "near and": ["", "near or"],
         "lowest < rim[2] - of.BELOW": ["True", "lowest < rim[2]", "lowest < 0.04"],
         "rim[:2])": ["(0.55, 0.22))", "rim[:2], np.inf)"],
-        "lowest <": ["not lowest >="],
+        "lowest <": ["not lowest >=", "lowest <="],
+        "< of.CENTRED": ["<= of.CENTRED"],
         "pos[-5:] - pos[-1]": [
             "pos[-4:] - pos[-1]",
             "pos[-6:] - pos[-1]",
