@@ -78,6 +78,12 @@ CASES = {n: case for of in SCENES.values() for n, case in of.items()}
 # Scenes whose steps are timed: they have the same boxes.
 TIMED = [name for name, cases in SCENES.items() if len(cases) == len(ROW)]
 
+# Runs of the box of 1.5 kg by scene, with gravity turned by 0 or 45° in the plane of the
+# pads.
+TURNED = {
+    f"{of}_{turn}": (of, turn) for of in ("plain", "elliptic") for turn in (0, 45)
+}
+
 # The same runs in MuJoCo, in float64.
 TWINS = {f"mujoco_{name}": case for name, case in CASES.items()}
 
@@ -148,4 +154,4 @@ def held_metrics(trace: BodyTrace, case: HeldCase) -> HeldMetrics:
 
 def parameters() -> dict[str, Any]:
     """Return every configured input as JSON values, for the evidence key."""
-    return inputs(CASES, twins=list(TWINS))
+    return inputs(CASES, twins=list(TWINS), turned=list(TURNED))

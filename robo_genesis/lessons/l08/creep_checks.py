@@ -165,6 +165,18 @@ def engines_agree(run: Experiment) -> Findings:
     yield above("mujoco_pyramid_100_mu_2.share", share, 4)
 
 
+def pyramid_has_corners(run: Experiment) -> Findings:
+    """In 0.2 s the box of 1.5 kg slides less than 2 mm along gravity. With gravity turned
+    by 45° in the plane of the pads it moves by more than 10 mm with the pyramid, and by
+    less than 0.1 mm with the elliptic cone.
+    """
+    path = run.readings["turned"]
+    yield below("plain_0_m", path["plain_0"], 2e-3)
+    yield above("plain_45_m", path["plain_45"], 0.01)
+    for turn in ("0", "45"):
+        yield below(f"elliptic_{turn}_m", path[f"elliptic_{turn}"], 1e-4)
+
+
 def creeps_on(run: Experiment) -> Findings:
     """In 10 s the box slides 10 s times the creep of the formula, within 0.5 %, and
     less than the bound of its formula with d = 0.9.
@@ -185,6 +197,7 @@ CHECKS = (
     noslip_ends_at_half,
     round_cone_holds,
     engines_agree,
+    pyramid_has_corners,
     creeps_on,
 )
 
@@ -199,6 +212,7 @@ CREEP = MeasuringPage(
         "friction": Readings(dict.fromkeys(creep.CASES, "1")),
         "time_constant": Readings(dict.fromkeys(creep.CASES, "s")),
         "contacts": Readings(dict.fromkeys(creep.CASES, "1"), "exact"),
+        "turned": Readings(dict.fromkeys(creep.TURNED, "m")),
         "step": Readings(dict.fromkeys(TIMES, "s"), "performance"),
     },
     measure=creep.held_metrics,

@@ -146,6 +146,17 @@ def record_world(
             readings.setdefault(group, {})[name] = value
 
 
+def turned_path(world: World, name: str, degrees: float) -> float:
+    """Return the path of a box in a run with gravity turned in the plane of the pads [m]."""
+    g, angle = world.cases[name].gravity, np.radians(degrees)
+    world.scene.sim.set_gravity((0.0, g * np.sin(angle), -g * np.cos(angle)))
+    traces: dict[str, BodyTrace] = {}
+    record_world(world, traces, {})
+    world.scene.sim.set_gravity((0.0, 0.0, -g))
+    place = traces[name].link_pos[:, 0].astype(np.float64)
+    return float(np.linalg.norm(place[-1] - place[0]))
+
+
 def read(hand: Any, box: Any) -> tuple[FloatArray, ...]:
     """Return position, orientation, velocity and angular velocity of `LINKS`, now."""
     both = zip(read_body(box), read_body(hand), strict=True)

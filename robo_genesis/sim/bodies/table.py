@@ -44,7 +44,7 @@ class SceneCase(Controlled):
     the middle of its lower face on its support, which is a shelf if it is not at z = 0.
     It starts `gap` [m] above the support; gravity does not act on it if it is
     `weightless`. `density` [kg/m³]; `friction` is that of the object, and with `pads`
-    that of the robot is set as well. `cone` is "pyramid" or "elliptic"; gravity does
+    that of the robot is set as well. `cone` is "pyramidal" or "elliptic"; gravity does
     not act on the robot if it is `compensated`. `bowl` is a choice of collision
     geometry, `bowl_at` (x, y) its place; a ball of `ball_radius` [m] falls into it, none if that
     is 0. `fov` is that of the camera in the world [degree].
@@ -58,7 +58,7 @@ class SceneCase(Controlled):
     density: float = 400.0
     friction: float = 0.8
     pads: float | None = None
-    cone: str = "pyramid"
+    cone: str = "pyramidal"
     compensated: bool = False
     bowl: str = "default"
     bowl_at: tuple[float, float] = (0.55, 0.22)

@@ -49,6 +49,7 @@ def run():
         )
     readings = {of: {n: getattr(cases[n], of) for n in creep.CASES} for of in GROUPS}
     readings["contacts"] = dict.fromkeys(creep.CASES, CONTACTS)
+    readings["turned"] = dict.fromkeys(creep.TURNED, 5e-6) | {"plain_45": 0.3}
     return Experiment(CREEP, traces, LINKS, readings, {}, False)
 
 
@@ -99,6 +100,7 @@ SPOILERS = [
     ("noslip_ends_at_half", metric("mujoco_noslip_5_mu_2", creep=-5e-5)),
     ("round_cone_holds", copied("elliptic_m_15", "elliptic_10_m_15")),
     ("engines_agree", metric("mujoco_T_5ms_base", creep=6.7e-4)),
+    ("pyramid_has_corners", reading("turned", "plain_45", 1e-3)),
     ("creeps_on", metric("long", path=0.0125)),
 ]
 
