@@ -46,7 +46,10 @@ class Finding:
     @property
     def problem(self) -> str:
         """The message about a value that is not allowed."""
-        return f"{self.label} is {quoted(plain(self.found))}, expected {self.expected}"
+        found = quoted(plain(self.found))
+        if found == self.expected:  # "1" and 1
+            found += f" ({type(self.found).__name__})"
+        return f"{self.label} is {found}, expected {self.expected}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
+from reprlib import Repr
 from traceback import extract_tb
 from typing import Any, Concatenate, ParamSpec
 
@@ -89,18 +90,42 @@ class Watched:
         return f"{self.call or self.name}: {type(error).__name__}: {error}{line}"
 
 
-def brief(value: Any) -> str:
-    """Return an argument or a result in a few words; sequences begin with three items."""
-    if isinstance(value, float | np.floating):
-        return f"{value:.6g}"
-    if value is None or isinstance(value, bool | int | str | np.generic):
-        return str(value)[:40]
-    if isinstance(value, list | tuple) or (
-        isinstance(value, np.ndarray) and value.ndim
-    ):
-        return f"[{', '.join(map(brief, value[:3]))}{', …' * (len(value) > 3)}]"
-    return type(value).__name__
+class Brief(Repr):
+    """Writes arguments and results on one line.
 
+    Numbers have six digits; the middle of long sequences is left out.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlist = self.maxtuple = 20
+        self.maxstring = self.maxother = 60
+
+    def repr1(self, x: Any, level: int) -> str:
+        """Return a value in words; a number of NumPy as one of Python."""
+        return super().repr1(x.item() if isinstance(x, np.generic) else x, level)
+
+    def repr_float(self, x: float, level: int) -> str:
+        """Return a number."""
+        return f"{x:.6g}"
+
+    def repr_dict(self, x: dict[Any, Any], level: int) -> str:
+        """Return a mapping in its own order."""
+        items = (f"{key!r}: {self.repr1(value, level - 1)}" for key, value in x.items())
+        return f"{{{', '.join(items)}}}"
+
+    def repr_ndarray(self, x: np.ndarray, level: int) -> str:
+        """Return an array."""
+        text = np.array2string(
+            x,
+            separator=", ",
+            threshold=60,
+            formatter={"float_kind": "{:.6g}".format},
+        )
+        return " ".join(text.split())
+
+
+brief = Brief().repr
 
 Given = ParamSpec("Given")
 Written = Callable[..., Any]  # A function that a student wrote

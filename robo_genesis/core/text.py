@@ -123,13 +123,11 @@ def six_digits(value: float | None, unit: str) -> str:
 
 def quoted(value: object) -> str:
     """Return any value as text for a message: a float with six digits, long text shortened."""
-    if value is None:
-        return NOT_OBSERVED
     if isinstance(value, float):
         return f"{value:g}"
     if isinstance(value, list | tuple):
         value = ", ".join(str(item) for item in value)
-    text = str(value) or "none"
+    text = str(value) or "nothing"
     if re.fullmatch("[0-9a-f]{64}", text):
         return f"{text[:12]}…"
     return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"

@@ -33,7 +33,7 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
         (lambda values: values[:1], "twice.shape is 1, expected 3"),
         (
             lambda values: "no numbers",
-            "([0, 1, 2]) returned no numbers: ValueError: could not",
+            "([0, 1, 2]) returned 'no numbers': ValueError: could not",
         ),
         (
             raises,
@@ -52,3 +52,16 @@ def test_the_first_wrong_row_is_named_with_what_it_should_be():
     check = doubled(lambda values: 2 * values + 0.5 * np.isin(values, (7, 11)), given)
     says = "twice[2], the first that differs, is [12, 14.5, 16], expected [12, 14, 16]"
     assert says in check.detail
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ({"b": {"x": (4, 2.5)}, "a": {}}, "{'b': {'x': (4, 2.5)}, 'a': {}}"),
+        (np.arange(16), "[ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]"),
+        (np.arange(1000.0), "[0, 1, 2, ..., 997, 998, 999]"),
+        ([np.float32(0.5), None], "[0.5, None]"),
+    ],
+)
+def test_a_message_shows_the_whole_of_a_short_input(value, words):
+    assert exercises.brief(value) == words

@@ -129,7 +129,7 @@ class EpisodesMetrics(CaseMetrics):
         "object_pos_m",
         noun="speed at which the object slides in the fingers",
     )
-    growth: float | None = metric(
+    growth: float = metric(
         "1/s", "growth of the distance beyond a pad's end", *CARRIED, "q_rad_or_m"
     )
 
@@ -149,10 +149,9 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
         np.median(case.beliefs[:, 0] - at_closing(trace)[:, 0]),
         *grip(trace, level > RUNGS.index("carried")),
+        np.median(growth(trace)),
     ]
-    growths = growth(trace)
-    typical = float(np.median(growths)) if len(growths) else None
-    return EpisodesMetrics(*map(float, values), typical)
+    return EpisodesMetrics(*map(float, values))
 
 
 def hand_above(trace: Episodes) -> FloatArray:
@@ -192,19 +191,17 @@ def growth(trace: Episodes) -> FloatArray:
     """Return the rates at which objects leave the pads (k,) [1/s]: an object that is pressed
     by both fingers beyond the end of a pad, at distances between both of `LEAVING`.
 
-    The rate is the slope of the logarithm of the distance; episodes with fewer than five
-    such samples have none.
+    The rate is the slope of the logarithm of the distance. Episodes with fewer than five
+    such samples have none; if no episode has one, the only rate is 0.
     """
     beyond = np.abs(offset(trace)) - HALF_PAD
     leaves = pressed(trace) & (trace.phase >= CLOSE) & (trace.phase <= MOVE)
     leaves &= (beyond > LEAVING[0]) & (beyond < LEAVING[1])
-    rows = np.flatnonzero(leaves.sum(axis=0) >= 5)
-    return np.array(
-        [
-            np.polyfit(trace.t[leaves[:, k]], np.log(beyond[leaves[:, k], k]), 1)[0]
-            for k in rows
-        ]
-    )
+    rates = [
+        np.polyfit(trace.t[leaves[:, k]], np.log(beyond[leaves[:, k], k]), 1)[0]
+        for k in np.flatnonzero(leaves.sum(axis=0) >= 5)
+    ]
+    return np.array(rates or [0.0])
 
 
 def leaving_rate(m: EpisodesMetrics, case: PickCase) -> float:

@@ -133,7 +133,7 @@ ROWS = {name: ("askew", row) for name, row in SHOWN.items()} | {"one": ("exact",
 
 # The camera; it shows one environment.
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
-FILM = VIEW | {"res": film.RES}
+FILM: dict[str, Any] = VIEW | {"res": film.RES}
 
 # Words of a reader for runs.
 LABELS = (
