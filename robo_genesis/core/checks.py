@@ -108,11 +108,7 @@ def nearly(
 
 
 def _limited(
-    order: Callable[[Any, Any], Any],
-    words: str,
-    label: str,
-    found: Any,
-    limit: float,
+    order: Callable[[Any, Any], Any], words: str, label: str, found: Any, limit: float
 ) -> Finding:
     """Require a value that has this order to the limit."""
     passed = found is not None and order(found, limit)

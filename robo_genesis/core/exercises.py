@@ -7,14 +7,7 @@ from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 
-from .checks import (
-    Check,
-    CheckFailed,
-    Finding,
-    Findings,
-    at_most,
-    equal,
-)
+from .checks import Check, CheckFailed, Finding, Findings, at_most, equal
 from .experiment import Experiment, MeasuringPage, counts
 from .scene import FloatArray
 

@@ -39,9 +39,7 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def as_table(
-    rows: Callable[[Experiment], Rows],
-) -> Callable[[Experiment], str]:
+def as_table(rows: Callable[[Experiment], Rows]) -> Callable[[Experiment], str]:
     """Make a function that returns a Markdown table of one that yields its rows."""
 
     @wraps(rows)

@@ -136,11 +136,7 @@ def built_for(facts: Mapping[str, Any]) -> str:
 
 # The steps for each accelerator; a broken one ends its own chain.
 CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
-    "amdgpu": (
-        (devices,),
-        (linker,),
-        (torch, device, hip_runtime, kernel),
-    ),
+    "amdgpu": ((devices,), (linker,), (torch, device, hip_runtime, kernel)),
     "cuda": ((torch, device, kernel),),
 }
 

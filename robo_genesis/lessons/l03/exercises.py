@@ -12,12 +12,7 @@ from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 
-from .metrics import (
-    LandingMetrics,
-    SlideMetrics,
-    clearance,
-    of_body,
-)
+from .metrics import LandingMetrics, SlideMetrics, clearance, of_body
 
 MEASURES = False
 
@@ -111,8 +106,7 @@ class _Touching:
 
 @as_test
 def landing(
-    measure: Written,
-    runs: Iterable[tuple[ContactTrace, ContactCase, LandingMetrics]],
+    measure: Written, runs: Iterable[tuple[ContactTrace, ContactCase, LandingMetrics]]
 ) -> Findings:
     """Check `measure(clear)`: penetration and rebound [m] of a landing, from its clearance (n,)."""
     names = ("penetration", "rebound")

@@ -8,12 +8,7 @@ from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 from . import study_spec, theory
-from .metrics import (
-    LandingMetrics,
-    SlideMetrics,
-    aligned,
-    of_body,
-)
+from .metrics import LandingMetrics, SlideMetrics, aligned, of_body
 
 # Group of a bundle's metrics: the engine's time constant of a contact by scene [s].
 GROUP = "time_constant"

@@ -6,14 +6,7 @@ from typing import Any
 from robo_genesis.core.experiment import case_inputs
 from robo_genesis.sim.bodies.contacts import ContactCase
 
-from .spec import (
-    BASELINE,
-    BESIDE,
-    BOUNCES,
-    LANDINGS,
-    PUSHED,
-    SLIDES,
-)
+from .spec import BASELINE, BESIDE, BOUNCES, LANDINGS, PUSHED, SLIDES
 
 MEASURES = False
 

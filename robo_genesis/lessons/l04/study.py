@@ -19,12 +19,7 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 from . import spec, study_spec
 from .metrics import StepMetrics, is_saturated, step_metrics
 from .spec import ENTRY
-from .theory import (
-    IdealJoint,
-    overshoot_share,
-    step_share,
-    stepped_joint,
-)
+from .theory import IdealJoint, overshoot_share, step_share, stepped_joint
 
 # Genesis, and MuJoCo by its integrator.
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)

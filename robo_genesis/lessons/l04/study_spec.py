@@ -8,15 +8,7 @@ from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
 
 from .metrics import SETTLING_BAND
-from .spec import (
-    ENTRY,
-    G1,
-    G2,
-    G3,
-    START_OF_STEP,
-    STEP,
-    changed,
-)
+from .spec import ENTRY, G1, G2, G3, START_OF_STEP, STEP, changed
 
 MEASURES = False
 

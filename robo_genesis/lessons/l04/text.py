@@ -8,11 +8,7 @@ from robo_genesis.core.tables import comparison_sentence, prediction_sentence
 from robo_genesis.core.text import blocks, format_value
 
 from . import spec
-from .metrics import (
-    SATURATION_THRESHOLD,
-    SETTLING_BAND,
-    StepMetrics,
-)
+from .metrics import SATURATION_THRESHOLD, SETTLING_BAND, StepMetrics
 from .study_spec import COMPARED
 
 MEASURES = False

@@ -5,14 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE
-from robo_genesis.core.checks import (
-    Findings,
-    above,
-    at_most,
-    below,
-    equal,
-    within,
-)
+from robo_genesis.core.checks import Findings, above, at_most, below, equal, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.arm.kinematics import ARM, Pose, distance_and_angle, hand_pose
 from robo_genesis.sim.arm.laws import driven_run

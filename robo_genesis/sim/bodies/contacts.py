@@ -12,13 +12,7 @@ from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.session import CaseError
 
 from .free_fall import GRAVITY
-from .rigid_bodies import (
-    new_scene,
-    read_body,
-    record_states,
-    stacked,
-    times,
-)
+from .rigid_bodies import new_scene, read_body, record_states, stacked, times
 from .soft_contact import Load
 
 # Length, width and thickness of the fixed box under the bodies [m].

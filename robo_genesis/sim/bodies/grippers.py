@@ -13,13 +13,7 @@ from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
 
 from . import contacts
-from .rigid_bodies import (
-    new_scene,
-    read_body,
-    record_states,
-    stacked,
-    times,
-)
+from .rigid_bodies import new_scene, read_body, record_states, stacked, times
 from .soft_contact import Load
 
 # The links of a run: the box and both pads.
