@@ -68,10 +68,14 @@ class Check:
         return {"name": self.name, "passed": self.passed, "found": dict(self.found)}
 
 
+def of_python(value: Any) -> Any:
+    """Return numbers of NumPy as those of Python, which are judged in float64."""
+    return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
+
+
 def plain(value: Any) -> Value:
     """Return a value as JSON can hold it: sequences and numbers that are not finite as text."""
-    if isinstance(value, np.generic | np.ndarray):
-        value = value.tolist()
+    value = of_python(value)
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, list | tuple):
@@ -96,6 +100,7 @@ def equal(label: str, found: Any, expected: Any, recorded: bool = True) -> Findi
 
 def within(label: str, found: Any, expected: float, tolerance: float) -> Finding:
     """Require a value that differs from the expected one by no more than the tolerance."""
+    found = of_python(found)
     passed = found is not None and abs(found - expected) <= tolerance
     return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
 
@@ -111,6 +116,7 @@ def _limited(
     order: Callable[[Any, Any], Any], words: str, label: str, found: Any, limit: float
 ) -> Finding:
     """Require a value that has this order to the limit."""
+    found = of_python(found)
     passed = found is not None and order(found, limit)
     return Finding(label, found, bool(passed), f"{words} {limit:g}")
 

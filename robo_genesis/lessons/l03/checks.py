@@ -37,8 +37,8 @@ def lands(run: Experiment) -> Findings:
     for name, found in measured(run, LandingMetrics).items():
         trace = run.traces[name]
         yield above(f"{name}.touchdown_s", found.touchdown, 0)
-        yield above(f"{name}.most_contacts", int(trace.contacts.max()), 0)
-        yield above(f"{name}.lowest_m", float(trace.link_pos[:, 0, 2].min()), TOP)
+        yield above(f"{name}.most_contacts", trace.contacts.max(), 0)
+        yield above(f"{name}.lowest_m", trace.link_pos[:, 0, 2].min(), TOP)
 
 
 def reported_late(run: Experiment) -> Findings:

@@ -62,7 +62,7 @@ def row_equals_alone(run: Experiment) -> Findings:
     """
     for k in spec.ENVS:
         row, alone = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
-        differ = float(np.abs(row.target - alone.target).max())
+        differ = np.abs(row.target - alone.target).max()
         yield at_most(f"env_{k}.command", differ, spec.SAME_RUN["q"])
         for name, found in study.largest_differences(row, alone).items():
             yield at_most(f"env_{k}.{name}", found, spec.SAME_RUN[name])
@@ -191,7 +191,7 @@ def own_gains_and_mass(run: Experiment) -> Findings:
         gravity = mujoco_kinematics.gravity_effort(q, world.load)
         torques = {"gravity": gravity, "kp": world.kp * (trace.target[-1] - q)}
         for law, torque in torques.items():
-            apart = float(np.abs(trace.control_force[-1] - torque)[:ARM].max())
+            apart = np.abs(trace.control_force[-1] - torque)[:ARM].max()
             yield at_most(f"{name}.torque_not_explained_by_{law}_N_m", apart, spec.HELD)
 
 

@@ -103,7 +103,7 @@ def laws_of_motion(run: Experiment) -> Findings:
 def falling_balls(trace: BodyTrace, case: BowlCase) -> Findings:
     """Yield what no run of `bowls.run_case` has."""
     fallen = summed_drop(case.h, case.substeps * np.arange(case.steps + 1))
-    free = slice(int((case.drop > fallen).sum()) or 1)  # states without any contact
+    free = slice((case.drop > fallen).sum() or 1)  # states without any contact
     down = np.array([0.0, 0.0, 1.0])
     place = case.starts - fallen[free, None, None] * down
     motion = -GRAVITY * trace.t[free, None, None] * down

@@ -60,7 +60,7 @@ def friction_lets_creep(run: Experiment) -> Findings:
 
 def share_of(run: Experiment, name: str, other: str = "tilt_10_box") -> float:
     """Return the creep of one run as a share of that of another."""
-    return float(run.metrics[name].creep / run.metrics[other].creep)
+    return run.metrics[name].creep / run.metrics[other].creep
 
 
 def what_counts(run: Experiment) -> Findings:
