@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
+
 # What another run must do with a value: agree within a tolerance, repeat it, or
 # nothing.
 Kind = Literal["value", "exact", "performance"]
@@ -57,9 +59,17 @@ def metric(unit: str, label: str, *sources: str, noun: str = "") -> Any:
 
 
 class CaseMetrics:
-    """Base of the metrics of one case: a frozen dataclass whose fields are all `metric`."""
+    """Base of the metrics of one case: a frozen dataclass whose fields are all `metric`.
+
+    Numbers of NumPy become numbers of Python.
+    """
 
     __slots__ = ()
+
+    def __post_init__(self) -> None:
+        for name, value, _ in self.items():
+            if isinstance(value, np.generic):
+                object.__setattr__(self, name, value.item())
 
     @classmethod
     def about(cls, what: str) -> dict[str, Any]:

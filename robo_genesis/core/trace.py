@@ -223,7 +223,7 @@ class Demonstrations(Episodes):
 
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:
     """Return the first t (n,) [s] at which `reached` (n,) is true, None if it never is."""
-    return float(t[int(reached.argmax())]) if reached.any() else None
+    return t[reached.argmax()] if reached.any() else None
 
 
 def settled_from(t: np.ndarray, inside: np.ndarray) -> float | None:
@@ -231,4 +231,4 @@ def settled_from(t: np.ndarray, inside: np.ndarray) -> float | None:
     if not inside[-1]:
         return None
     outside = np.flatnonzero(~inside)
-    return float(t[outside[-1] + 1]) if outside.size else float(t[0])
+    return t[outside[-1] + 1] if outside.size else t[0]

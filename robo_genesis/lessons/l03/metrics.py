@@ -159,12 +159,12 @@ def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
     upward = np.where(after, trace.link_vel[:, 0, 2], 0.0)
     return LandingMetrics(
         touchdown=first_time(trace.t, clear <= 0),
-        penetration=float(max(0.0, -clear.min())),
-        rebound=float(np.where(after, clear, 0.0).max(initial=0.0)),
-        separated=float(separated.sum() * trace.dt),
-        upward_speed=float(upward.max(initial=0.0)),
+        penetration=max(0.0, -clear.min()),
+        rebound=np.where(after, clear, 0.0).max(initial=0.0),
+        separated=separated.sum() * trace.dt,
+        upward_speed=upward.max(initial=0.0),
         resting_time=settled_from(trace.t, np.abs(offset) <= RESTING_BAND),
-        resting_offset=float(offset[-1]),
+        resting_offset=offset[-1],
     )
 
 
@@ -189,13 +189,13 @@ def slide_metrics(trace: ContactTrace, case: ContactCase) -> SlideMetrics:
     airborne = (clear > CLEAR) & (trace.contacts[:, 0] == 0)
     spin = np.linalg.norm(of_body(trace.link_ang), axis=1)
     return SlideMetrics(
-        stop_time=None if stop is None else float(trace.t[stop]),
-        stop_distance=None if stop is None else float(x[stop] - x[0]),
-        final_distance=float(x[-1] - x[0]),
-        first_speed=float(speed[1]),
-        hop=float(max(0.0, clear.max())),
-        airborne=float(airborne.sum() * trace.dt),
-        spin=float(spin.max()),
+        stop_time=None if stop is None else trace.t[stop],
+        stop_distance=None if stop is None else x[stop] - x[0],
+        final_distance=x[-1] - x[0],
+        first_speed=speed[1],
+        hop=max(0.0, clear.max()),
+        airborne=airborne.sum() * trace.dt,
+        spin=spin.max(),
     )
 
 
@@ -215,7 +215,7 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
         return max((float(np.ptp(energy[flight])) for flight in in_air), default=None)
 
     return BounceMetrics(
-        start_energy=float(total[0]),
+        start_energy=total[0],
         first_kept=share(1),
         later_kept=share(BOUNCES_COUNTED),
         flight_drift=largest_change(kept),

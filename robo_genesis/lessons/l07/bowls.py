@@ -133,7 +133,7 @@ def bowl_metrics(trace: BodyTrace, case: BowlCase) -> BowlMetrics:
     """Measure the end of a run."""
     x, y, z = trace.link_pos[-1].astype(np.float64).T
     z = z[(np.hypot(x, y) < bowl.RIM) & (z < HEIGHT)]
-    lowest = float(z.min()) - case.radius if len(z) else None
+    lowest = z.min() - case.radius if len(z) else None
     return BowlMetrics(100 * len(z) / len(BALLS), lowest, float((z < WALL).sum()))
 
 

@@ -175,12 +175,12 @@ def rest_metrics(trace: ContactTrace, case: ContactCase) -> RestMetrics:
     slow, fast = np.flatnonzero(speeds[1:] < SLOW) + 1, np.flatnonzero(speeds >= SLOW)
     return RestMetrics(
         float(path) / WINDOW,
-        case.rest_height - float(place[-1, 2]),
-        float(moved(trace)[-1]),
-        float(speeds[-n:].max()),
-        100 * float((slow > len(speeds) - 1 - n).sum()) / n,
-        float(trace.t[slow[0]]) if len(slow) else None,
-        float(trace.t[fast[-1]]) if len(fast) else None,
+        case.rest_height - place[-1, 2],
+        moved(trace)[-1],
+        speeds[-n:].max(),
+        100 * (slow > len(speeds) - 1 - n).sum() / n,
+        trace.t[slow[0]] if len(slow) else None,
+        trace.t[fast[-1]] if len(fast) else None,
     )
 
 
