@@ -71,7 +71,7 @@ def distance_between(first: ContactTrace, second: ContactTrace) -> FloatArray:
         scene.
     """
     difference = np.subtract(*aligned(first, second, "link_pos"), dtype=np.float64)
-    return np.asarray(np.linalg.norm(difference - difference[0], axis=1))
+    return np.linalg.norm(difference - difference[0], axis=1)
 
 
 def stops_of_lane(run: Experiment, lane: str) -> dict[str, float | None]:

@@ -25,7 +25,7 @@ def is_saturated(
     control_force: FloatArray | float, limit: FloatArray | float
 ) -> np.ndarray:
     """Return where a control force of either sign reaches the saturation threshold of its limit."""
-    return np.asarray(np.abs(control_force) >= SATURATION_THRESHOLD * limit)
+    return np.abs(control_force) >= SATURATION_THRESHOLD * limit
 
 
 # Arrays of a bundle that several metrics are computed from.

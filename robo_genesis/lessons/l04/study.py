@@ -123,7 +123,7 @@ def damping_ratio(case: str) -> FloatArray:
     """Return h (KV + d) / I of each joint (d,) at the start, by the model in MuJoCo."""
     settings = study_spec.COMPARED[case]
     inertia, _, damping = mujoco_kinematics.at_rest(settings.q_start)
-    return np.asarray(H * (settings.kv + damping) / inertia)
+    return H * (settings.kv + damping) / inertia
 
 
 def ideal(run: Experiment, case: str) -> IdealJoint:
@@ -190,7 +190,7 @@ def distance_from_ideal(run: Experiment, case: str) -> FloatArray:
     trace = run.traces[case]
     q = trace.q[:, ENTRY].astype(float)
     step = float(study_spec.COMPARED[case].q_target[ENTRY]) - q[0]
-    return np.asarray(np.abs(q - q[0] - step * ideal(run, case).response(trace.t)))
+    return np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
 
 
 def at_limit_until(trace: Trace) -> float:

@@ -49,7 +49,7 @@ class IdealJoint:
         root = np.sqrt(complex(zeta**2 - 1))  # imaginary for an underdamped joint
         slow, fast = omega * (zeta - root), omega * (zeta + root)  # both decay
         decay = (fast * np.exp(-slow * t) - slow * np.exp(-fast * t)) / (fast - slow)
-        return np.asarray(1 - decay.real)
+        return 1 - decay.real
 
 
 def stepped_joint(
@@ -98,7 +98,7 @@ def step_share(step: Trace, hold: Trace, entry: int) -> FloatArray:
     difference = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(
         np.float64
     )
-    return np.asarray(difference / height)
+    return difference / height
 
 
 def overshoot_share(share: FloatArray) -> float:

@@ -61,9 +61,7 @@ def effective_inertia(
 
 def mass_diagonal(robot: Any, dofs: list[int]) -> FloatArray:
     """Return the diagonal (d,) of `get_mass_mat` as the latest step used it [kg·m² or kg]."""
-    return np.asarray(
-        to_numpy(robot.get_mass_mat()).astype(np.float64).diagonal()[dofs]
-    )
+    return to_numpy(robot.get_mass_mat()).astype(np.float64).diagonal()[dofs]
 
 
 def passive_damping(robot: Any, dofs: list[int]) -> FloatArray:

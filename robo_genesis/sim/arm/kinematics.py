@@ -70,7 +70,7 @@ def rotate(quat: FloatArray, vector: FloatArray) -> FloatArray:
     quat, vector = np.asarray(quat, dtype=float), np.asarray(vector, dtype=float)
     w, axis = quat[..., :1], quat[..., 1:]
     twice = 2.0 * np.cross(axis, vector)
-    return np.asarray(vector + w * twice + np.cross(axis, twice))
+    return vector + w * twice + np.cross(axis, twice)
 
 
 def about_z(angle: FloatArray) -> FloatArray:
@@ -91,7 +91,7 @@ def rotation_vector(quat: FloatArray) -> FloatArray:
     factor = np.divide(
         angle, length, out=np.full_like(length, 2.0), where=length > 1e-12
     )
-    return np.asarray(quat[..., 1:] * factor)
+    return quat[..., 1:] * factor
 
 
 def link_poses(q: FloatArray) -> Pose:
@@ -138,12 +138,12 @@ def jacobian(q: FloatArray) -> FloatArray:
     axes = rotate(poses.quat[..., :ARM, :], np.array([0.0, 0.0, 1.0]))  # (…, 7, 3)
     arms = poses.position[..., -1:, :] - poses.position[..., :ARM, :]
     columns = np.concatenate([np.cross(axes, arms), axes], axis=-1)  # (…, 7, 6)
-    return np.asarray(np.swapaxes(columns, -1, -2))
+    return np.swapaxes(columns, -1, -2)
 
 
 def manipulability(of: FloatArray) -> FloatArray:
     """Return √det(J Jᵀ) (…), the product of the singular values of a Jacobian (…, 6, n)."""
-    return np.asarray(np.prod(np.linalg.svd(of, compute_uv=False), axis=-1))
+    return np.prod(np.linalg.svd(of, compute_uv=False), axis=-1)
 
 
 def pose_error(target: Pose, pose: Pose) -> FloatArray:
@@ -193,9 +193,7 @@ def accepted(
     """
     finite = np.isfinite(q).all(axis=-1) & np.isfinite(error).all(axis=-1)
     apart, angle = distances(error)
-    return np.asarray(
-        finite & (apart <= position_tolerance) & (angle <= rotation_tolerance)
-    )
+    return finite & (apart <= position_tolerance) & (angle <= rotation_tolerance)
 
 
 def fingertip(pose: Pose) -> FloatArray:
@@ -219,7 +217,7 @@ def damped_step(of: FloatArray, error: FloatArray, damping: float) -> FloatArray
     """
     across = np.swapaxes(of, -1, -2)
     normal = of @ across + damping**2 * np.eye(of.shape[-2])
-    return np.asarray((across @ np.linalg.solve(normal, error[..., None]))[..., 0])
+    return (across @ np.linalg.solve(normal, error[..., None]))[..., 0]
 
 
 def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
@@ -230,7 +228,7 @@ def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatAr
         lower: (n,) limits [rad].
         upper: (n,) limits [rad].
     """
-    return np.asarray(np.minimum(q - lower, upper - q).min(axis=-1))
+    return np.minimum(q - lower, upper - q).min(axis=-1)
 
 
 def solve(

@@ -137,7 +137,7 @@ def jacobian(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:
     mujoco.mj_comPos(model, data)
     rows = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body(of.hand).id)
-    return np.asarray(rows[:, dof_at])
+    return rows[:, dof_at]
 
 
 def at_rest(
