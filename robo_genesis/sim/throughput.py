@@ -106,7 +106,7 @@ class Model(NamedTuple):
 
     def step_time(self, size: Any) -> Any:
         """Return the time of one step of so many environments [s]."""
-        return self.fixed + self.each * np.asarray(size)
+        return self.fixed + self.each * size
 
 
 def fit(sizes: Any, times: Any) -> Model:
@@ -116,6 +116,5 @@ def fit(sizes: Any, times: Any) -> Model:
         sizes: numbers of environments (n,), at least two different ones.
         times: of one step (n,) [s].
     """
-    sizes, times = np.asarray(sizes, float), np.asarray(times, float)
-    each, fixed = np.polyfit(sizes, times, 1, w=1 / times)
+    each, fixed = np.polyfit(sizes, times, 1, w=1 / np.asarray(times))
     return Model(float(fixed), float(each))

@@ -91,7 +91,7 @@ def by_step(run: Experiment) -> list[str]:
 def expected_gap(run: Experiment, name: str) -> float:
     """Return g h t / 2: how much farther than g t² / 2 the body of a run falls [m]."""
     case = run.cases[name]
-    return float(ahead_of_continuous(case.h, run.metrics[name].duration, case.gravity))
+    return ahead_of_continuous(case.h, run.metrics[name].duration, case.gravity)
 
 
 def one_factor(run: Experiment) -> Findings:

@@ -5,7 +5,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE
-from robo_genesis.core.checks import Findings, above, at_most, below, equal, within
+from robo_genesis.core.checks import (
+    Findings,
+    above,
+    at_most,
+    below,
+    equal,
+    nearly,
+    within,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.arm.kinematics import ARM, Pose, distance_and_angle, hand_pose
 from robo_genesis.sim.arm.laws import driven_run
@@ -186,7 +194,7 @@ def own_gains_and_mass(run: Experiment) -> Findings:
     for name, world in spec.VARIANTS.items():
         trace, mass = run.traces[name], spec.HAND_MASS + world.load
         found = run.readings["hand_mass"][name]
-        yield within(f"{name}.hand_mass_kg", found, mass, MASS_SHARE * mass)
+        yield nearly(f"{name}.hand_mass_kg", found, mass, MASS_SHARE)
         q = trace.q[-1].astype(float)
         gravity = mujoco_kinematics.gravity_effort(q, world.load)
         torques = {"gravity": gravity, "kp": world.kp * (trace.target[-1] - q)}
