@@ -60,7 +60,6 @@ def look(name: str, **more: Any) -> dict[str, Any]:
     }
 
 
-TARGET = look("target", linewidth=1.4)
 LIMIT = look("limit", linewidth=1.4)
 
 

@@ -229,33 +229,3 @@ def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatAr
         upper: (n,) limits [rad].
     """
     return np.minimum(q - lower, upper - q).min(axis=-1)
-
-
-def solve(
-    target: Pose,
-    q: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
-    *,
-    iterations: int,
-    damping: float,
-    largest: float = 0.5,
-) -> FloatArray:
-    """Return the joint positions (…, 7) that damped least squares reaches from starts (…, 7) [rad].
-
-    Each joint moves by `largest` [rad] at most in one iteration and stays within its
-    limits.
-
-    Args:
-        target: pose of the hand.
-        q: the starts.
-        lower: (7,) limits [rad].
-        upper: (7,) limits [rad].
-        iterations: their number.
-        damping: λ of `damped_step`.
-        largest: bound of one step [rad].
-    """
-    for _ in range(iterations):
-        step = damped_step(jacobian(q), pose_error(target, hand_pose(q)), damping)
-        q = np.clip(q + np.clip(step, -largest, largest), lower, upper)
-    return q
