@@ -3,15 +3,15 @@
 Zero is the energy of a body at rest on the surface.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace, first_time, settled_from
-from robo_genesis.sim.bodies.contacts import TOP, ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
 
 CLEAR = (
     1e-4  # Clearance from which a body without contact points counts as separated [m]
@@ -106,16 +106,8 @@ def conserved_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
 
 
 def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
-    """Return the height of the body's lowest point above the surface, (n+1,) [m].
-
-    The lowest corner of a cube follows from its orientation.
-    """
-    z = of_body(trace.link_pos)[:, 2]
-    if case.shape == "ball":
-        return z - case.size / 2 - TOP
-    w, x, y, q = of_body(trace.link_quat).T
-    upward = np.stack([2 * (x * q - w * y), 2 * (y * q + w * x), 1 - 2 * (x**2 + y**2)])
-    return z - case.size / 2 * np.abs(upward).sum(axis=0) - TOP
+    """Return the height of the body's lowest point above the surface, (n+1,) [m]."""
+    return case.clearance(of_body(trace.link_pos)[:, 2], of_body(trace.link_quat))
 
 
 def aligned(
@@ -128,13 +120,11 @@ def aligned(
     return one[:shared], other[:shared]
 
 
-def flights(trace: BodyTrace, case: ContactCase) -> Iterator[slice]:
-    """Yield the intervals of states in which the body is clear of the surface, in order."""
-    clear = np.concatenate([[False], clearance(trace, case) > 0, [False]])
-    edges = np.flatnonzero(clear[1:] != clear[:-1])
-    for first, after in zip(edges[::2], edges[1::2], strict=True):
-        if after - first >= SHORTEST:
-            yield slice(int(first), int(after))
+def flights(trace: BodyTrace, case: ContactCase) -> list[slice]:
+    """Return the intervals of states in which the body is clear of the surface, in order."""
+    in_air, _ = ndimage.label(clearance(trace, case) > 0)
+    stretches = (states for (states,) in ndimage.find_objects(in_air))
+    return [of for of in stretches if of.stop - of.start >= SHORTEST]
 
 
 def case_metrics(trace: ContactTrace, case: ContactCase) -> CaseMetrics:
@@ -205,7 +195,7 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
     flight_change  largest change of the total energy within a flight; it is zero again when v_z is
     """
     kept, total = conserved_energy(trace, case), total_energy(trace, case)
-    in_air = list(flights(trace, case))
+    in_air = flights(trace, case)
     levels = [float(np.median(kept[flight])) for flight in in_air]
 
     def share(bounces: int) -> float | None:

@@ -94,7 +94,7 @@ class ContactCase(ContactRun):
     def mass(self) -> float:
         """Mass of the solid body [kg]."""
         volume = self.size**3 * (1.0 if self.shape == "cube" else np.pi / 6)
-        return float(self.density * volume)
+        return self.density * volume
 
     @property
     def inertia(self) -> float:
@@ -106,7 +106,7 @@ class ContactCase(ContactRun):
         """Load of each of four equal contacts of the body at rest."""
         weight = self.mass * self.gravity / 4
         normal, along = weight * np.cos(self.tilt), weight * np.sin(self.tilt)
-        return Load(float(normal), float(along), 1 / self.mass)
+        return Load(normal, along, 1 / self.mass)
 
     @property
     def fall(self) -> FloatArray:
@@ -119,6 +119,20 @@ class ContactCase(ContactRun):
     def rest_height(self) -> float:
         """Height of the centre of a body on the surface without penetration [m]."""
         return TOP + self.size / 2
+
+    def clearance(self, z: FloatArray, quat: FloatArray) -> FloatArray:
+        """Return the height of the body's lowest point above the surface, (n,) [m].
+
+        Args:
+            z: heights of its centre (n,) [m].
+            quat: its orientations (n, 4), from which the lowest corner of a cube
+                follows.
+        """
+        if self.shape == "ball":
+            return z - self.size / 2 - TOP
+        w, x, y, q = quat.T
+        up = np.stack([2 * (x * q - w * y), 2 * (y * q + w * x), 1 - 2 * (x**2 + y**2)])
+        return z - self.size / 2 * np.abs(up).sum(axis=0) - TOP
 
 
 class World(NamedTuple):
@@ -172,7 +186,7 @@ def build_world(
         if case.spring:
             for geom in (*surface.geoms, *bodies[name].geoms):
                 geom.set_sol_params((*case.spring, *contact_constants(scene, geom)[2:]))
-    return World(scene, surface, bodies, dict(cases), camera)
+    return World(scene, surface, bodies, cases, camera)
 
 
 def rigid_options(gs: Any, case: ContactRun) -> dict[str, Any]:
