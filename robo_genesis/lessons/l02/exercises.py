@@ -27,8 +27,8 @@ UNTIL_REST = 100  # Outer steps after which a dropped box lies on the ground
 def scene(make: Written, gs: Any, case: Drop) -> Findings:
     """Check `make(gs)`: a built scene with a ground, and the box of a case, which falls on it."""
     built, box = make(gs)
-    yield within("dt_s", float(built.dt), case.dt, 1e-9)
-    yield equal("substeps", int(built.substeps), case.substeps)
+    yield within("dt_s", built.dt, case.dt, 1e-9)
+    yield equal("substeps", built.substeps, case.substeps)
     yield nearly("mass_kg", float(box.get_mass()), case.mass, 1e-3)
     yield within("start_height_m", _height(box), case.height, TINY)
     for _step in range(case.steps):

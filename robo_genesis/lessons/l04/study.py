@@ -129,8 +129,8 @@ def damping_ratio(case: str) -> FloatArray:
 def ideal(run: Experiment, case: str) -> IdealJoint:
     """Return the linear joint with a compared case's gains and the inertia of Genesis."""
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
-    damping = float(gains.kv[ENTRY]) + readings["passive_damping"]
-    return IdealJoint(readings["inertia_Genesis"], damping, float(gains.kp[ENTRY]))
+    damping = gains.kv[ENTRY] + readings["passive_damping"]
+    return IdealJoint(readings["inertia_Genesis"], damping, gains.kp[ENTRY])
 
 
 def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
@@ -201,7 +201,7 @@ def at_limit_until(trace: Trace) -> float:
     limit, force = trace.effort_limit[ENTRY], trace.control_force[:, ENTRY]
     forces = np.append(trace.start_control_force[ENTRY], force)
     held = is_saturated(forces, limit) & (np.sign(forces) == np.sign(forces[0]))
-    return float(trace.t[max(0, int(np.append(held, False).argmin()) - 1)])
+    return trace.t[max(0, int(np.append(held, False).argmin()) - 1)]
 
 
 def braking_error(trace: Trace) -> float:
@@ -211,7 +211,7 @@ def braking_error(trace: Trace) -> float:
     """
     brakes = trace.control_force[:, ENTRY] < 0
     left = (trace.target - trace.q[1:])[:, ENTRY]
-    return float(left[brakes.argmax()] * brakes.any())
+    return left[brakes.argmax()] * brakes.any()
 
 
 def unstable_joints(trace: Trace) -> list[str]:
@@ -261,7 +261,7 @@ def spread(run: Experiment, substeps: int) -> float:
         for engine in ENGINES
         if not unstable(run, engine, substeps)
     ]
-    return float(np.ptp(stable))
+    return np.ptp(stable)
 
 
 def relation_outcome(

@@ -26,19 +26,19 @@ class IdealJoint:
     @property
     def omega(self) -> float:
         """Natural frequency ω = √(KP / I) [rad/s]."""
-        return float(np.sqrt(self.kp / self.inertia))
+        return np.sqrt(self.kp / self.inertia)
 
     @property
     def zeta(self) -> float:
         """Damping ratio ζ = D / (2 √(KP I))."""
-        return float(self.damping / (2 * np.sqrt(self.kp * self.inertia)))
+        return self.damping / (2 * np.sqrt(self.kp * self.inertia))
 
     @property
     def overshoot(self) -> float:
         """Overshoot as a share of the step: exp(−π ζ / √(1 − ζ²)), zero for ζ ≥ 1."""
         if self.zeta >= 1:
             return 0.0
-        return float(np.exp(-np.pi * self.zeta / np.sqrt(1 - self.zeta**2)))
+        return np.exp(-np.pi * self.zeta / np.sqrt(1 - self.zeta**2))
 
     def response(self, t: FloatArray) -> FloatArray:
         """Return the response (n,) to a unit step from rest at times `t` (n,) [s], for ζ ≠ 1.

@@ -55,7 +55,7 @@ class BowlCase(Stepped):
     @property
     def depth(self) -> float:
         """How deep the lowest balls sink into the bowl's floor at fine steps, v T / e [m]."""
-        speed = float(np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - WALL)))
+        speed = np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - WALL))
         return speed * max(T, 2 * self.h) / np.e
 
 

@@ -204,7 +204,7 @@ def fingertip(pose: Pose) -> FloatArray:
 def overshoot_along_line(path: FloatArray, target: FloatArray) -> float:
     """Return how far a path (n+1, 3) leads past a target (3,), on the line from its start [m]."""
     way = np.asarray(path - target, dtype=float)
-    return max(0.0, float((way @ -way[0]).max() / np.linalg.norm(way[0])))
+    return max(0.0, (way @ -way[0]).max() / np.linalg.norm(way[0]))
 
 
 def damped_step(of: FloatArray, error: FloatArray, damping: float) -> FloatArray:

@@ -105,7 +105,7 @@ def build_world(gs: Any, cases: Mapping[str, HeldCase]) -> World:
             scene.add_entity(box, rigid(rho=density, friction=case.friction)),
         )
     scene.build()
-    return World(scene, grippers, dict(cases))
+    return World(scene, grippers, cases)
 
 
 def record_world(
