@@ -49,9 +49,8 @@ PAGE_SHA256, PAGE_IMPORTS = "ROBO_GENESIS_PAGE_SHA256", "ROBO_GENESIS_PAGE_IMPOR
 # `build.page_index`.
 EXECUTED_PAGES = "ROBO_GENESIS_EXECUTED_PAGES"
 
-SOLUTIONS = (
-    "SOLUTIONS"  # 0: the site has no solutions and answers, see `site.solutions`
-)
+# 0: the site has no solutions and answers, see `site.solutions`
+SOLUTIONS = "SOLUTIONS"
 
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = (

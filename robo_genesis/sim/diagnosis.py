@@ -22,10 +22,8 @@ from .arm import franka, joint_control, model
 from .arm import joints as robot_model
 from .camera import frames as camera
 
-STEPPED_JOINT, ANGLE = (
-    "joint4",
-    0.25,
-)  # The joint that the run commands, and by how much [rad]
+# The joint that the run commands, and by how much [rad]
+STEPPED_JOINT, ANGLE = "joint4", 0.25
 
 BASELINE = joint_control.ControlCase(
     q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT),
@@ -187,9 +185,8 @@ def saturation(bench: Bench) -> str:
     """The baseline approaches its target, and its effort is not clipped at every sample."""
     trace, k = bench.trace, bench.joints.entry(STEPPED_JOINT)
     error = np.abs(trace.target[0, k] - trace.q[:, k])  # (n+1,)
-    at_limit = (
-        np.abs(trace.control_force[:, k]) >= AT_LIMIT * trace.effort_limit[k]
-    )  # (n,)
+    # (n,)
+    at_limit = np.abs(trace.control_force[:, k]) >= AT_LIMIT * trace.effort_limit[k]
     clipped = f"{at_limit.sum()} of {trace.steps} samples at the effort limit"
     errors = " to ".join(format_value(float(e), "rad") for e in error[[0, -1]])
     if error[-1] >= error[0] or at_limit.all():

@@ -13,9 +13,8 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace, first_time, settled_from
 from robo_genesis.sim.bodies.contacts import ContactCase
 
-CLEAR = (
-    1e-4  # Clearance from which a body without contact points counts as separated [m]
-)
+# Clearance from which a body without contact points counts as separated [m]
+CLEAR = 1e-4
 
 # Half width of the band around the resting height in which a body has settled [m].
 RESTING_BAND = 5e-4

@@ -53,9 +53,8 @@ LONGER = "G2_longer"
 # The length of the window is the one factor.
 LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
 
-ASSIGNED = (
-    "assigned"  # Name of the run whose states are assigned, without control and steps
-)
+# Name of the run whose states are assigned, without control and steps
+ASSIGNED = "assigned"
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,9 +129,8 @@ CASE_POINTS = {
 
 # What only judges
 
-PARTING_THRESHOLD = (
-    SETTLING_BAND  # Distance at which a position has left the ideal one [rad]
-)
+# Distance at which a position has left the ideal one [rad]
+PARTING_THRESHOLD = SETTLING_BAND
 
 # Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone
 # explain the final error, so this selects the cases that `gravity_support` checks.
@@ -146,9 +144,8 @@ SAME_MODEL = 3e-4
 # step, as a share of the step.
 SMALL_STEP_TOLERANCE = 0.03
 ONE_JOINT_TOLERANCE = 0.015  # The same of the stepped model and a large step [rad]
-CHATTER_SHARE = (
-    0.5  # A run is unstable if a joint's effort is clipped in a larger share of samples
-)
+# A run is unstable if a joint's effort is clipped in a larger share of samples
+CHATTER_SHARE = 0.5
 # Largest spread of the engines at the finest step, by that at the lesson's step
 SPREAD_SHARE = 0.2
 

@@ -61,14 +61,13 @@ FINER = {
 # limits.
 MORE = FINER | {"unlimited": replace(KP_DOUBLED, effort_limit=10 * franka.EFFORT_LIMIT)}
 
+# Words of a reader for runs.
 LABELS = {
     name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ")
     for name in CASES
 }
 LABELS |= {f"{name}_fine": f"{LABELS[name]}, {FINE} substeps" for name in CASES}
-LABELS["unlimited"] = (
-    "KP doubled, ten times the force limits"  # Words of a reader for runs
-)
+LABELS["unlimited"] = "KP doubled, ten times the force limits"
 
 VIEWED = "world"  # The recorded view of the camera, before the first step
 
@@ -185,9 +184,8 @@ TOLERANCES |= dict.fromkeys(QUESTIONS, (math.inf, 0.0))
 # Share of the displacement that gravity, KP and the Jacobian may leave unexplained.
 SAG_SHARE = 0.02
 
-ANGLE_WEIGHT = (
-    0.5  # Metres that count as much as one radian, where the nearest pose is sought
-)
+# Metres that count as much as one radian, where the nearest pose is sought
+ANGLE_WEIGHT = 0.5
 
 # The engine's answer for the target beyond reach is farther than the nearest pose by
 # more [m].

@@ -37,9 +37,8 @@ DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 
 ARM = len(CHAIN) - 1  # Number of joints of the arm
 
-TIP = (
-    FRANKA.tip
-)  # From the hand's origin to the ends of the fingers, along its z axis [m]
+# From the hand's origin to the ends of the fingers, along its z axis [m]
+TIP = FRANKA.tip
 
 # Index of the hand among the links of the arrays: the parent of both fingers.
 HAND = LINK_PARENTS[-1]
@@ -104,10 +103,8 @@ def link_poses(q: FloatArray) -> Pose:
         Positions (…, 8, 3) [m] and orientations (…, 8, 4).
     """
     q = np.asarray(q, dtype=float)
-    at, turn = (
-        np.zeros(3),
-        np.array([1.0, 0.0, 0.0, 0.0]),
-    )  # of the link before, first the base
+    # of the link before, first the base
+    at, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
     positions, quats = [], []
     for k, (_, position, quat) in enumerate(CHAIN):
         at = at + rotate(turn, np.array(position))

@@ -36,9 +36,8 @@ CENTROID = 0.15
 # middle. Largest distance of a point from a sphere's surface, as a share of the radius.
 MESH_SHARE = 0.006
 
-PLANE = (
-    1e-4  # Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]
-)
+# Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]
+PLANE = 1e-4
 
 PLANE_FAR = 3.0  # Depth up to which the bound of a plane holds [m]
 

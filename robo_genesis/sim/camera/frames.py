@@ -29,9 +29,8 @@ class Renderer(NamedTuple):
 def read_renderer(scene: Any) -> Renderer:
     """Read GL_VENDOR and GL_RENDERER from the scene's OpenGL context."""
     gl = importlib.import_module("OpenGL.GL")
-    context = (
-        scene.visualizer._rasterizer._renderer
-    )  # Genesis has no public access to it
+    # Genesis has no public access to it
+    context = scene.visualizer._rasterizer._renderer
     context.make_current()
     try:
         vendor, name = (

@@ -17,9 +17,8 @@ from .views import View
 
 DEPTH_UNIT = 1e-5  # Resolution of a recorded depth [m]; 24 bits reach 167 m
 
-SEGMENTS = (
-    "segments"  # Group of counts: the numbers of things in the segmentation, by name
-)
+# Group of counts: the numbers of things in the segmentation, by name
+SEGMENTS = "segments"
 
 PICTURES = ("rgb", "depth", "segmentation")
 

@@ -15,11 +15,8 @@ from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.kinematics import Pose
 from robo_genesis.sim.arm.model import ModelError, RobotModel, model_file
 
-GRAVITY = (
-    0.0,
-    0.0,
-    -9.81,
-)  # That of a scene of Genesis, whatever the model file says [m/s²]
+# That of a scene of Genesis, whatever the model file says [m/s²]
+GRAVITY = 0.0, 0.0, -9.81
 
 
 @cache
