@@ -16,9 +16,8 @@ Kind = Literal["value", "exact", "performance"]
 
 Record = dict[str, Any]
 
-ENGINE = [
-    "engine"
-]  # The source of a value that the engine reported and that is in no array
+# The source of a value that the engine reported and that is in no array
+ENGINE = ["engine"]
 
 
 class Stored(NamedTuple):

@@ -37,9 +37,8 @@ class TimeSeries:
             if not np.isfinite(values).all():
                 where = np.argwhere(~np.isfinite(values))[0].tolist()
                 raise TraceError(f"{name} is not finite at index {where}.")
-            if values.ndim == len(
-                dims
-            ):  # the first array with DOFs or links says how many
+            # The first array with DOFs or links says how many.
+            if values.ndim == len(dims):
                 lengths = dict(zip(dims, values.shape, strict=True)) | lengths
             expected = tuple(lengths.get(dim, 0) for dim in dims)
             if values.shape != expected or states < 2:

@@ -58,9 +58,8 @@ def posture(run: Experiment) -> Findings:
     expected = ["final", "initial"] if run.rendered else []
     yield equal("frames", sorted(frames), expected)
     if not run.rendered:
-        links = run.traces[
-            next(iter(run.cases))
-        ].link_pos  # a schematic draws the first run
+        # A schematic draws the first run.
+        links = run.traces[next(iter(run.cases))].link_pos
         yield above("moved_m", np.abs(links[-1] - links[0]).max(), 0)
     elif sorted(frames) == expected:
         for name in expected:

@@ -89,9 +89,8 @@ def used_memory() -> float:
     """Return the memory in use [MiB]: of this process, on an accelerator of the whole device."""
     gc.collect()
     torch = importlib.import_module("torch")
-    if (
-        torch.cuda.is_initialized()
-    ):  # the name in ROCm as well; not if the engine runs on the CPU
+    # The name in ROCm as well; not initialized if the engine runs on the CPU.
+    if torch.cuda.is_initialized():
         free, total = torch.cuda.mem_get_info()
         return float((total - free) / MIB)
     pages = int(Path("/proc/self/statm").read_text().split()[1])

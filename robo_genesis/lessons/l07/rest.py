@@ -27,9 +27,8 @@ BOX = ContactCase(
     substeps=4,
 )
 
-FALLING = replace(
-    BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2
-)  # By 5 mm, on a level table
+# By 5 mm, on a level table
+FALLING = replace(BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2)
 
 # Six boxes side by side across the slope, and what distinguishes each from `BOX`.
 ROW: Mapping[str, Mapping[str, float]] = {
@@ -64,11 +63,8 @@ PYRAMIDS = rows(
     T_5ms=(10, {"time_constant": 0.005}),
     T_20ms=(10, {"time_constant": 0.02}),
 ) | rows(STEEP, tilt_15=(15, {}), tilt_20=(20, {}))
-ROUND = {
-    "cone": "elliptic",
-    "impratio": 100.0,
-    "settle": 0.3,
-}  # the engine's impratio for it
+# With the engine's impratio for it
+ROUND = {"cone": "elliptic", "impratio": 100.0, "settle": 0.3}
 LEVEL = rows(elliptic_0=(0, ROUND))
 ELLIPTIC = rows(elliptic_10=(10, ROUND)) | rows(STEEP, elliptic_20=(20, ROUND))
 PARTS = {

@@ -47,9 +47,8 @@ def capture(camera: Any, shape: tuple[int, ...] = FRAME_SHAPE) -> np.ndarray:
     Raises:
         FrameError: the frame is not usable.
     """
-    rgb = camera.render(force_render=True)[
-        0
-    ]  # also where no step has changed the scene
+    # also where no step has changed the scene
+    rgb = camera.render(force_render=True)[0]
     require_frame(rgb, shape)
     return np.array(rgb)
 
