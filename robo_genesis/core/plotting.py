@@ -141,7 +141,7 @@ def channel(
                 ax.axhspan(*edges, color=BAND, zorder=0, label=label)
             name = "" if number else level.name
             ax.axhline(value, **look(level.mark, label=name, linewidth=1.4))
-    for case, mark in marks_of(list(drawn.values), marks).items():
+    for case, mark in marks_of(drawn.values, marks).items():
         ax.plot(t, drawn.values[case], label=case, **look(mark))
     ax.margins(x=0.01)
     ax.set_ylim(top=drawn.top)

@@ -93,7 +93,7 @@ def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figur
     force.axhline(limit, label="limit, read back", **LIMIT)
     force.axhline(-limit, **LIMIT)
     for ax, (panel, (field, ylabel)) in zip(axes, PANELS.items(), strict=True):
-        for name, mark in marks_of(list(traces), CASE_MARKS).items():
+        for name, mark in marks_of(traces, CASE_MARKS).items():
             values = getattr(traces[name], field)[:, ENTRY]
             t = traces[name].t[-len(values) :]
             shown = t <= until
