@@ -93,10 +93,9 @@ def backend(bench: Bench) -> str:
     """The environment variables are valid, and the engine starts on the requested backend."""
     bench.contract = session.read_contract(bench.environ)
     if project.in_checkout():
+        # reuse the kernels that `make book` compiled
         for name, value in project.engine_cache_environment().items():
-            os.environ.setdefault(
-                name, value
-            )  # reuse the kernels that `make book` compiled
+            os.environ.setdefault(name, value)
     if not (os.environ.get("HOME") or os.environ.get("XDG_CACHE_HOME")):
         raise StepError(
             "HOME is not set, and the compiler ends without it: export HOME=folder"
@@ -145,8 +144,7 @@ def names(bench: Bench) -> str:
     """Nine joints are found by name, with the expected DOFs and types."""
     robot = bench.robot
     bench.joints = robot_model.resolve_joints(robot, franka.JOINT_NAMES)
-    counts = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    model = dict(zip(franka.MODEL_COUNTS, counts, strict=True))
+    model = robot_model.read_counts(robot)
     if model != franka.MODEL_COUNTS or bench.joints.types != franka.JOINT_TYPES:
         raise StepError(
             f"The model has {model} and joints {', '.join(bench.joints.types)}; expected "

@@ -38,13 +38,6 @@ def share_of_step(scene: str) -> float:
     return case.h / theory.contact_seconds(case)
 
 
-def depth_shares(run: Experiment, scene: str) -> list[float]:
-    """Return each depth as a share of v T / e, in the order of the heights."""
-    return [
-        found.penetration / theory.depth(case) for _, case, found in row(run, scene)
-    ]
-
-
 def clean(run: Experiment) -> list[tuple[str, ContactCase, SlideMetrics]]:
     """Return name, case and metrics of the slides with the elliptic cone and its resolution."""
     return [

@@ -47,7 +47,8 @@ def scatter_shrinks(run: Experiment) -> Findings:
     """Depths as shares of v T / e scatter widely at h = T / 2, and less at every smaller step."""
     limit = np.inf
     for name in sorted(study_spec.STEP_CASES, key=study.share_of_step, reverse=True):
-        shares = study.depth_shares(run, name)
+        depths = study.row(run, name)
+        shares = [found.penetration / theory.depth(case) for _, case, found in depths]
         scatter, label = np.ptp(shares), f"{name}.scatter_of_depth_share"
         coarse = above(label, scatter, study_spec.SCATTER_COARSE)
         yield (

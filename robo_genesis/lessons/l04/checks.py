@@ -187,7 +187,7 @@ def laws_of_motion(run: Experiment) -> Findings:
         yield from kept(name, found)
 
 
-CHECKS = (
+WITHOUT_CAMERA = (
     mapping,
     target_limits,
     baseline_approaches,
@@ -196,9 +196,8 @@ CHECKS = (
     one_factor,
     saturation,
     laws_of_motion,
-    posture,
 )
-WITHOUT_CAMERA = tuple(check for check in CHECKS if check is not posture)
+CHECKS = (*WITHOUT_CAMERA, posture)
 
 # Those that the lecture has besides.
 LECTURE = (

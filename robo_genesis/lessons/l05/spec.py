@@ -128,12 +128,12 @@ REACH_MAP = {
     for name, points in PLANES.items()
 }
 
-RESTARTS, RESTART_SEED = 100, 0
+RESTARTS = 100
 
 # Starts (100, 9) of the solver, uniform within the limits [rad or m].
 RANDOM_STARTS = np.hstack(
     [
-        np.random.default_rng(RESTART_SEED).uniform(*ARM_LIMITS, (RESTARTS, 7)),
+        np.random.default_rng(0).uniform(*ARM_LIMITS, (RESTARTS, 7)),
         np.tile(franka.Q_START[7:], (RESTARTS, 1)),
     ]
 )

@@ -238,7 +238,7 @@ def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:
     numbers = np.flatnonzero(answers_of(run, "many_starts")["accepted"])
     q = run.traces["many_starts"].q[1 + numbers, :ARM].astype(float)
     return [
-        (curve, [int(numbers[k]) for k in sorted(inside, key=lambda k: float(q[k, 0]))])
+        (curve, numbers[sorted(inside, key=lambda k: q[k, 0])].tolist())
         for curve, inside in families(q)
     ]
 

@@ -18,7 +18,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.arm.kinematics import ARM, Pose, distance_and_angle, hand_pose
 from robo_genesis.sim.arm.laws import driven_run
 from robo_genesis.sim.common_checks import posture, stamps, structure
-from robo_genesis.sim.laws import kept
+from robo_genesis.sim.laws import each_run
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 from . import spec, study, throughput
@@ -213,10 +213,9 @@ def equal_work(run: Experiment) -> Findings:
 
 def laws_of_motion(run: Experiment) -> Findings:
     """At each sample links and control forces are those of its own robot."""
-    for name, world in run.cases.items():
-        trace = run.traces[name]
-        case = world.commanding(trace.target)
-        yield from kept(name, driven_run(trace, case, run.links))
+    return each_run(
+        run, lambda of, world: driven_run(of, world.commanding(of.target), run.links)
+    )
 
 
 WITHOUT_CAMERA = (
