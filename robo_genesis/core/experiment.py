@@ -50,7 +50,7 @@ def inputs(
     return found
 
 
-def case_inputs(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+def case_inputs(cases: Mapping[str, Any]) -> dict[str, Any]:
     """Return every field of every case, which are dataclasses, as JSON values."""
     return {name: json_value(asdict(case)) for name, case in cases.items()}
 

@@ -5,7 +5,7 @@ observed is None.
 """
 
 from collections.abc import Sequence
-from dataclasses import Field, field, fields
+from dataclasses import field, fields
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -73,7 +73,7 @@ class CaseMetrics:
     @classmethod
     def about(cls, what: str) -> dict[str, Any]:
         """Return `unit`, `label`, `sources` or `noun` of each metric by its name."""
-        declared: tuple[Field[Any], ...] = fields(cls)  # type: ignore[arg-type]
+        declared = fields(cls)  # type: ignore[arg-type]
         return {one.name: one.metadata[what] for one in declared}
 
     def items(self) -> list[tuple[str, float | None, str]]:

@@ -37,8 +37,7 @@ def find_lesson(name: str) -> Lesson:
         raise LookupError(
             f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}."
         )
-    lesson: Lesson = import_module(f"{__name__}.{name}.pages").LESSON
-    return lesson
+    return import_module(f"{__name__}.{name}.pages").LESSON
 
 
 def find_replay(lesson: str, name: str = "") -> Replay:

@@ -199,7 +199,7 @@ def saturation(bench: Bench) -> str:
 
 
 # In the order of the lesson: each step comes after the steps that it needs.
-STEPS: tuple[Callable[[Bench], str], ...] = (
+STEPS = (
     version,
     libraries,
     backend,

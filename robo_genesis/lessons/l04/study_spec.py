@@ -1,7 +1,7 @@
 """Specification of L04's deeper pages: cases beyond the lab, a grid of steps, tolerances."""
 
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import product, starmap
 from typing import Any, NamedTuple
 
 from robo_genesis.core.experiment import case_inputs
@@ -110,7 +110,7 @@ class GridPoint(NamedTuple):
 
 
 # All points; KV changes fastest, the step slowest.
-POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
+POINTS = tuple(starmap(GridPoint, product(STEP_SIZES, KP, KV)))
 
 # The runs of the grid: one batch, one environment for each.
 GRID_CASES = {
@@ -156,7 +156,7 @@ AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
 
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
-    own: dict[str, dict[str, Any]] = {
+    own = {
         "lecture": {"cases": case_inputs(EXAMPLE_CASES | LONGER_CASES)},
         "formula": {"cases": case_inputs(STEP_CASES)},
         "integrator": {

@@ -1,6 +1,6 @@
 """The interpretation that L04's lab generates: sentences that are right for every outcome."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from robo_genesis.core.comparison import HELD_BY, Comparison
 from robo_genesis.core.experiment import Experiment
@@ -46,7 +46,7 @@ def conclusions(run: Experiment) -> str:
     ]
     cost = COSTS[compared(run, kv_pair, "rise_time").order]
     cost = cost.format(first=kv_pair[0], second=kv_pair[1])
-    said: dict[str, Iterable[str]] = {
+    said = {
         "1. {} → {}: the effect of KP".format(*kp_pair): pair_sentences(run, kp_pair),
         "2. {} → {}: the effect of KV, and its cost".format(*kv_pair): [
             *pair_sentences(run, kv_pair),

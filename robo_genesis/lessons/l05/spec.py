@@ -194,7 +194,7 @@ BEYOND_NEAREST = 0.01
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    asked: dict[str, Any] = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
+    asked = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
     asked["stretched"] = NEARLY_STRETCHED.tolist()
     counted = list(EXPECTED_MODEL)
     return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS)

@@ -73,7 +73,7 @@ MASK = np.array([False, True])
 NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK)
 
 # Shape and environments of commands that must be refused.
-WRONG: list[tuple[Any, Any]] = [
+WRONG = [
     ((3,), [1]),
     *product(SHAPES, [[0, 2]]),
     *product([(2, 3)], NUMBERS),

@@ -31,7 +31,7 @@ BOX = ContactCase(
 FALLING = replace(BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2)
 
 # Six boxes side by side across the slope, and what distinguishes each from `BOX`.
-ROW: Mapping[str, Mapping[str, float]] = {
+ROW = {
     "slick": {"friction": 0.3},
     "box": {},
     "firm": {"friction": 1.0},
@@ -124,7 +124,7 @@ LABELS = {
 
 # The contact points of sliding boxes decide. All others differ by rounding.
 # By metric or case, (atol, rtol) of a value between engines, backends or processors.
-TOLERANCES: dict[str, tuple[float, float]] = {
+TOLERANCES = {
     "creep": (2e-5, 0.2),
     "sunk": (1e-3, 0.05),
     "moved": (1e-5, 0.2),

@@ -38,7 +38,7 @@ SAME_POSE = (5e-6, 5e-6)
 SAME_RESIDUAL = 1e-6
 
 # For exercises: residuals, and whether `IK` lets such an answer be commanded.
-RESIDUALS: dict[str, tuple[tuple[float, ...], bool]] = {
+RESIDUALS = {
     "exact": ((0.0,) * 6, True),
     "at_both_limits": ((5e-4, 0, 0, 0, 0, 5e-3), True),
     "too_far": ((6e-4, 0, 0, 0, 0, 0), False),
