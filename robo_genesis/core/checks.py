@@ -10,14 +10,13 @@ import operator
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from .check_spec import MASS_SHARE
 from .text import quoted
 
-Subject = TypeVar("Subject")
 Value = bool | int | float | str | None
 
 
@@ -188,7 +187,7 @@ def conclude(
 
 
 def evaluate(
-    named: Sequence[Callable[[Subject], Iterable[Finding]]], run: Subject
+    named: Iterable[Callable[[Any], Iterable[Finding]]], run: Any
 ) -> tuple[Check, ...]:
     """Run checks on a subject.
 

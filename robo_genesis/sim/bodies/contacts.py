@@ -25,8 +25,6 @@ SETTINGS = ("friction", "surface_friction", "substeps")
 
 Case = TypeVar("Case", bound="ContactRun")
 
-State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactRun(Stepped):
@@ -253,7 +251,7 @@ def run_world(world: World) -> dict[str, ContactTrace]:
     }
 
 
-def read_world(world: World) -> dict[str, State]:
+def read_world(world: World) -> dict[str, tuple[np.ndarray, ...]]:
     """Return position, orientation, velocities, contact count and penetration of each body, now.
 
     The contacts are those of the beginning of the latest solver step.
