@@ -186,7 +186,7 @@ def saturation(bench: Bench) -> str:
     # (n,)
     at_limit = np.abs(trace.control_force[:, k]) >= AT_LIMIT * trace.effort_limit[k]
     clipped = f"{at_limit.sum()} of {trace.steps} samples at the effort limit"
-    errors = " to ".join(format_value(float(e), "rad") for e in error[[0, -1]])
+    errors = " to ".join(format_value(e, "rad") for e in error[[0, -1]])
     if error[-1] >= error[0] or at_limit.all():
         raise StepError(
             f"{clipped}; error of {STEPPED_JOINT} from {errors}. The joint does not approach "

@@ -99,7 +99,7 @@ def contact_counts(run: Experiment) -> Figure:
     axes = figure.subplots(4, 1, sharex=True, sharey=True)
     for ax, (name, style) in zip(axes, LANDINGS.items(), strict=True):
         t, counts = run.traces[name].t, run.traces[name].contacts[:, 0]
-        deepest = int(metrics.clearance(run.traces[name], run.cases[name]).argmin())
+        deepest = metrics.clearance(run.traces[name], run.cases[name]).argmin()
         ax.step(t, counts, where="post", **style)
         ax.plot(t[deepest], counts[deepest], marker="v", markersize=8, **style)
         title = f"{spec.LABELS[name]} (triangle: deepest sample)"

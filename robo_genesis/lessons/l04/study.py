@@ -28,7 +28,7 @@ ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 SUBSTEPS, H = spec.G1.substeps, spec.G1.dt / spec.G1.substeps
 
 # Velocity gains of the compared cases [N·m·s/rad].
-COMPARED_KV = sorted({float(case.kv[ENTRY]) for case in study_spec.COMPARED.values()})
+COMPARED_KV = sorted({case.kv[ENTRY] for case in study_spec.COMPARED.values()})
 
 # Group of a bundle's metrics: what the engines report of the stepped joint without a
 # run.
@@ -147,7 +147,7 @@ def off_ideal(run: Experiment, case: str, kind: str = "") -> float:
 
 def supports(run: Experiment, case: str) -> tuple[float, float]:
     """Return KP × final error of a case, and the gravity effort at its end [N·m]."""
-    kp = float(spec.CASES[case].kp[ENTRY])
+    kp = spec.CASES[case].kp[ENTRY]
     return kp * run.metrics[case].final_error, run.readings[GROUP][f"gravity_{case}"]
 
 
@@ -160,7 +160,7 @@ def model_overshoot(run: Experiment, case: str, height: float) -> float:
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
     limit, gravity = np.inf, 0.0
     if height >= spec.STEP:
-        limit = float(gains.effort_limit[ENTRY])
+        limit = gains.effort_limit[ENTRY]
         gravity = (
             readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]
         ) / 2
@@ -189,7 +189,7 @@ def distance_from_ideal(run: Experiment, case: str) -> FloatArray:
     """Return the distance of a case from the ideal joint at each state, (n+1,) [rad]."""
     trace = run.traces[case]
     q = trace.q[:, ENTRY].astype(float)
-    step = float(study_spec.COMPARED[case].q_target[ENTRY]) - q[0]
+    step = study_spec.COMPARED[case].q_target[ENTRY] - q[0]
     return np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
 
 

@@ -40,7 +40,7 @@ class JointMap:
     @property
     def dofs(self) -> list[int]:
         """`dofs_idx_local` as the calls of the engine take it."""
-        return [int(k) for k in self.dofs_idx_local]
+        return self.dofs_idx_local.tolist()
 
     @property
     def position_units(self) -> tuple[str, ...]:
