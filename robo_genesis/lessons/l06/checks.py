@@ -85,7 +85,7 @@ def same_to_the_last_bit(run: Experiment, claim: str) -> Findings:
 
 def permuted_rows(run: Experiment) -> Findings:
     """With the worlds in another order, each gives the same arrays to the last bit."""
-    yield from same_to_the_last_bit(run, "permuted")
+    return same_to_the_last_bit(run, "permuted")
 
 
 def untouched_keep_their_state(run: Experiment) -> Findings:
@@ -182,7 +182,7 @@ def stiffest_fail(run: Experiment) -> Findings:
 
 def partial_reset(run: Experiment) -> Findings:
     """After a reset in mid-motion, an environment repeats its first run to the last bit."""
-    yield from same_to_the_last_bit(run, "again")
+    return same_to_the_last_bit(run, "again")
 
 
 def own_gains_and_mass(run: Experiment) -> Findings:
