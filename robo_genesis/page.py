@@ -253,7 +253,8 @@ def curves(
     ):
         ax.plot(x, y, label=label, **plotting.look(mark))
     ax.margins(x=0.01)
-    plotting.finish(ax, "", quantity, "best").set_xlabel(axis)
+    plotting.finish(ax, "", quantity, "best")
+    ax.set_xlabel(axis)
     return figure
 
 

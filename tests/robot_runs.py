@@ -16,14 +16,37 @@ from robo_genesis.sim.mujoco.kinematics import bare_robot, link_poses
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 
 
+def solve(target, q, lower, upper, *, iterations, damping, largest=0.5):
+    """Return the joint positions (…, 7) that damped least squares reaches from starts (…, 7) [rad].
+
+    Each joint moves by `largest` [rad] at most in one iteration and stays within its
+    limits.
+
+    Args:
+        target: pose of the hand.
+        q: the starts.
+        lower: (7,) limits [rad].
+        upper: (7,) limits [rad].
+        iterations: their number.
+        damping: λ of `damped_step`.
+        largest: bound of one step [rad].
+    """
+    for _ in range(iterations):
+        step = kinematics.damped_step(
+            kinematics.jacobian(q),
+            kinematics.pose_error(target, kinematics.hand_pose(q)),
+            damping,
+        )
+        q = np.clip(q + np.clip(step, -largest, largest), lower, upper)
+    return q
+
+
 def answer(position, q_start, iterations) -> IkAnswer:
     """Return what a solver like the engine's answers for a hand that points down."""
     from robo_genesis.lessons.l05.spec import ARM_LIMITS, DOWN
 
     target = kinematics.Pose(np.asarray(position), DOWN)
-    q = kinematics.solve(
-        target, q_start[:7], *ARM_LIMITS, iterations=iterations, damping=0.01
-    )
+    q = solve(target, q_start[:7], *ARM_LIMITS, iterations=iterations, damping=0.01)
     error = kinematics.pose_error(target, kinematics.hand_pose(q))
     return IkAnswer(np.float32([*q, *q_start[7:]]), np.float32(error))
 

@@ -6,9 +6,8 @@ must not make recorded evidence stale.
 
 MEASURES = False
 
-MASS_SHARE = (
-    1e-5  # Relative tolerance of an engine's mass against density times volume: float32
-)
+# Relative tolerance of an engine's mass against density times volume: float32
+MASS_SHARE = 1e-5
 
 TIME_TOLERANCE = 1e-9  # Tolerance of the time of a state against k · dt [s]
 

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .metrics import CaseMetrics
 from .text import six_digits
 
 HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"
@@ -91,19 +90,6 @@ class Comparison:
     def order(self) -> str | None:
         """The order of the second value relative to the first, as of the function `order`."""
         return order(self.first, self.second, max(self.resolution, self.margin))
-
-
-def compare(
-    metric: str,
-    first: CaseMetrics,
-    second: CaseMetrics,
-    resolution: Mapping[str, float],
-    margin: float = 0.0,
-) -> Comparison:
-    """Return the comparison of one metric of two cases, with the resolution of its unit."""
-    noun, unit = (first.about(what)[metric] for what in ("noun", "unit"))
-    values = getattr(first, metric), getattr(second, metric)
-    return Comparison(noun, unit, *values, resolution[unit], margin)
 
 
 def allowed(a: Any, b: Any, atol: Any, rtol: Any) -> Any:

@@ -4,18 +4,11 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from reprlib import Repr
 from traceback import extract_tb
-from typing import Any, Concatenate, ParamSpec
+from typing import Any
 
 import numpy as np
 
-from .checks import (
-    Check,
-    CheckFailed,
-    Finding,
-    Findings,
-    at_most,
-    equal,
-)
+from .checks import Check, CheckFailed, Finding, Findings, at_most, equal
 from .experiment import Experiment, MeasuringPage, counts
 from .scene import FloatArray
 
@@ -127,14 +120,11 @@ class Brief(Repr):
 
 brief = Brief().repr
 
-Given = ParamSpec("Given")
 Written = Callable[..., Any]  # A function that a student wrote
 Examples = dict[str, Any]  # What a test gives the function and expects, by name
 
 
-def as_test(
-    findings: Callable[Concatenate[Written, Given], Iterable[Finding]],
-) -> Callable[Concatenate[Written, Given], Check]:
+def as_test(findings: Callable[..., Iterable[Finding]]) -> Callable[..., Check]:
     """Make a test from a generator of findings about its first argument, a student's function.
 
     The test ends with the first value that is not allowed, and the outcome names its
@@ -142,7 +132,7 @@ def as_test(
     """
 
     @wraps(findings)
-    def judge(function: Written, /, *given: Given.args, **named: Given.kwargs) -> Check:
+    def judge(function: Written, /, *given: Any, **named: Any) -> Check:
         watched, judged, problem = Watched(function), 0, ""
         try:
             for judged, finding in enumerate(findings(watched, *given, **named), 1):  # noqa: B007

@@ -50,7 +50,7 @@ def inputs(
     return found
 
 
-def case_inputs(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+def case_inputs(cases: Mapping[str, Any]) -> dict[str, Any]:
     """Return every field of every case, which are dataclasses, as JSON values."""
     return {name: json_value(asdict(case)) for name, case in cases.items()}
 
@@ -76,6 +76,10 @@ class Readings:
 def counts(names: Iterable[str]) -> Readings:
     """Return a group of counts."""
     return Readings(dict.fromkeys(names, "1"), "exact")
+
+
+# Yields what it found in an experiment; its docstring is its claim.
+CheckFunction = Callable[["Experiment"], Iterable[Finding]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +109,7 @@ class MeasuringPage:
     kind: type[TimeSeries]
     readings: Mapping[str, Readings]
     measure: Callable[[Any, Any], CaseMetrics]
-    checks: Sequence[Callable[["Experiment"], Iterable[Finding]]]
+    checks: Sequence[CheckFunction]
     parameters: Callable[[], dict[str, Any]]
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
@@ -127,7 +131,7 @@ class MeasuringPage:
         parameters: Callable[[], dict[str, Any]] = dict,
         runs: Mapping[str, Run] = MappingProxyType({}),
         readings: Mapping[str, Readings] = MappingProxyType({}),
-        checks: Sequence[Callable[["Experiment"], Iterable[Finding]]] = (),
+        checks: Sequence[CheckFunction] = (),
     ) -> "MeasuringPage":
         """Return a page that has all of this one, and more runs, readings, checks and inputs."""
         return replace(

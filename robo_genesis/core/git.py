@@ -28,7 +28,6 @@ def git(root: Path, *arguments: str) -> str:
             capture_output=True,
             encoding="utf8",
             errors="replace",
-            check=False,
         )
     except OSError as error:
         raise ProjectError(

@@ -5,8 +5,10 @@ observed is None.
 """
 
 from collections.abc import Sequence
-from dataclasses import Field, field, fields
+from dataclasses import field, fields
 from typing import Any, Literal, NamedTuple
+
+import numpy as np
 
 # What another run must do with a value: agree within a tolerance, repeat it, or
 # nothing.
@@ -14,9 +16,8 @@ Kind = Literal["value", "exact", "performance"]
 
 Record = dict[str, Any]
 
-ENGINE = [
-    "engine"
-]  # The source of a value that the engine reported and that is in no array
+# The source of a value that the engine reported and that is in no array
+ENGINE = ["engine"]
 
 
 class Stored(NamedTuple):
@@ -57,14 +58,22 @@ def metric(unit: str, label: str, *sources: str, noun: str = "") -> Any:
 
 
 class CaseMetrics:
-    """Base of the metrics of one case: a frozen dataclass whose fields are all `metric`."""
+    """Base of the metrics of one case: a frozen dataclass whose fields are all `metric`.
+
+    Numbers of NumPy become numbers of Python.
+    """
 
     __slots__ = ()
+
+    def __post_init__(self) -> None:
+        for name, value, _ in self.items():
+            if isinstance(value, np.generic):
+                object.__setattr__(self, name, value.item())
 
     @classmethod
     def about(cls, what: str) -> dict[str, Any]:
         """Return `unit`, `label`, `sources` or `noun` of each metric by its name."""
-        declared: tuple[Field[Any], ...] = fields(cls)  # type: ignore[arg-type]
+        declared = fields(cls)  # type: ignore[arg-type]
         return {one.name: one.metadata[what] for one in declared}
 
     def items(self) -> list[tuple[str, float | None, str]]:

@@ -6,7 +6,7 @@ legend; targets and limits have dashes.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 MEASURES = False
@@ -57,7 +57,7 @@ CASE_CLASSES = {
 }
 
 
-def marks_of(cases: Sequence[str], declared: Mapping[str, str]) -> dict[str, str]:
+def marks_of(cases: Collection[str], declared: Mapping[str, str]) -> dict[str, str]:
     """Return the mark of each case: the declared one, or one that no other case here has.
 
     Args:

@@ -1,4 +1,4 @@
-"""Figures of the course. Functions draw on axes and return them; none computes or shows.
+"""Figures of the course. Functions draw on axes; none computes or shows.
 
 Each figure has the width `WIDTH` and letters of one size, so that it can be read on a
 phone. Panels lie one below another. Colours are those of the light theme; pages replace
@@ -60,7 +60,6 @@ def look(name: str, **more: Any) -> dict[str, Any]:
     }
 
 
-TARGET = look("target", linewidth=1.4)
 LIMIT = look("limit", linewidth=1.4)
 
 
@@ -120,7 +119,7 @@ def channel(
     subject: str,
     marks: Mapping[str, str],
     levels: Sequence[Level] = (),
-) -> Axes:
+) -> None:
     """Draw one channel of each case with its levels.
 
     Args:
@@ -142,11 +141,11 @@ def channel(
                 ax.axhspan(*edges, color=BAND, zorder=0, label=label)
             name = "" if number else level.name
             ax.axhline(value, **look(level.mark, label=name, linewidth=1.4))
-    for case, mark in marks_of(list(drawn.values), marks).items():
+    for case, mark in marks_of(drawn.values, marks).items():
         ax.plot(t, drawn.values[case], label=case, **look(mark))
     ax.margins(x=0.01)
     ax.set_ylim(top=drawn.top)
-    return finish(
+    finish(
         ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]"
     )
 
@@ -199,7 +198,7 @@ def robot_ends(run: Experiment, parents: Sequence[int]) -> Figure:
     return ends(run.frames, 5, lambda ax: schematic(ax, trace, parents))
 
 
-def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
+def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> None:
     """Draw the measured link origins at both ends as a stick figure seen from the side.
 
     Args:
@@ -216,10 +215,10 @@ def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
         ]
         for label, when in ends.items()
     }
-    return _from_the_side(ax, "link origins", bones, marker="o", markersize=4)
+    _from_the_side(ax, "link origins", bones, marker="o", markersize=4)
 
 
-def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> Axes:
+def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> None:
     """Draw a cube in its first and last state as a square seen from the side, x against z [m].
 
     Args:
@@ -234,12 +233,12 @@ def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) 
         label: [trace.link_pos[k, 0, [0, 2]] + corners] for label, k in ends.items()
     }
     ax.axhline(floor, **LINE)
-    return _from_the_side(ax, "positions", squares)
+    _from_the_side(ax, "positions", squares)
 
 
 def _from_the_side(
     ax: Axes, what: str, ends: Mapping[str, Sequence[np.ndarray]], **more: Any
-) -> Axes:
+) -> None:
     """Draw lines (n, 2) of both ends of a run by label, x against z [m]."""
     for (label, lines), name in zip(ends.items(), ("other", "baseline"), strict=True):
         for number, line in enumerate(lines):
@@ -248,10 +247,9 @@ def _from_the_side(
     ax.set(aspect="equal", xlabel="x [m]", ylabel="z [m]")
     ax.set_title(title, loc="center")
     ax.legend()
-    return ax
 
 
-def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
+def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> None:
     """Label a plot over time; the legend is `above` it or at a place that Matplotlib names."""
     ax.set(xlabel="time [s]", ylabel=ylabel)
     if legend == "above":
@@ -259,7 +257,6 @@ def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
     else:
         ax.set_title(title)
         ax.legend(loc=legend)  # type: ignore[call-overload]
-    return ax
 
 
 def legend_above(ax: Axes, title: str) -> None:

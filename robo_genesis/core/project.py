@@ -16,9 +16,8 @@ from pathlib import Path
 MEASURES = False
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = sysconfig.get_path(
-    "purelib"
-)  # Asked once: each answer reads Python's configuration
+# Asked once: each answer reads Python's configuration
+PACKAGES = sysconfig.get_path("purelib")
 BOOK = ROOT / "book"
 PUBLISHED = "_build"  # The folder of a book that holds its published site
 
@@ -49,9 +48,8 @@ PAGE_SHA256, PAGE_IMPORTS = "ROBO_GENESIS_PAGE_SHA256", "ROBO_GENESIS_PAGE_IMPOR
 # `build.page_index`.
 EXECUTED_PAGES = "ROBO_GENESIS_EXECUTED_PAGES"
 
-SOLUTIONS = (
-    "SOLUTIONS"  # 0: the site has no solutions and answers, see `site.solutions`
-)
+# 0: the site has no solutions and answers, see `site.solutions`
+SOLUTIONS = "SOLUTIONS"
 
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = (
@@ -176,9 +174,9 @@ def hidden_modules() -> list[str]:
     return sorted(hidden)
 
 
-def require_pinned_engine(root: Path = ROOT) -> str:
+def require_pinned_engine() -> str:
     """Return the engine version that a checkout pins; raise ProjectError if it is not installed."""
-    pin, installed = engine_pin(root), installed_version(ENGINE)
+    pin, installed = engine_pin(), installed_version(ENGINE)
     if installed != pin:
         command = install_command("" if in_checkout() else f"{ENGINE}=={pin}")
         raise ProjectError(
@@ -266,20 +264,20 @@ def environment_contract() -> dict[str, str]:
     names = (BACKEND, RENDER, "LD_LIBRARY_PATH")
     requested = {name: os.environ[name] for name in names if os.environ.get(name)}
     defaults = {BACKEND: BUILD_BACKEND, RENDER: "1"}
-    return defaults | requested | engine_switches(os.environ)
+    return defaults | requested | engine_switches()
 
 
-def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
+def engine_switches() -> dict[str, str]:
     """Return the variables that switch the engine, its compiler or its drivers.
 
     They are the same before and after the import of the engine.
     """
-    switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)}
+    switches = {name for name in os.environ if name.startswith(ENGINE_PREFIXES)}
     # Genesis itself sets the last one at its import; it decides how messages print. A
     # build sets it to 0. With 1, as in a reader's Jupyter, each call of a kernel prints
     # a text and takes longer.
     switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | {"QD_ENABLE_PYBUF"}
-    return {name: environment[name] for name in sorted(switches)}
+    return {name: os.environ[name] for name in sorted(switches)}
 
 
 def without_folders(text: str) -> str:

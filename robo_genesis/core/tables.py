@@ -6,7 +6,7 @@ from typing import Any
 
 from . import text
 from .checks import Check
-from .comparison import HELD_BY, Comparison
+from .comparison import Comparison
 from .experiment import Experiment
 from .metrics import CaseMetrics
 from .text import decimal, format_value
@@ -39,9 +39,7 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def as_table(
-    rows: Callable[[Experiment], Rows],
-) -> Callable[[Experiment], str]:
+def as_table(rows: Callable[[Experiment], Rows]) -> Callable[[Experiment], str]:
     """Make a function that returns a Markdown table of one that yields its rows."""
 
     @wraps(rows)
@@ -154,16 +152,3 @@ def sentence_of(
     if check.passed:
         return sentence.format(**values)
     return f"The check `{check.name}` failed: {check.detail}. {advice}"
-
-
-def prediction_sentence(
-    names: tuple[str, str], comparison: Comparison, predicted: str, advice: str
-) -> str:
-    """Return the outcome of a prediction; `advice` follows one that did not hold."""
-    label = comparison.label
-    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
-    if comparison.order is None:
-        return f"{claim}. Cannot be judged: not observed in either case."
-    if comparison.order in HELD_BY[predicted]:
-        return f"{claim}. Held in this run."
-    return f"{claim}. **Did not hold**: measured {comparison.order}. {advice}"

@@ -37,9 +37,8 @@ class TimeSeries:
             if not np.isfinite(values).all():
                 where = np.argwhere(~np.isfinite(values))[0].tolist()
                 raise TraceError(f"{name} is not finite at index {where}.")
-            if values.ndim == len(
-                dims
-            ):  # the first array with DOFs or links says how many
+            # The first array with DOFs or links says how many.
+            if values.ndim == len(dims):
                 lengths = dict(zip(dims, values.shape, strict=True)) | lengths
             expected = tuple(lengths.get(dim, 0) for dim in dims)
             if values.shape != expected or states < 2:
@@ -223,7 +222,7 @@ class Demonstrations(Episodes):
 
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:
     """Return the first t (n,) [s] at which `reached` (n,) is true, None if it never is."""
-    return float(t[int(reached.argmax())]) if reached.any() else None
+    return t[reached.argmax()] if reached.any() else None
 
 
 def settled_from(t: np.ndarray, inside: np.ndarray) -> float | None:
@@ -231,4 +230,4 @@ def settled_from(t: np.ndarray, inside: np.ndarray) -> float | None:
     if not inside[-1]:
         return None
     outside = np.flatnonzero(~inside)
-    return float(t[outside[-1] + 1]) if outside.size else float(t[0])
+    return t[outside[-1] + 1] if outside.size else t[0]

@@ -18,19 +18,12 @@ LESSONS = tuple(
 def course_marks() -> dict[str, str]:
     """Return the palette's mark of each case that has one of its own, from all lessons.
 
-    A lesson gives them as `CASE_MARKS` in its `spec`, if it has any.
-
-    Raises:
-        ValueError: two lessons give one case different marks.
+    A lesson gives them as `CASE_MARKS` in its `spec`, if it has any; lessons give one
+    name one mark.
     """
     found = {"baseline": "baseline"}
     for name in LESSONS:
-        for case, mark in getattr(find_lesson(name).spec, "CASE_MARKS", {}).items():
-            if found.setdefault(case, mark) != mark:
-                raise ValueError(
-                    f"{name} gives the case {case} the mark {mark!r}, an earlier lesson gives it "
-                    f"{found[case]!r}. Use one mark for a name, or rename the case."
-                )
+        found |= getattr(find_lesson(name).spec, "CASE_MARKS", {})
     return found
 
 
@@ -44,8 +37,7 @@ def find_lesson(name: str) -> Lesson:
         raise LookupError(
             f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}."
         )
-    lesson: Lesson = import_module(f"{__name__}.{name}.pages").LESSON
-    return lesson
+    return import_module(f"{__name__}.{name}.pages").LESSON
 
 
 def find_replay(lesson: str, name: str = "") -> Replay:

@@ -9,7 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -135,13 +135,9 @@ def built_for(facts: Mapping[str, Any]) -> str:
 
 
 # The steps for each accelerator; a broken one ends its own chain.
-CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
-    "amdgpu": (
-        (devices,),
-        (linker,),
-        (torch, device, hip_runtime, kernel),
-    ),
-    "cuda": ((torch, device, kernel),),
+CHAINS = {
+    "amdgpu": [[devices], [linker], [torch, device, hip_runtime, kernel]],
+    "cuda": [[torch, device, kernel]],
 }
 
 
@@ -155,7 +151,7 @@ def probe(machine: ProbedMachine, expected: str | None) -> tuple[str, list[StepR
     machine.facts, machine.ending = torch_facts(machine)
     built = built_for(machine.facts)
     machine.backend = expected or built
-    chains = CHAINS.get(machine.backend, ((torch,),))
+    chains = CHAINS.get(machine.backend, [[torch]])
     results = [result for chain in chains for result in run_steps(chain, machine)]
     return (built if machine.facts.get("count") else "") or "cpu", results
 

@@ -45,7 +45,7 @@ def start(run: Experiment) -> Findings:
     """Each run begins with the body at rest at the height of its case."""
     for name, case in run.cases.items():
         trace = run.traces[name]
-        height = float(trace.link_pos[0, 0, 2])
+        height = trace.link_pos[0, 0, 2]
         yield within(f"{name}.start_height_m", height, case.height, START_TOLERANCE)
         yield equal(f"{name}.start_velocity_m_s", np.abs(trace.link_vel[0]).max(), 0.0)
         yield equal(f"{name}.start_turning_rad_s", np.abs(trace.link_ang[0]).max(), 0.0)
@@ -58,15 +58,14 @@ def posture(run: Experiment) -> Findings:
     expected = ["final", "initial"] if run.rendered else []
     yield equal("frames", sorted(frames), expected)
     if not run.rendered:
-        links = run.traces[
-            next(iter(run.cases))
-        ].link_pos  # a schematic draws the first run
-        yield above("moved_m", float(np.abs(links[-1] - links[0]).max()), 0)
+        # A schematic draws the first run.
+        links = run.traces[next(iter(run.cases))].link_pos
+        yield above("moved_m", np.abs(links[-1] - links[0]).max(), 0)
     elif sorted(frames) == expected:
         for name in expected:
             yield usable_frame(name, frames[name])
         red, green, blue = np.moveaxis(frames["initial"] != frames["final"], -1, 0)
-        yield above("changed_pixels", int((red | green | blue).sum()), 0)
+        yield above("changed_pixels", (red | green | blue).sum(), 0)
 
 
 def usable_frame(name: str, frame: np.ndarray) -> Finding:

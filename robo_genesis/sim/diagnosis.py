@@ -22,10 +22,8 @@ from .arm import franka, joint_control, model
 from .arm import joints as robot_model
 from .camera import frames as camera
 
-STEPPED_JOINT, ANGLE = (
-    "joint4",
-    0.25,
-)  # The joint that the run commands, and by how much [rad]
+# The joint that the run commands, and by how much [rad]
+STEPPED_JOINT, ANGLE = "joint4", 0.25
 
 BASELINE = joint_control.ControlCase(
     q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT),
@@ -95,10 +93,9 @@ def backend(bench: Bench) -> str:
     """The environment variables are valid, and the engine starts on the requested backend."""
     bench.contract = session.read_contract(bench.environ)
     if project.in_checkout():
+        # reuse the kernels that `make book` compiled
         for name, value in project.engine_cache_environment().items():
-            os.environ.setdefault(
-                name, value
-            )  # reuse the kernels that `make book` compiled
+            os.environ.setdefault(name, value)
     if not (os.environ.get("HOME") or os.environ.get("XDG_CACHE_HOME")):
         raise StepError(
             "HOME is not set, and the compiler ends without it: export HOME=folder"
@@ -147,8 +144,7 @@ def names(bench: Bench) -> str:
     """Nine joints are found by name, with the expected DOFs and types."""
     robot = bench.robot
     bench.joints = robot_model.resolve_joints(robot, franka.JOINT_NAMES)
-    counts = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    model = dict(zip(franka.MODEL_COUNTS, counts, strict=True))
+    model = robot_model.read_counts(robot)
     if model != franka.MODEL_COUNTS or bench.joints.types != franka.JOINT_TYPES:
         raise StepError(
             f"The model has {model} and joints {', '.join(bench.joints.types)}; expected "
@@ -187,11 +183,10 @@ def saturation(bench: Bench) -> str:
     """The baseline approaches its target, and its effort is not clipped at every sample."""
     trace, k = bench.trace, bench.joints.entry(STEPPED_JOINT)
     error = np.abs(trace.target[0, k] - trace.q[:, k])  # (n+1,)
-    at_limit = (
-        np.abs(trace.control_force[:, k]) >= AT_LIMIT * trace.effort_limit[k]
-    )  # (n,)
+    # (n,)
+    at_limit = np.abs(trace.control_force[:, k]) >= AT_LIMIT * trace.effort_limit[k]
     clipped = f"{at_limit.sum()} of {trace.steps} samples at the effort limit"
-    errors = " to ".join(format_value(float(e), "rad") for e in error[[0, -1]])
+    errors = " to ".join(format_value(e, "rad") for e in error[[0, -1]])
     if error[-1] >= error[0] or at_limit.all():
         raise StepError(
             f"{clipped}; error of {STEPPED_JOINT} from {errors}. The joint does not approach "
@@ -204,7 +199,7 @@ def saturation(bench: Bench) -> str:
 
 
 # In the order of the lesson: each step comes after the steps that it needs.
-STEPS: tuple[Callable[[Bench], str], ...] = (
+STEPS = (
     version,
     libraries,
     backend,

@@ -50,7 +50,7 @@ def apart(
     """
     beyond = np.abs(np.subtract(found, expected, dtype=np.float64)) - tolerance
     if beyond.size and not beyond.max() <= 0:
-        at = np.unravel_index(int(beyond.argmax()), beyond.shape)
+        at = np.unravel_index(beyond.argmax(), beyond.shape)
         value, valid, room = (
             float(np.broadcast_to(of, beyond.shape)[at])
             for of in (found, expected, tolerance)

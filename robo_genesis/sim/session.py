@@ -191,7 +191,7 @@ def started(contract: Contract) -> Engine:
             "use_deterministic_algorithms=True, **rg.PLAIN_LOG)."
         )
     compiler = ".".join(map(str, importlib.import_module("quadrants").__version__))
-    switches = project.engine_switches(os.environ)
+    switches = project.engine_switches()
     backend = probe(contract.backend)
     return Engine(
         gs.__version__, compiler, PRECISION, SEED, backend, logs[-1], switches

@@ -89,9 +89,8 @@ def used_memory() -> float:
     """Return the memory in use [MiB]: of this process, on an accelerator of the whole device."""
     gc.collect()
     torch = importlib.import_module("torch")
-    if (
-        torch.cuda.is_initialized()
-    ):  # the name in ROCm as well; not if the engine runs on the CPU
+    # The name in ROCm as well; not initialized if the engine runs on the CPU.
+    if torch.cuda.is_initialized():
         free, total = torch.cuda.mem_get_info()
         return float((total - free) / MIB)
     pages = int(Path("/proc/self/statm").read_text().split()[1])
@@ -106,7 +105,7 @@ class Model(NamedTuple):
 
     def step_time(self, size: Any) -> Any:
         """Return the time of one step of so many environments [s]."""
-        return self.fixed + self.each * np.asarray(size)
+        return self.fixed + self.each * size
 
 
 def fit(sizes: Any, times: Any) -> Model:
@@ -116,6 +115,5 @@ def fit(sizes: Any, times: Any) -> Model:
         sizes: numbers of environments (n,), at least two different ones.
         times: of one step (n,) [s].
     """
-    sizes, times = np.asarray(sizes, float), np.asarray(times, float)
-    each, fixed = np.polyfit(sizes, times, 1, w=1 / times)
+    each, fixed = np.polyfit(sizes, times, 1, w=1 / np.asarray(times))
     return Model(float(fixed), float(each))

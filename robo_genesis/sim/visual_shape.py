@@ -57,7 +57,7 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
     names = [link.name for link in entity.links] if names is None else names
     parts = []
     for name, link in zip(names, entity.links, strict=True):
-        by_colour: dict[tuple[int, int, int], list[tuple[FloatArray, np.ndarray]]] = {}
+        by_colour: dict[tuple[int, int, int], list[Any]] = {}
         for geom in link.vgeoms:
             mesh = geom.get_trimesh()
             red, green, blue = (int(value) for value in mesh.visual.main_color[:3])

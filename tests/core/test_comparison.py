@@ -3,10 +3,10 @@
 import pytest
 
 from robo_genesis.core.comparison import Comparison, agree, differences
-from robo_genesis.core.tables import comparison_sentence, prediction_sentence
+from robo_genesis.core.tables import comparison_sentence
 from robo_genesis.core.text import format_value, scaled_value
 
-NAMES, ADVICE = ("G1", "G2"), "Look at the window."
+NAMES = ("G1", "G2")
 
 
 def test_values_are_written_with_their_unit():
@@ -78,21 +78,6 @@ def test_a_comparison_says_what_was_measured_or_not_observed(values, margin, say
         comparison_sentence(NAMES, rise_times(*values, margin=margin))
         == f"The rise time {says}"
     )
-
-
-@pytest.mark.parametrize(
-    ("predicted", "values", "says"),
-    [
-        ("no later", (0.4, 0.4), "Held in this run."),
-        ("no later", (0.4, None), f"**Did not hold**: measured higher. {ADVICE}"),
-        ("later", (0.4, 0.4), f"**Did not hold**: measured equal. {ADVICE}"),
-        ("lower", (None, 0.4), "Held in this run."),
-        ("higher", (None, None), "Cannot be judged: not observed in either case."),
-    ],
-)
-def test_a_prediction_is_compared_with_the_measured_order(predicted, values, says):
-    sentence = prediction_sentence(NAMES, rise_times(*values), predicted, ADVICE)
-    assert sentence == f"Predicted: rise time {predicted} in G2 than in G1. {says}"
 
 
 def test_differences_name_the_path_and_both_values():

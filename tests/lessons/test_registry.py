@@ -9,7 +9,13 @@ from robo_genesis.core.comparison import HELD_BY
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.core.trace import BodyTrace, ContactTrace, Episodes, Trace
-from robo_genesis.lessons import LESSONS, find_lesson, find_page, find_replay
+from robo_genesis.lessons import (
+    LESSONS,
+    course_marks,
+    find_lesson,
+    find_page,
+    find_replay,
+)
 from robo_genesis.pipeline.pages.book import find_pages
 
 
@@ -61,6 +67,12 @@ def test_a_specification_is_data(name):
     for function in (n.name for n in tree.body if isinstance(n, ast.FunctionDef)):
         assert function.endswith("parameters") or function in called
     assert not any(isinstance(node, ast.ClassDef) for node in tree.body)
+
+
+def test_lessons_give_a_case_one_mark():
+    for name in LESSONS:
+        marks = getattr(find_lesson(name).spec, "CASE_MARKS", {})
+        assert marks.items() <= course_marks().items(), name
 
 
 def test_each_check_has_a_claim():

@@ -22,7 +22,7 @@ def height_after(height: Written) -> Findings:
         ("on_the_moon", 2.0, 1.62, 0.02, 7),
         ("below_the_floor", 0.5, case.gravity, 0.01, 100),
     ):
-        expected = z0 - float(summed_drop(h, n, g))
+        expected = z0 - summed_drop(h, n, g)
         yield within(f"{name}_m", float(height(z0, g, h, n)), expected, TINY)
 
 
@@ -31,8 +31,8 @@ def fall(run: Written, scene: Any, sphere: Any) -> Findings:
     """Check `run(scene, sphere, steps)`: the last height [m] after a reset, twice and shorter."""
     case = spec.BASELINE
     for name, steps in (("first", case.steps), ("again", case.steps), ("shorter", 5)):
-        expected = case.height - float(
-            summed_drop(case.h, steps * case.substeps, case.gravity)
+        expected = case.height - summed_drop(
+            case.h, steps * case.substeps, case.gravity
         )
         found = float(run(scene, sphere, steps))
         yield within(f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE)

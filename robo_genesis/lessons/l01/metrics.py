@@ -31,10 +31,10 @@ class FallMetrics(CaseMetrics):
 def fall_metrics(trace: BodyTrace, case: Drop) -> FallMetrics:
     """Measure one fall; gravity and solver step of the case enter the formulas alone."""
     return FallMetrics(
-        duration=float(trace.t[-1]),
-        final_height=float(trace.link_pos[-1, 0, 2]),
-        asked_height=float(trace.link_pos[ASKED_STEPS, 0, 2]),
-        drop=float(fallen(trace)[-1]),
+        duration=trace.t[-1],
+        final_height=trace.link_pos[-1, 0, 2],
+        asked_height=trace.link_pos[ASKED_STEPS, 0, 2],
+        drop=fallen(trace)[-1],
         formula_error=formula_error(trace, case),
         school_gap=continuous_gap(trace, case),
     )

@@ -22,9 +22,7 @@ FALL = MeasuringPage(
     parameters=spec.parameters,
 )
 LAB = with_functions(FALL, "height_after", "fall")
-LECTURE = FALL.with_more(
-    spec.parameters, readings=machine.READINGS, checks=(checks.doctor,)
-)
+LECTURE = FALL.with_more(readings=machine.READINGS, checks=(checks.doctor,))
 
 LESSON = Lesson(
     spec=spec,

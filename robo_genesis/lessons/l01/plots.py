@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import look
-from robo_genesis.sim.bodies.free_fall import summed_drop
+from robo_genesis.sim.bodies.free_fall import predicted
 
 from . import machine
 
@@ -20,8 +20,7 @@ def height(run: Experiment) -> Figure:
         run.cases["baseline"],
         run.traces["baseline"],
     )
-    solver_steps = [case.substeps * k for k in range(trace.steps + 1)]
-    computed = case.height - summed_drop(case.h, solver_steps, case.gravity)
+    computed = case.height - predicted(trace, case)
     ax.plot(trace.t, computed, label="computed beforehand", **look("target"))
     colour = look("baseline")["color"]
     ax.plot(trace.t, trace.link_pos[:, 0, 2], ".", label="measured", color=colour)

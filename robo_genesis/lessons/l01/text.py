@@ -9,9 +9,8 @@ from . import spec
 
 MEASURES = False
 
-COLUMNS = (
-    42  # Longest line of printed text that a phone shows without scrolling [characters]
-)
+# Longest line of printed text that a phone shows without scrolling [characters]
+COLUMNS = 42
 
 
 def doctor_lines(steps: list[dict[str, str]]) -> str:

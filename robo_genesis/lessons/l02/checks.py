@@ -40,7 +40,7 @@ def falls(run: Experiment) -> Findings:
     """The box is lower after every step than before it, and faster."""
     for name, trace in run.traces.items():
         for what, values in (("lower", fallen(trace)), ("faster", speeds(trace))):
-            not_more = int((np.diff(values) <= 0).sum())
+            not_more = (np.diff(values) <= 0).sum()
             yield equal(f"{name}.steps_not_{what}", not_more, 0)
 
 
@@ -64,8 +64,8 @@ def speed(run: Experiment) -> Findings:
     for name, case in run.cases.items():
         trace = run.traces[name]
         expected = case.gravity * trace.t
-        error = float(np.abs(speeds(trace) - expected).max())
-        yield noted(f"{name}.after_one_step_m_s", float(trace.link_vel[1, 0, 2]))
+        error = np.abs(speeds(trace) - expected).max()
+        yield noted(f"{name}.after_one_step_m_s", trace.link_vel[1, 0, 2])
         yield at_most(f"{name}.speed_error_m_s", error, spec.SPEED_SHARE * expected[-1])
 
 
@@ -91,7 +91,7 @@ def by_step(run: Experiment) -> list[str]:
 def expected_gap(run: Experiment, name: str) -> float:
     """Return g h t / 2: how much farther than g t² / 2 the body of a run falls [m]."""
     case = run.cases[name]
-    return float(ahead_of_continuous(case.h, run.metrics[name].duration, case.gravity))
+    return ahead_of_continuous(case.h, run.metrics[name].duration, case.gravity)
 
 
 def one_factor(run: Experiment) -> Findings:

@@ -33,14 +33,12 @@ def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
     drop = fallen(trace)
     xy = trace.link_pos[:, 0, :2].astype(np.float64)
     return DropMetrics(
-        duration=float(trace.t[-1]),
-        drop=float(drop[-1]),
-        lowest=float(drop.max()),
-        final_speed=float(-trace.link_vel[-1, 0, 2]),
+        duration=trace.t[-1],
+        drop=drop[-1],
+        lowest=drop.max(),
+        final_speed=-trace.link_vel[-1, 0, 2],
         formula_error=formula_error(trace, case),
         continuous_gap=continuous_gap(trace, case),
-        sideways=float(np.linalg.norm(xy - xy[0], axis=1).max()),
-        turning=float(
-            np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max()
-        ),
+        sideways=np.linalg.norm(xy - xy[0], axis=1).max(),
+        turning=np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max(),
     )

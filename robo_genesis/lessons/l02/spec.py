@@ -49,9 +49,8 @@ FORMULA_TOLERANCE = 1e-6
 # this value count as zero.
 AT_REST = 1e-6
 
-SPEED_SHARE = (
-    1e-5  # Tolerance of a speed against g t, as a share of the last speed: float32
-)
+# Tolerance of a speed against g t, as a share of the last speed: float32
+SPEED_SHARE = 1e-5
 
 # Relative tolerance of a measured gap against g h t / 2: at the smallest step the gap
 # is small and the rounding of float32 shows.

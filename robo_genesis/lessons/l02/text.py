@@ -63,7 +63,7 @@ def three_drops(run: Experiment) -> tables.Rows:
     ):
         yield {
             "drop": name,
-            "distance [m]": decimal(float(drop), 6),
+            "distance [m]": decimal(drop, 6),
             "against the measurement [mm]": signed(1000 * (drop - found.drop), 4),
         }
 

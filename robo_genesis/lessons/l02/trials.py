@@ -81,7 +81,7 @@ def expected_falls() -> dict[str, float]:
     """Return the distance fallen by the stepped formula under each change [m]."""
     case = spec.BASELINE
     n = case.steps * case.substeps
-    drop, moon = (float(summed_drop(case.h, n, g)) for g in (case.gravity, spec.MOON))
+    drop, moon = (summed_drop(case.h, n, g) for g in (case.gravity, spec.MOON))
     seconds = case.steps * case.dt
     return dict(
         zip(FALLS, (drop, drop - spec.THROWN * seconds, drop, moon), strict=True)

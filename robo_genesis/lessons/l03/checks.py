@@ -13,13 +13,7 @@ from robo_genesis.sim.bodies.contacts import TOP
 from robo_genesis.sim.common_checks import posture, stamps
 
 from . import spec, theory
-from .metrics import (
-    BounceMetrics,
-    LandingMetrics,
-    SlideMetrics,
-    aligned,
-    of_body,
-)
+from .metrics import BounceMetrics, LandingMetrics, SlideMetrics, aligned, of_body
 
 
 def measured(run: Experiment, metrics: type[CaseMetrics]) -> dict[str, Any]:
@@ -43,8 +37,8 @@ def lands(run: Experiment) -> Findings:
     for name, found in measured(run, LandingMetrics).items():
         trace = run.traces[name]
         yield above(f"{name}.touchdown_s", found.touchdown, 0)
-        yield above(f"{name}.most_contacts", int(trace.contacts.max()), 0)
-        yield above(f"{name}.lowest_m", float(trace.link_pos[:, 0, 2].min()), TOP)
+        yield above(f"{name}.most_contacts", trace.contacts.max(), 0)
+        yield above(f"{name}.lowest_m", trace.link_pos[:, 0, 2].min(), TOP)
 
 
 def reported_late(run: Experiment) -> Findings:
@@ -89,10 +83,7 @@ def orders_of_distances(run: Experiment, model: str) -> Findings:
     far = {
         name: run.metrics[name + model].stop_distance or np.nan for name in spec.SLIDES
     }
-    for near, farther in (
-        ("high_on_050", "low_on_050"),
-        ("low_on_050", "low_on_030"),
-    ):
+    for near, farther in (("high_on_050", "low_on_050"), ("low_on_050", "low_on_030")):
         label = f"{farther}{model}.farther_than_{near}{model}_m"
         yield above(label, far[farther] - far[near], 0)
     change = abs(far["high_on_030"] - far["high_on_050"])

@@ -3,19 +3,18 @@
 Zero is the energy of a body at rest on the surface.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace, first_time, settled_from
-from robo_genesis.sim.bodies.contacts import TOP, ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
 
-CLEAR = (
-    1e-4  # Clearance from which a body without contact points counts as separated [m]
-)
+# Clearance from which a body without contact points counts as separated [m]
+CLEAR = 1e-4
 
 # Half width of the band around the resting height in which a body has settled [m].
 RESTING_BAND = 5e-4
@@ -106,16 +105,8 @@ def conserved_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
 
 
 def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
-    """Return the height of the body's lowest point above the surface, (n+1,) [m].
-
-    The lowest corner of a cube follows from its orientation.
-    """
-    z = of_body(trace.link_pos)[:, 2]
-    if case.shape == "ball":
-        return z - case.size / 2 - TOP
-    w, x, y, q = of_body(trace.link_quat).T
-    upward = np.stack([2 * (x * q - w * y), 2 * (y * q + w * x), 1 - 2 * (x**2 + y**2)])
-    return z - case.size / 2 * np.abs(upward).sum(axis=0) - TOP
+    """Return the height of the body's lowest point above the surface, (n+1,) [m]."""
+    return case.clearance(of_body(trace.link_pos)[:, 2], of_body(trace.link_quat))
 
 
 def aligned(
@@ -128,13 +119,11 @@ def aligned(
     return one[:shared], other[:shared]
 
 
-def flights(trace: BodyTrace, case: ContactCase) -> Iterator[slice]:
-    """Yield the intervals of states in which the body is clear of the surface, in order."""
-    clear = np.concatenate([[False], clearance(trace, case) > 0, [False]])
-    edges = np.flatnonzero(clear[1:] != clear[:-1])
-    for first, after in zip(edges[::2], edges[1::2], strict=True):
-        if after - first >= SHORTEST:
-            yield slice(int(first), int(after))
+def flights(trace: BodyTrace, case: ContactCase) -> list[slice]:
+    """Return the intervals of states in which the body is clear of the surface, in order."""
+    in_air, _ = ndimage.label(clearance(trace, case) > 0)
+    stretches = (states for (states,) in ndimage.find_objects(in_air))
+    return [of for of in stretches if of.stop - of.start >= SHORTEST]
 
 
 def case_metrics(trace: ContactTrace, case: ContactCase) -> CaseMetrics:
@@ -159,12 +148,12 @@ def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
     upward = np.where(after, trace.link_vel[:, 0, 2], 0.0)
     return LandingMetrics(
         touchdown=first_time(trace.t, clear <= 0),
-        penetration=float(max(0.0, -clear.min())),
-        rebound=float(np.where(after, clear, 0.0).max(initial=0.0)),
-        separated=float(separated.sum() * trace.dt),
-        upward_speed=float(upward.max(initial=0.0)),
+        penetration=max(0.0, -clear.min()),
+        rebound=np.where(after, clear, 0.0).max(initial=0.0),
+        separated=separated.sum() * trace.dt,
+        upward_speed=upward.max(initial=0.0),
         resting_time=settled_from(trace.t, np.abs(offset) <= RESTING_BAND),
-        resting_offset=float(offset[-1]),
+        resting_offset=offset[-1],
     )
 
 
@@ -189,13 +178,13 @@ def slide_metrics(trace: ContactTrace, case: ContactCase) -> SlideMetrics:
     airborne = (clear > CLEAR) & (trace.contacts[:, 0] == 0)
     spin = np.linalg.norm(of_body(trace.link_ang), axis=1)
     return SlideMetrics(
-        stop_time=None if stop is None else float(trace.t[stop]),
-        stop_distance=None if stop is None else float(x[stop] - x[0]),
-        final_distance=float(x[-1] - x[0]),
-        first_speed=float(speed[1]),
-        hop=float(max(0.0, clear.max())),
-        airborne=float(airborne.sum() * trace.dt),
-        spin=float(spin.max()),
+        stop_time=None if stop is None else trace.t[stop],
+        stop_distance=None if stop is None else x[stop] - x[0],
+        final_distance=x[-1] - x[0],
+        first_speed=speed[1],
+        hop=max(0.0, clear.max()),
+        airborne=airborne.sum() * trace.dt,
+        spin=spin.max(),
     )
 
 
@@ -205,7 +194,7 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
     flight_change  largest change of the total energy within a flight; it is zero again when v_z is
     """
     kept, total = conserved_energy(trace, case), total_energy(trace, case)
-    in_air = list(flights(trace, case))
+    in_air = flights(trace, case)
     levels = [float(np.median(kept[flight])) for flight in in_air]
 
     def share(bounces: int) -> float | None:
@@ -215,7 +204,7 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
         return max((float(np.ptp(energy[flight])) for flight in in_air), default=None)
 
     return BounceMetrics(
-        start_energy=float(total[0]),
+        start_energy=total[0],
         first_kept=share(1),
         later_kept=share(BOUNCES_COUNTED),
         flight_drift=largest_change(kept),

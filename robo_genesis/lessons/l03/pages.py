@@ -7,24 +7,11 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import Findings
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import (
-    MeasuringPage,
-    Readings,
-    Run,
-    counts,
-    runs_of,
-)
+from robo_genesis.core.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 
-from . import (
-    checks,
-    metrics,
-    spec,
-    study,
-    study_checks,
-    study_spec,
-)
+from . import checks, metrics, spec, study, study_checks, study_spec
 
 MEASURES = False
 

@@ -99,7 +99,7 @@ def contact_counts(run: Experiment) -> Figure:
     axes = figure.subplots(4, 1, sharex=True, sharey=True)
     for ax, (name, style) in zip(axes, LANDINGS.items(), strict=True):
         t, counts = run.traces[name].t, run.traces[name].contacts[:, 0]
-        deepest = int(metrics.clearance(run.traces[name], run.cases[name]).argmin())
+        deepest = metrics.clearance(run.traces[name], run.cases[name]).argmin()
         ax.step(t, counts, where="post", **style)
         ax.plot(t[deepest], counts[deepest], marker="v", markersize=8, **style)
         title = f"{spec.LABELS[name]} (triangle: deepest sample)"
@@ -112,10 +112,8 @@ def pushed(run: Experiment) -> Figure:
     """Draw speed along x, clearance and angular speed of the lab's pushed cubes."""
     figure = plotting.figure(7)
     axes = figure.subplots(3, 1, sharex=True)
-    below = SLIDES["high_on_050"] | {
-        "linewidth": 4.0,
-        "alpha": 0.45,
-    }  # It lies below an equal one
+    # It lies below an equal one.
+    below = SLIDES["high_on_050"] | {"linewidth": 4.0, "alpha": 0.45}
     for name, style in (SLIDES | {"high_on_050": below}).items():
         trace = run.traces[name]
         clear = 1000 * metrics.clearance(trace, run.cases[name])

@@ -21,9 +21,8 @@ from robo_genesis.sim.bodies.rigid_bodies import MODEL_COUNTS
 MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
-LINK = (
-    "body"  # The record's name of the only link; the engine's name depends on the shape
-)
+# The record's name of the only link; the engine's name depends on the shape
+LINK = "body"
 
 BASELINE = ContactCase(start=(0.0, 0.0, 1.0), duration=1.5)
 
@@ -105,15 +104,12 @@ EXPECTED_MODEL = MODEL_COUNTS
 # Tolerances that only judge
 
 SAME_STATE = 1e-6  # Of states at shared times where the solver steps are equal [m]
-SAME_SLIDE = (
-    1e-4  # Of a stopping distance where the friction of the pair did not change [m]
-)
-COULOMB_SHARE = (
-    0.20  # Relative, of a stopping distance against Coulomb's: these cubes hop
-)
-DEPTH_TOLERANCE = (
-    1e-4  # Of a reported depth against that of the positions [m]: corners differ
-)
+# Of a stopping distance where the friction of the pair did not change [m]
+SAME_SLIDE = 1e-4
+# Relative, of a stopping distance against Coulomb's: these cubes hop
+COULOMB_SHARE = 0.20
+# Of a reported depth against that of the positions [m]: corners differ
+DEPTH_TOLERANCE = 1e-4
 
 # Of the conserved energy in a flight, as a share of the energy at the start: float32
 # rounds in each of up to some thousand solver steps. The bounded error of the total
@@ -122,9 +118,8 @@ LEVEL_SHARE = 1e-4
 
 # Of the share kept at the first bounce with the finest step, against a spring [%]
 FINE_SHARE = 0.3
-COARSE_SHARE = (
-    1.5  # With some coarser step, that share differs from a spring's by more [%]
-)
+# With some coarser step, that share differs from a spring's by more [%]
+COARSE_SHARE = 1.5
 
 # The lesson's camera, close enough to show the cube large and its whole path.
 VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.87), "fov": 16}

@@ -8,12 +8,7 @@ from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 from . import study_spec, theory
-from .metrics import (
-    LandingMetrics,
-    SlideMetrics,
-    aligned,
-    of_body,
-)
+from .metrics import LandingMetrics, SlideMetrics, aligned, of_body
 
 # Group of a bundle's metrics: the engine's time constant of a contact by scene [s].
 GROUP = "time_constant"
@@ -43,13 +38,6 @@ def share_of_step(scene: str) -> float:
     return case.h / theory.contact_seconds(case)
 
 
-def depth_shares(run: Experiment, scene: str) -> list[float]:
-    """Return each depth as a share of v T / e, in the order of the heights."""
-    return [
-        found.penetration / theory.depth(case) for _, case, found in row(run, scene)
-    ]
-
-
 def clean(run: Experiment) -> list[tuple[str, ContactCase, SlideMetrics]]:
     """Return name, case and metrics of the slides with the elliptic cone and its resolution."""
     return [
@@ -76,7 +64,7 @@ def distance_between(first: ContactTrace, second: ContactTrace) -> FloatArray:
         scene.
     """
     difference = np.subtract(*aligned(first, second, "link_pos"), dtype=np.float64)
-    return np.asarray(np.linalg.norm(difference - difference[0], axis=1))
+    return np.linalg.norm(difference - difference[0], axis=1)
 
 
 def stops_of_lane(run: Experiment, lane: str) -> dict[str, float | None]:

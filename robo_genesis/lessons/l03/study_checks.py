@@ -47,8 +47,9 @@ def scatter_shrinks(run: Experiment) -> Findings:
     """Depths as shares of v T / e scatter widely at h = T / 2, and less at every smaller step."""
     limit = np.inf
     for name in sorted(study_spec.STEP_CASES, key=study.share_of_step, reverse=True):
-        shares = study.depth_shares(run, name)
-        scatter, label = float(np.ptp(shares)), f"{name}.scatter_of_depth_share"
+        depths = study.row(run, name)
+        shares = [found.penetration / theory.depth(case) for _, case, found in depths]
+        scatter, label = np.ptp(shares), f"{name}.scatter_of_depth_share"
         coarse = above(label, scatter, study_spec.SCATTER_COARSE)
         yield (
             coarse if study.share_of_step(name) >= 0.5 else below(label, scatter, limit)
@@ -221,7 +222,7 @@ def one_stop_converges(run: Experiment) -> Findings:
     """
     for lane, coarsest in study.LANES.items():
         fine = [found or np.nan for found in study.stops_of_lane(run, lane).values()]
-        spread = float(np.ptp(fine[-study_spec.FINEST :]))
+        spread = np.ptp(fine[-study_spec.FINEST :])
         share = spread / theory.coulomb_distance(run.cases[coarsest])
         limit = study_spec.UNSETTLED if lane == "low" else np.inf
         yield at_most(f"{lane}.spread_share", share, limit)

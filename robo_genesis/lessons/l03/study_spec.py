@@ -6,14 +6,7 @@ from typing import Any
 from robo_genesis.core.experiment import case_inputs
 from robo_genesis.sim.bodies.contacts import ContactCase
 
-from .spec import (
-    BASELINE,
-    BESIDE,
-    BOUNCES,
-    LANDINGS,
-    PUSHED,
-    SLIDES,
-)
+from .spec import BASELINE, BESIDE, BOUNCES, LANDINGS, PUSHED, SLIDES
 
 MEASURES = False
 
@@ -182,9 +175,8 @@ BY_BOTH = {name: LANDINGS[name] for name in COMPARED} | HOPPED | CONVEX_SLIDES
 # Runs in Genesis and in MuJoCo with equal settings.
 ENGINE_PAIRS = {name: f"mujoco_{name}" for name in BY_BOTH}
 
-OWN_DEFAULTS = (
-    "mujoco_own_baseline"  # The baseline in MuJoCo with MuJoCo's default contact
-)
+# The baseline in MuJoCo with MuJoCo's default contact
+OWN_DEFAULTS = "mujoco_own_baseline"
 
 IN_MUJOCO = {ENGINE_PAIRS[name]: case for name, case in BY_BOTH.items()} | {
     OWN_DEFAULTS: BASELINE
@@ -237,20 +229,17 @@ HOP_SHARE = 0.25  # Of a hop against the formula of one step, where it applies
 # The steps at which the formula of one step is compared: the first step throws the cube
 # off.
 HOP_APPLIES = ("hop_10000us", "hop_5000us", "hop_2500us", "hop_2000us")
-HOP_LEFT = (
-    0.15  # Largest share of the hop at 5 ms that is left at the smaller steps studied
-)
+# Largest share of the hop at 5 ms that is left at the smaller steps studied
+HOP_LEFT = 0.15
 INVISIBLE = 1e-3  # Height of a hop that nobody sees in a film of the scene [m]
 SLOW = 0.2  # Speed up to which a hop is invisible at a solver step of 5 ms [m/s]
 
 STEPPED_TOLERANCE = 2e-4  # Of a slide on four corners against the stepped formula [m]
-RULE_TOLERANCE = (
-    0.02  # Of the coefficient that a clean slide shows against that of a rule
-)
+# Of the coefficient that a clean slide shows against that of a rule
+RULE_TOLERANCE = 0.02
 NEARLY = 0.05  # Share of a stopping distance that counts as nearly Coulomb's
-RATIO_TOLERANCE = (
-    0.02  # Share of the ratio of two impulses against the coefficient of friction
-)
+# Share of the ratio of two impulses against the coefficient of friction
+RATIO_TOLERANCE = 0.02
 # Loss of speed, in multiples of μ g dt, that friction under the weight cannot cause
 BLOW = 5.0
 # Number of the smallest steps that are compared for convergence, all at most T / 10

@@ -11,12 +11,7 @@ from robo_genesis.core.text import NOT_OBSERVED, format_value, readable
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 from . import checks, spec, study, study_spec, theory
-from .metrics import (
-    CLEAR,
-    BounceMetrics,
-    LandingMetrics,
-    SlideMetrics,
-)
+from .metrics import CLEAR, BounceMetrics, LandingMetrics, SlideMetrics
 from .text import millimetres, milliseconds
 
 MEASURES = False

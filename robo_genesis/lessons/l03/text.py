@@ -40,7 +40,7 @@ SENTENCES = {
     "Which friction counts": {
         "friction_orders": "On the table with 0.3, the cube with 0.1 travels farther: "
         "{low_on_030.stop_distance}. The cube with 0.8 stops after {high_on_030.stop_distance}, as "
-        "on the other table: its own coefficient is the larger one on both.",
+        "on the other table: its own coefficient is the larger one on both."
     },
     "The energy of the ball": {
         "energy_converges": "At the first bounce with the finest step, the ball keeps "

@@ -18,7 +18,7 @@ RULES: Mapping[str, Callable[[float, float], float]] = {
     "the larger": max,
     "the smaller": min,
     "the mean": lambda a, b: (a + b) / 2,
-    "the geometric mean": lambda a, b: float(np.sqrt(a * b)),
+    "the geometric mean": lambda a, b: np.sqrt(a * b),
 }
 
 
@@ -56,7 +56,7 @@ def kept_at_bounces(damping_ratio: float) -> float:
     ζ²)), and the energy by its square. The formula neglects gravity and lets the spring
     pull.
     """
-    return float(np.exp(-2 * np.pi * damping_ratio / np.sqrt(1 - damping_ratio**2)))
+    return np.exp(-2 * np.pi * damping_ratio / np.sqrt(1 - damping_ratio**2))
 
 
 def contact_seconds(case: ContactCase) -> float:
@@ -66,7 +66,7 @@ def contact_seconds(case: ContactCase) -> float:
 
 def impact_speed(case: ContactCase) -> float:
     """Return √(2 g z), the speed at which a dropped body meets the surface [m/s]."""
-    return float(np.sqrt(2 * case.gravity * (case.start[2] - case.rest_height)))
+    return np.sqrt(2 * case.gravity * (case.start[2] - case.rest_height))
 
 
 def depth(case: ContactCase) -> float:
@@ -74,7 +74,7 @@ def depth(case: ContactCase) -> float:
 
     From x(0) = 0 and ẋ(0) = v follows x = v t e^(−t / T), which is largest at t = T.
     """
-    return impact_speed(case) * contact_seconds(case) / float(np.e)
+    return impact_speed(case) * contact_seconds(case) / np.e
 
 
 def first_depth(case: ContactCase) -> float:
@@ -83,8 +83,8 @@ def first_depth(case: ContactCase) -> float:
     After n steps without contact a body has fallen by g h² n (n + 1) / 2.
     """
     drop, unit = case.start[2] - case.rest_height, case.gravity * case.h**2 / 2
-    n = int(np.ceil((np.sqrt(1 + 4 * drop / unit) - 1) / 2))
-    return float(unit * n * (n + 1) - drop)
+    n = np.ceil((np.sqrt(1 + 4 * drop / unit) - 1) / 2)
+    return unit * n * (n + 1) - drop
 
 
 def release_speed(case: ContactCase) -> float:
@@ -92,7 +92,7 @@ def release_speed(case: ContactCase) -> float:
 
     The force (v / T) e^(−t / T) (2 − t / T) is zero at t = 2 T.
     """
-    return impact_speed(case) * float(np.exp(-2))
+    return impact_speed(case) * np.exp(-2)
 
 
 def rebound(case: ContactCase) -> float:
@@ -100,7 +100,7 @@ def rebound(case: ContactCase) -> float:
 
     At its release it is 2 v T e⁻² below the surface.
     """
-    at_release = 2 * impact_speed(case) * contact_seconds(case) * float(np.exp(-2))
+    at_release = 2 * impact_speed(case) * contact_seconds(case) * np.exp(-2)
     return max(0.0, release_speed(case) ** 2 / (2 * case.gravity) - at_release)
 
 

@@ -16,14 +16,7 @@ from robo_genesis.core.text import decimal, format_value
 
 from .metrics import StepMetrics
 from .spec import ENTRY, MARGINS, STEPPED_JOINT
-from .study_spec import (
-    CASE_POINTS,
-    KP,
-    KV,
-    POINTS,
-    STEP_SIZES,
-    GridPoint,
-)
+from .study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
 from .tables import NOUNS, UNITS, margin_text, share_text
 
 MEASURES = False

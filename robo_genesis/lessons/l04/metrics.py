@@ -25,7 +25,7 @@ def is_saturated(
     control_force: FloatArray | float, limit: FloatArray | float
 ) -> np.ndarray:
     """Return where a control force of either sign reaches the saturation threshold of its limit."""
-    return np.asarray(np.abs(control_force) >= SATURATION_THRESHOLD * limit)
+    return np.abs(control_force) >= SATURATION_THRESHOLD * limit
 
 
 # Arrays of a bundle that several metrics are computed from.
@@ -80,14 +80,14 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
     )
     qd = trace.qd[:, entry].astype(np.float64)
     return StepMetrics(
-        initial_error=float(step),
+        initial_error=step,
         rise_time=first_time(trace.t, q - q[0] >= RISE_FRACTION * step),
-        overshoot=float(max(0.0, (q - q_target).max())),
+        overshoot=max(0.0, (q - q_target).max()),
         settling_time=settled_from(trace.t, np.abs(q - q_target) <= SETTLING_BAND),
-        final_error=float(abs(q_target - q[-1])),
-        final_velocity=float(qd[-1]),
-        peak_speed=float(np.abs(qd).max()),
-        peak_control=float(control.max()),
+        final_error=abs(q_target - q[-1]),
+        final_velocity=qd[-1],
+        peak_speed=np.abs(qd).max(),
+        peak_control=control.max(),
         saturation_samples=saturation_samples,
         saturation_duration=saturation_samples * trace.dt,
     )

@@ -62,10 +62,12 @@ INTEGRATOR = MISTAKES.with_more(
     {study.GROUP: Readings(study.AT_START)},
     study_checks.INTEGRATOR,
 )
-GRID_NOTE = "in a scene with a copy of the robot for each run of the grid"
 BATCH = MISTAKES.with_more(
     partial(study_spec.parameters, "batch"),
-    {name: Run(case, note=GRID_NOTE) for name, case in study_spec.GRID_CASES.items()},
+    runs_of(
+        study_spec.GRID_CASES,
+        note="in a scene with a copy of the robot for each run of the grid",
+    ),
     checks=(study_checks.grid_matches_cases,),
 )
 

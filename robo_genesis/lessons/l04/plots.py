@@ -54,7 +54,7 @@ def assigned(run: Experiment) -> Figure:
     """Draw the stepped joint with assigned states and with a commanded target, over time."""
     figure, ax = plotting.axes(3.4)
     written, commanded = run.traces[ASSIGNED], run.traces["baseline"]
-    ax.axhline(float(commanded.target[0, ENTRY]), label="target", **LINE)
+    ax.axhline(commanded.target[0, ENTRY], label="target", **LINE)
     crosses = look("other", linestyle="", marker="x", markersize=4)
     ax.plot(written.t[::4], written.q[::4, ENTRY], label="set_dofs_position", **crosses)
     ax.plot(
@@ -89,11 +89,11 @@ def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figur
     position, velocity, force = axes = figure.subplots(3, 1, sharex=True)
     _target(position, first)
     velocity.axhline(0, **LINE)
-    limit = float(first.effort_limit[ENTRY])
+    limit = first.effort_limit[ENTRY]
     force.axhline(limit, label="limit, read back", **LIMIT)
     force.axhline(-limit, **LIMIT)
     for ax, (panel, (field, ylabel)) in zip(axes, PANELS.items(), strict=True):
-        for name, mark in marks_of(list(traces), CASE_MARKS).items():
+        for name, mark in marks_of(traces, CASE_MARKS).items():
             values = getattr(traces[name], field)[:, ENTRY]
             t = traces[name].t[-len(values) :]
             shown = t <= until
@@ -106,7 +106,7 @@ def _response(height: float, traces: Mapping[str, Trace], until: float) -> Figur
 def baseline_forces(run: Experiment) -> Figure:
     """Draw both force getters of the baseline: they answer different questions."""
     (figure, ax), trace = plotting.axes(3.4), run.traces["baseline"]
-    ax.axhline(float(trace.effort_limit[ENTRY]), label="limit, read back", **LIMIT)
+    ax.axhline(trace.effort_limit[ENTRY], label="limit, read back", **LIMIT)
     for name, array, mark in (
         ("get_dofs_control_force", trace.control_force, "baseline"),
         ("get_dofs_force", trace.internal_force, "other"),
@@ -132,10 +132,10 @@ def defined(run: Experiment) -> Figure:
         (m.final_error, "rad", START, "final error:", 0.62, (0.8, 1)),
     ):
         if time is not None:
-            at = int(np.abs(trace.t - time).argmin())
+            at = np.abs(trace.t - time).argmin()
             ax.annotate(
                 f"{name} {format_value(value, unit)}",
-                (float(trace.t[at]), float(q[at])),
+                (trace.t[at], q[at]),
                 (0.98, height),
                 textcoords="axes fraction",
                 ha="right",
@@ -149,7 +149,7 @@ def defined(run: Experiment) -> Figure:
 
 def _target(ax: Axes, trace: Trace) -> None:
     """Draw the target of the stepped joint in its settling band."""
-    value = float(trace.target[0, ENTRY])
+    value = trace.target[0, ENTRY]
     ax.axhspan(value - SETTLING_BAND, value + SETTLING_BAND, color=BAND, zorder=0)
     ax.axhline(value, label=f"target ±{SETTLING_BAND:g} rad", **LINE)
 

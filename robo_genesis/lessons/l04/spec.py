@@ -17,11 +17,7 @@ from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase
 
-from .metrics import (
-    RISE_FRACTION,
-    SATURATION_THRESHOLD,
-    SETTLING_BAND,
-)
+from .metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 
 MEASURES = False
 

@@ -19,12 +19,7 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 from . import spec, study_spec
 from .metrics import StepMetrics, is_saturated, step_metrics
 from .spec import ENTRY
-from .theory import (
-    IdealJoint,
-    overshoot_share,
-    step_share,
-    stepped_joint,
-)
+from .theory import IdealJoint, overshoot_share, step_share, stepped_joint
 
 # Genesis, and MuJoCo by its integrator.
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
@@ -33,7 +28,7 @@ ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 SUBSTEPS, H = spec.G1.substeps, spec.G1.dt / spec.G1.substeps
 
 # Velocity gains of the compared cases [N·m·s/rad].
-COMPARED_KV = sorted({float(case.kv[ENTRY]) for case in study_spec.COMPARED.values()})
+COMPARED_KV = sorted({case.kv[ENTRY] for case in study_spec.COMPARED.values()})
 
 # Group of a bundle's metrics: what the engines report of the stepped joint without a
 # run.
@@ -128,14 +123,14 @@ def damping_ratio(case: str) -> FloatArray:
     """Return h (KV + d) / I of each joint (d,) at the start, by the model in MuJoCo."""
     settings = study_spec.COMPARED[case]
     inertia, _, damping = mujoco_kinematics.at_rest(settings.q_start)
-    return np.asarray(H * (settings.kv + damping) / inertia)
+    return H * (settings.kv + damping) / inertia
 
 
 def ideal(run: Experiment, case: str) -> IdealJoint:
     """Return the linear joint with a compared case's gains and the inertia of Genesis."""
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
-    damping = float(gains.kv[ENTRY]) + readings["passive_damping"]
-    return IdealJoint(readings["inertia_Genesis"], damping, float(gains.kp[ENTRY]))
+    damping = gains.kv[ENTRY] + readings["passive_damping"]
+    return IdealJoint(readings["inertia_Genesis"], damping, gains.kp[ENTRY])
 
 
 def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
@@ -152,7 +147,7 @@ def off_ideal(run: Experiment, case: str, kind: str = "") -> float:
 
 def supports(run: Experiment, case: str) -> tuple[float, float]:
     """Return KP × final error of a case, and the gravity effort at its end [N·m]."""
-    kp = float(spec.CASES[case].kp[ENTRY])
+    kp = spec.CASES[case].kp[ENTRY]
     return kp * run.metrics[case].final_error, run.readings[GROUP][f"gravity_{case}"]
 
 
@@ -165,7 +160,7 @@ def model_overshoot(run: Experiment, case: str, height: float) -> float:
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
     limit, gravity = np.inf, 0.0
     if height >= spec.STEP:
-        limit = float(gains.effort_limit[ENTRY])
+        limit = gains.effort_limit[ENTRY]
         gravity = (
             readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]
         ) / 2
@@ -194,8 +189,8 @@ def distance_from_ideal(run: Experiment, case: str) -> FloatArray:
     """Return the distance of a case from the ideal joint at each state, (n+1,) [rad]."""
     trace = run.traces[case]
     q = trace.q[:, ENTRY].astype(float)
-    step = float(study_spec.COMPARED[case].q_target[ENTRY]) - q[0]
-    return np.asarray(np.abs(q - q[0] - step * ideal(run, case).response(trace.t)))
+    step = study_spec.COMPARED[case].q_target[ENTRY] - q[0]
+    return np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
 
 
 def at_limit_until(trace: Trace) -> float:
@@ -206,7 +201,7 @@ def at_limit_until(trace: Trace) -> float:
     limit, force = trace.effort_limit[ENTRY], trace.control_force[:, ENTRY]
     forces = np.append(trace.start_control_force[ENTRY], force)
     held = is_saturated(forces, limit) & (np.sign(forces) == np.sign(forces[0]))
-    return float(trace.t[max(0, int(np.append(held, False).argmin()) - 1)])
+    return trace.t[max(0, int(np.append(held, False).argmin()) - 1)]
 
 
 def braking_error(trace: Trace) -> float:
@@ -216,7 +211,7 @@ def braking_error(trace: Trace) -> float:
     """
     brakes = trace.control_force[:, ENTRY] < 0
     left = (trace.target - trace.q[1:])[:, ENTRY]
-    return float(left[brakes.argmax()] * brakes.any())
+    return left[brakes.argmax()] * brakes.any()
 
 
 def unstable_joints(trace: Trace) -> list[str]:
@@ -266,7 +261,7 @@ def spread(run: Experiment, substeps: int) -> float:
         for engine in ENGINES
         if not unstable(run, engine, substeps)
     ]
-    return float(np.ptp(stable))
+    return np.ptp(stable)
 
 
 def relation_outcome(

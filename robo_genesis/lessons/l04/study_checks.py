@@ -106,7 +106,7 @@ def model_predicts(run: Experiment) -> Findings:
         )
         yield noted(f"{case}_small.model_off_share", off_model)
         yield noted(f"{case}_small.ideal_off_share", off_ideal)
-        yield equal(f"{case}_small.model_nearer", bool(off_model < off_ideal), nearer)
+        yield equal(f"{case}_small.model_nearer", off_model < off_ideal, nearer)
 
 
 def clipped_before_parting(run: Experiment) -> Findings:

@@ -1,22 +1,14 @@
 """Specification of L04's deeper pages: cases beyond the lab, a grid of steps, tolerances."""
 
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import product, starmap
 from typing import Any, NamedTuple
 
 from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
 
 from .metrics import SETTLING_BAND
-from .spec import (
-    ENTRY,
-    G1,
-    G2,
-    G3,
-    START_OF_STEP,
-    STEP,
-    changed,
-)
+from .spec import ENTRY, G1, G2, G3, START_OF_STEP, STEP, changed
 
 MEASURES = False
 
@@ -61,9 +53,8 @@ LONGER = "G2_longer"
 # The length of the window is the one factor.
 LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
 
-ASSIGNED = (
-    "assigned"  # Name of the run whose states are assigned, without control and steps
-)
+# Name of the run whose states are assigned, without control and steps
+ASSIGNED = "assigned"
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +110,7 @@ class GridPoint(NamedTuple):
 
 
 # All points; KV changes fastest, the step slowest.
-POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
+POINTS = tuple(starmap(GridPoint, product(STEP_SIZES, KP, KV)))
 
 # The runs of the grid: one batch, one environment for each.
 GRID_CASES = {
@@ -138,9 +129,8 @@ CASE_POINTS = {
 
 # What only judges
 
-PARTING_THRESHOLD = (
-    SETTLING_BAND  # Distance at which a position has left the ideal one [rad]
-)
+# Distance at which a position has left the ideal one [rad]
+PARTING_THRESHOLD = SETTLING_BAND
 
 # Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone
 # explain the final error, so this selects the cases that `gravity_support` checks.
@@ -154,9 +144,8 @@ SAME_MODEL = 3e-4
 # step, as a share of the step.
 SMALL_STEP_TOLERANCE = 0.03
 ONE_JOINT_TOLERANCE = 0.015  # The same of the stepped model and a large step [rad]
-CHATTER_SHARE = (
-    0.5  # A run is unstable if a joint's effort is clipped in a larger share of samples
-)
+# A run is unstable if a joint's effort is clipped in a larger share of samples
+CHATTER_SHARE = 0.5
 # Largest spread of the engines at the finest step, by that at the lesson's step
 SPREAD_SHARE = 0.2
 
@@ -167,7 +156,7 @@ AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
 
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
-    own: dict[str, dict[str, Any]] = {
+    own = {
         "lecture": {"cases": case_inputs(EXAMPLE_CASES | LONGER_CASES)},
         "formula": {"cases": case_inputs(STEP_CASES)},
         "integrator": {

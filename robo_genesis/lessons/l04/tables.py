@@ -62,8 +62,8 @@ def force_ranges(run: Experiment) -> Rows:
     for k, name in enumerate(joints.names):
         yield {
             "joint": name,
-            "KP [effort per rad or m]": float(spec.BASELINE.kp[k]),
-            "KV [effort·s per rad or m]": float(spec.BASELINE.kv[k]),
+            "KP [effort per rad or m]": spec.BASELINE.kp[k],
+            "KV [effort·s per rad or m]": spec.BASELINE.kv[k],
             "range, read back": f"{-limits[k]:g} … {limits[k]:g} {joints.effort_units[k]}",
         }
 

@@ -1,19 +1,16 @@
 """The interpretation that L04's lab generates: sentences that are right for every outcome."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
-from robo_genesis.core.comparison import Comparison, compare
+from robo_genesis.core.comparison import HELD_BY, Comparison
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.tables import comparison_sentence, prediction_sentence
+from robo_genesis.core.tables import comparison_sentence
 from robo_genesis.core.text import blocks, format_value
 
 from . import spec
-from .metrics import (
-    SATURATION_THRESHOLD,
-    SETTLING_BAND,
-    StepMetrics,
-)
+from .metrics import SATURATION_THRESHOLD, SETTLING_BAND, StepMetrics
 from .study_spec import COMPARED
+from .tables import NOUNS, UNITS
 
 MEASURES = False
 
@@ -49,7 +46,7 @@ def conclusions(run: Experiment) -> str:
     ]
     cost = COSTS[compared(run, kv_pair, "rise_time").order]
     cost = cost.format(first=kv_pair[0], second=kv_pair[1])
-    said: dict[str, Iterable[str]] = {
+    said = {
         "1. {} → {}: the effect of KP".format(*kp_pair): pair_sentences(run, kp_pair),
         "2. {} → {}: the effect of KV, and its cost".format(*kv_pair): [
             *pair_sentences(run, kv_pair),
@@ -73,13 +70,28 @@ def pair_sentences(run: Experiment, names: tuple[str, str]) -> Iterator[str]:
     for metric in COMPARED_METRICS:
         yield comparison_sentence(names, compared(run, names, metric))
     for metric, order in (of[1:3] for of in spec.RELATIONS if of[0] == names):
-        yield prediction_sentence(names, compared(run, names, metric), order, INSPECT)
+        yield prediction_sentence(names, compared(run, names, metric), order)
 
 
 def compared(run: Experiment, names: tuple[str, str], metric: str) -> Comparison:
     """Compare one metric of two cases with its declared margin."""
-    first, second = (run.metrics[name] for name in names)
-    return compare(metric, first, second, spec.RESOLUTION, spec.MARGINS[metric])
+    first, second = (getattr(run.metrics[name], metric) for name in names)
+    unit, margin = UNITS[metric], spec.MARGINS[metric]
+    resolution = spec.RESOLUTION[unit]
+    return Comparison(NOUNS[metric], unit, first, second, resolution, margin)
+
+
+def prediction_sentence(
+    names: tuple[str, str], comparison: Comparison, predicted: str
+) -> str:
+    """Return the outcome of a prediction, with advice if it did not hold."""
+    label = comparison.label
+    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
+    if comparison.order is None:
+        return f"{claim}. Cannot be judged: not observed in either case."
+    if comparison.order in HELD_BY[predicted]:
+        return f"{claim}. Held in this run."
+    return f"{claim}. **Did not hold**: measured {comparison.order}. {INSPECT}"
 
 
 def final_error_sentences(name: str, m: StepMetrics) -> Iterator[str]:

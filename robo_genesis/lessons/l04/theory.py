@@ -26,19 +26,19 @@ class IdealJoint:
     @property
     def omega(self) -> float:
         """Natural frequency ω = √(KP / I) [rad/s]."""
-        return float(np.sqrt(self.kp / self.inertia))
+        return np.sqrt(self.kp / self.inertia)
 
     @property
     def zeta(self) -> float:
         """Damping ratio ζ = D / (2 √(KP I))."""
-        return float(self.damping / (2 * np.sqrt(self.kp * self.inertia)))
+        return self.damping / (2 * np.sqrt(self.kp * self.inertia))
 
     @property
     def overshoot(self) -> float:
         """Overshoot as a share of the step: exp(−π ζ / √(1 − ζ²)), zero for ζ ≥ 1."""
         if self.zeta >= 1:
             return 0.0
-        return float(np.exp(-np.pi * self.zeta / np.sqrt(1 - self.zeta**2)))
+        return np.exp(-np.pi * self.zeta / np.sqrt(1 - self.zeta**2))
 
     def response(self, t: FloatArray) -> FloatArray:
         """Return the response (n,) to a unit step from rest at times `t` (n,) [s], for ζ ≠ 1.
@@ -49,7 +49,7 @@ class IdealJoint:
         root = np.sqrt(complex(zeta**2 - 1))  # imaginary for an underdamped joint
         slow, fast = omega * (zeta - root), omega * (zeta + root)  # both decay
         decay = (fast * np.exp(-slow * t) - slow * np.exp(-fast * t)) / (fast - slow)
-        return np.asarray(1 - decay.real)
+        return 1 - decay.real
 
 
 def stepped_joint(
@@ -98,7 +98,7 @@ def step_share(step: Trace, hold: Trace, entry: int) -> FloatArray:
     difference = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(
         np.float64
     )
-    return np.asarray(difference / height)
+    return difference / height
 
 
 def overshoot_share(share: FloatArray) -> float:

@@ -94,7 +94,7 @@ def stretched_is_singular(run: Experiment) -> Findings:
         for q in study.jacobian_postures(run).values()
     ]
     others = min(values[0].min(), values[1].min(), values[2][3])
-    yield below("nearly_stretched", values[2][4], float(others) / 3)
+    yield below("nearly_stretched", values[2][4], others / 3)
 
 
 def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Findings:
@@ -239,7 +239,7 @@ def nearest_is_nearer(run: Experiment) -> Findings:
     found = study.answers_of(run, "unreachable")
     of_engine = study.weighted(found["position"], found["rotation"])
     of_nearest = study.weighted(*kinematics.distances(study.nearest()[1]))
-    nearer = float(of_engine.min() - of_nearest)
+    nearer = of_engine.min() - of_nearest
     yield above("nearest_answer_farther_by_m", nearer, spec.BEYOND_NEAREST)
 
 

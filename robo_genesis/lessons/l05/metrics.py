@@ -65,5 +65,5 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
         float(np.linalg.norm(fingertip(command) - fingertip(end))),
         *distance_and_angle(target, end),
         overshoot_along_line(path, case.position),
-        float(np.abs(trace.qd[-1]).max()),
+        np.abs(trace.qd[-1]).max(),
     )

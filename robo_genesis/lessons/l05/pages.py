@@ -44,10 +44,11 @@ LECTURE = replace(
 )
 LAB = with_functions(RECORDED, "chain", "damped", "accept", "project", "back_project")
 
-ANSWERS_NOTE = (
-    "answers of the solver assigned to the state, no step taken; its time is nominal"
+ANSWERS = runs_of(
+    spec.QUESTIONS,
+    measured=False,
+    note="answers of the solver assigned to the state, no step taken; its time is nominal",
 )
-ANSWERS = runs_of(spec.QUESTIONS, measured=False, note=ANSWERS_NOTE)
 
 # The page about many solutions, the map of targets and the target beyond reach.
 SOLUTIONS = MOTION.with_more(spec.solution_parameters, ANSWERS, checks=checks.SOLUTIONS)

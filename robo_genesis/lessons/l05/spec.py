@@ -61,14 +61,13 @@ FINER = {
 # limits.
 MORE = FINER | {"unlimited": replace(KP_DOUBLED, effort_limit=10 * franka.EFFORT_LIMIT)}
 
+# Words of a reader for runs.
 LABELS = {
     name: name.replace("kp", "KP").replace("_ramp", ", ramp").replace("_", " ")
     for name in CASES
 }
 LABELS |= {f"{name}_fine": f"{LABELS[name]}, {FINE} substeps" for name in CASES}
-LABELS["unlimited"] = (
-    "KP doubled, ten times the force limits"  # Words of a reader for runs
-)
+LABELS["unlimited"] = "KP doubled, ten times the force limits"
 
 VIEWED = "world"  # The recorded view of the camera, before the first step
 
@@ -129,12 +128,12 @@ REACH_MAP = {
     for name, points in PLANES.items()
 }
 
-RESTARTS, RESTART_SEED = 100, 0
+RESTARTS = 100
 
 # Starts (100, 9) of the solver, uniform within the limits [rad or m].
 RANDOM_STARTS = np.hstack(
     [
-        np.random.default_rng(RESTART_SEED).uniform(*ARM_LIMITS, (RESTARTS, 7)),
+        np.random.default_rng(0).uniform(*ARM_LIMITS, (RESTARTS, 7)),
         np.tile(franka.Q_START[7:], (RESTARTS, 1)),
     ]
 )
@@ -185,9 +184,8 @@ TOLERANCES |= dict.fromkeys(QUESTIONS, (math.inf, 0.0))
 # Share of the displacement that gravity, KP and the Jacobian may leave unexplained.
 SAG_SHARE = 0.02
 
-ANGLE_WEIGHT = (
-    0.5  # Metres that count as much as one radian, where the nearest pose is sought
-)
+# Metres that count as much as one radian, where the nearest pose is sought
+ANGLE_WEIGHT = 0.5
 
 # The engine's answer for the target beyond reach is farther than the nearest pose by
 # more [m].
@@ -196,7 +194,7 @@ BEYOND_NEAREST = 0.01
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    asked: dict[str, Any] = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
+    asked = case_inputs(PRECISE | {"in_the_floor": IN_THE_FLOOR})
     asked["stretched"] = NEARLY_STRETCHED.tolist()
     counted = list(EXPECTED_MODEL)
     return inputs(CASES, VIEW, asked=asked, counted=counted, marker=MARKER_RADIUS)

@@ -86,9 +86,7 @@ def read_jacobians(page: Any, robot: Any, joints: JointMap) -> None:
     """Give a page the largest differences of the engine's Jacobian and ours; it assigns states."""
     found = {}
     for name, q in jacobian_postures(page).items():
-        robot.set_dofs_position(
-            q.copy(), joints.dofs_idx_local.tolist(), zero_velocity=True
-        )
+        robot.set_dofs_position(q.copy(), joints.dofs, zero_velocity=True)
         rows = engine.jacobian(robot, joints)[:, :ARM]
         found[name] = float(np.abs(rows - kinematics.jacobian(q)).max())
     page.readings[JACOBIANS] = found
@@ -238,7 +236,7 @@ def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:
     numbers = np.flatnonzero(answers_of(run, "many_starts")["accepted"])
     q = run.traces["many_starts"].q[1 + numbers, :ARM].astype(float)
     return [
-        (curve, [int(numbers[k]) for k in sorted(inside, key=lambda k: float(q[k, 0]))])
+        (curve, numbers[sorted(inside, key=lambda k: q[k, 0])].tolist())
         for curve, inside in families(q)
     ]
 

@@ -25,9 +25,8 @@ NO_PICTURE = "SKIP: no camera"
 
 SHOWN = 3  # Joints with a row of their own in the table of gravity
 
-AT_LIMIT = (
-    0.99  # Share of the force limit from which a sample is counted as at the limit
-)
+# Share of the force limit from which a sample is counted as at the limit
+AT_LIMIT = 0.99
 
 # What chooses one of several answers: a key of `study.answers`, and which value is
 # best.

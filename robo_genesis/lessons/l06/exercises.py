@@ -73,7 +73,7 @@ MASK = np.array([False, True])
 NUMBERS: tuple[Any, ...] = ([], [1], [1, 1], [1, 3], [-1, 1], [1.5, 0], MASK)
 
 # Shape and environments of commands that must be refused.
-WRONG: list[tuple[Any, Any]] = [
+WRONG = [
     ((3,), [1]),
     *product(SHAPES, [[0, 2]]),
     *product([(2, 3)], NUMBERS),
@@ -89,7 +89,7 @@ def subset(command: Written) -> Findings:
         q = 0.3 + np.arange(12.0).reshape(4, 3)[: len(envs), : len(dofs)]
         expected[np.ix_(envs, dofs)] = q
         command(robot, dofs, q, np.array(envs))
-        yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
+        yield equal(f"{name}.wrong_entries", (robot.target != expected).sum(), 0)
         yield equal(f"{name}.commands_sent", robot.calls, 1)
     robot = Robot(3)
     for shape, envs in WRONG:
@@ -151,6 +151,6 @@ def throughput(measure: Written) -> Findings:
         machine = Machine(*first, *np.repeat(repeats, steps))
         calls = machine.step, machine.finish, machine.clock
         found = float(measure(*calls, len(first), steps, len(repeats)))
-        expected = STEP * float(np.median(repeats)) + WAIT / steps
+        expected = STEP * np.median(repeats) + WAIT / steps
         yield within(f"{name}.step_s", found, expected, TINY)
         yield equal(f"{name}.number_of_steps", machine.started, len(machine.durations))

@@ -56,5 +56,5 @@ def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:
         distance_and_angle(first, measured_hand(trace, world.switch))[0],
         *distance_and_angle(last, measured_hand(trace, -1)),
         overshoot_along_line(hand[: world.switch + 1], first.position),
-        float(apart.max()) if len(apart) > 1 else None,
+        apart.max() if len(apart) > 1 else None,
     )

@@ -29,10 +29,13 @@ def target_parts() -> list[Part]:
     return parts
 
 
-COPY_NOTE = "repeats another run of this page, and has no metrics of its own"
-
 WORLDS = MeasuringPage(
-    runs=runs_of(spec.CASES) | runs_of(spec.COPIES, measured=False, note=COPY_NOTE),
+    runs=runs_of(spec.CASES)
+    | runs_of(
+        spec.COPIES,
+        measured=False,
+        note="repeats another run of this page, and has no metrics of its own",
+    ),
     kind=Trace,
     joints=JOINT_NAMES,
     readings=study.READINGS,
@@ -40,7 +43,7 @@ WORLDS = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
-LECTURE = WORLDS.with_more(dict, readings=study.LECTURE_READINGS, checks=checks.LECTURE)
+LECTURE = WORLDS.with_more(readings=study.LECTURE_READINGS, checks=checks.LECTURE)
 MODEL = {"model": study.READINGS["model"]}
 MISTAKES = replace(
     WORLDS, runs={}, readings=MODEL, checks=(checks.mapping,), camera=False

@@ -150,9 +150,8 @@ LABELS = (
     | {name: f"environment {name[-1]} alone" for name in ALONE}
 )
 
-SPACING = (
-    1.0  # Distance of neighbouring environments in pictures [m]; no state depends on it
-)
+# Distance of neighbouring environments in pictures [m]; no state depends on it
+SPACING = 1.0
 
 # Where the replay draws the environments [m]: from left to right, none hides another.
 PLACES = ((-0.81, -0.75), (-0.54, 0.09), (0.34, -0.09), (0.61, 0.75))

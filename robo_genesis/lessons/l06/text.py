@@ -221,7 +221,7 @@ def model_table(run: Experiment) -> str:
     """Return measured time and models of each number of environments."""
     models, rows = fits(run), {}
     for size, step in steps(run).items():
-        expected = [float(model.step_time(size)) for model in models]
+        expected = [model.step_time(size) for model in models]
         name = f"{size}{', fitted' * (size in FITTED)}"
         shares = f"{step / max(expected):.2f} to {step / min(expected):.2f}"
         rows[name] = ms(step), span([1e3 * of for of in expected]), shares

@@ -20,9 +20,8 @@ from robo_genesis.sim.throughput import Calls, Clock, calls_of
 # work.
 GROUP, EQUAL = "throughput", "rows_that_differ"
 
-RAISED = (
-    0.1  # Angle by which the timed command turns each arm joint from its start [rad]
-)
+# Angle by which the timed command turns each arm joint from its start [rad]
+RAISED = 0.1
 
 # Largest distance of an arm joint from its commanded angle at the end [rad], sag
 # included.

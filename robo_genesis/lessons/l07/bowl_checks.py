@@ -23,15 +23,10 @@ from robo_genesis.sim.laws import apart, each_run
 from . import bowls
 from .bowls import BALLS, BowlCase
 
-ENDS, NEAR = (
-    WALL + 0.001,
-    0.002,
-)  # Where the lowest ball ends, and how near to this height [m]
-FLAT, GAP, SHARE = (
-    1e-5,
-    2e-5,
-    1e-3,
-)  # Of a flat face [m], of points outside hulls [m], of masses
+# Where the lowest ball ends, and how near to this height [m]
+ENDS, NEAR = WALL + 0.001, 0.002
+# Of a flat face [m], of points outside hulls [m], of masses
+FLAT, GAP, SHARE = 1e-5, 2e-5, 1e-3
 
 
 def one_hull_holds_none(run: Experiment) -> Findings:
@@ -103,7 +98,7 @@ def laws_of_motion(run: Experiment) -> Findings:
 def falling_balls(trace: BodyTrace, case: BowlCase) -> Findings:
     """Yield what no run of `bowls.run_case` has."""
     fallen = summed_drop(case.h, case.substeps * np.arange(case.steps + 1))
-    free = slice(int((case.drop > fallen).sum()) or 1)  # states without any contact
+    free = slice((case.drop > fallen).sum() or 1)  # states without any contact
     down = np.array([0.0, 0.0, 1.0])
     place = case.starts - fallen[free, None, None] * down
     motion = -GRAVITY * trace.t[free, None, None] * down

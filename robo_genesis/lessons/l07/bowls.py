@@ -55,7 +55,7 @@ class BowlCase(Stepped):
     @property
     def depth(self) -> float:
         """How deep the lowest balls sink into the bowl's floor at fine steps, v T / e [m]."""
-        speed = float(np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - WALL)))
+        speed = np.sqrt(2 * GRAVITY * (HEIGHT + self.drop - WALL))
         return speed * max(T, 2 * self.h) / np.e
 
 
@@ -133,7 +133,7 @@ def bowl_metrics(trace: BodyTrace, case: BowlCase) -> BowlMetrics:
     """Measure the end of a run."""
     x, y, z = trace.link_pos[-1].astype(np.float64).T
     z = z[(np.hypot(x, y) < bowl.RIM) & (z < HEIGHT)]
-    lowest = float(z.min()) - case.radius if len(z) else None
+    lowest = z.min() - case.radius if len(z) else None
     return BowlMetrics(100 * len(z) / len(BALLS), lowest, float((z < WALL).sum()))
 
 

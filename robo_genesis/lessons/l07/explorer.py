@@ -10,15 +10,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import decimal
 
 from . import rungs
-from .table_map import (
-    CASE,
-    CELLS,
-    WORDS,
-    X,
-    Y,
-    outlines,
-    verdicts,
-)
+from .table_map import CASE, CELLS, WORDS, X, Y, outlines, verdicts
 
 MEASURES = False
 

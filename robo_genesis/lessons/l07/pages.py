@@ -45,7 +45,7 @@ LAB = with_functions(
     of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder"
 )
 MISTAKES = of_scenes(*spec.SCENES).with_more(
-    dict, checks=(checks.hovering_is_at_rest, checks.symptoms)
+    checks=(checks.hovering_is_at_rest, checks.symptoms)
 )
 
 LESSON = Lesson(

@@ -27,12 +27,11 @@ BOX = ContactCase(
     substeps=4,
 )
 
-FALLING = replace(
-    BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2
-)  # By 5 mm, on a level table
+# By 5 mm, on a level table
+FALLING = replace(BOX, start=(0.0, 0.0, TOP + 0.03), substeps=2)
 
 # Six boxes side by side across the slope, and what distinguishes each from `BOX`.
-ROW: Mapping[str, Mapping[str, float]] = {
+ROW = {
     "slick": {"friction": 0.3},
     "box": {},
     "firm": {"friction": 1.0},
@@ -64,11 +63,8 @@ PYRAMIDS = rows(
     T_5ms=(10, {"time_constant": 0.005}),
     T_20ms=(10, {"time_constant": 0.02}),
 ) | rows(STEEP, tilt_15=(15, {}), tilt_20=(20, {}))
-ROUND = {
-    "cone": "elliptic",
-    "impratio": 100.0,
-    "settle": 0.3,
-}  # the engine's impratio for it
+# With the engine's impratio for it
+ROUND = {"cone": "elliptic", "impratio": 100.0, "settle": 0.3}
 LEVEL = rows(elliptic_0=(0, ROUND))
 ELLIPTIC = rows(elliptic_10=(10, ROUND)) | rows(STEEP, elliptic_20=(20, ROUND))
 PARTS = {
@@ -128,7 +124,7 @@ LABELS = {
 
 # The contact points of sliding boxes decide. All others differ by rounding.
 # By metric or case, (atol, rtol) of a value between engines, backends or processors.
-TOLERANCES: dict[str, tuple[float, float]] = {
+TOLERANCES = {
     "creep": (2e-5, 0.2),
     "sunk": (1e-3, 0.05),
     "moved": (1e-5, 0.2),
@@ -175,12 +171,12 @@ def rest_metrics(trace: ContactTrace, case: ContactCase) -> RestMetrics:
     slow, fast = np.flatnonzero(speeds[1:] < SLOW) + 1, np.flatnonzero(speeds >= SLOW)
     return RestMetrics(
         float(path) / WINDOW,
-        case.rest_height - float(place[-1, 2]),
-        float(moved(trace)[-1]),
-        float(speeds[-n:].max()),
-        100 * float((slow > len(speeds) - 1 - n).sum()) / n,
-        float(trace.t[slow[0]]) if len(slow) else None,
-        float(trace.t[fast[-1]]) if len(fast) else None,
+        case.rest_height - place[-1, 2],
+        moved(trace)[-1],
+        speeds[-n:].max(),
+        100 * (slow > len(speeds) - 1 - n).sum() / n,
+        trace.t[slow[0]] if len(slow) else None,
+        trace.t[fast[-1]] if len(fast) else None,
     )
 
 

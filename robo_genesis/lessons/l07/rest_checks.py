@@ -10,22 +10,15 @@ from robo_genesis.sim.common_checks import stamps
 
 from . import rest
 
-SHARE, DEPTH = (
-    0.02,
-    6e-7,
-)  # Of a value against its formula, and of a depth in float32 [m]
+# Of a value against its formula, and of a depth in float32 [m]
+SHARE, DEPTH = 0.02, 6e-7
 SAME = 0.03  # Share by which creeps may differ that the formula makes equal
-STILL, ROUNDING = (
-    2e-6,
-    8e-6,
-)  # Creep that float32 causes [m/s]: on a level table, with impratio 100
-BEYOND = (
-    0.05  # Share by which a creep is larger at least where an edge has lost its load
-)
-HELD, DEEPER = (
-    0.05,
-    5.0,
-)  # Largest share of a creep and least of a depth, against the pyramid
+# Creep that float32 causes [m/s]: on a level table, with impratio 100
+STILL, ROUNDING = 2e-6, 8e-6
+# Share by which a creep is larger at least where an edge has lost its load
+BEYOND = 0.05
+# Largest share of a creep and least of a depth, against the pyramid
+HELD, DEEPER = 0.05, 5.0
 SLIDES = 5e-3  # Speed from which a box slides [m/s]
 
 
@@ -60,7 +53,7 @@ def friction_lets_creep(run: Experiment) -> Findings:
 
 def share_of(run: Experiment, name: str, other: str = "tilt_10_box") -> float:
     """Return the creep of one run as a share of that of another."""
-    return float(run.metrics[name].creep / run.metrics[other].creep)
+    return run.metrics[name].creep / run.metrics[other].creep
 
 
 def what_counts(run: Experiment) -> Findings:

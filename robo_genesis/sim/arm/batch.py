@@ -128,8 +128,7 @@ class Batch:
         The engine itself does not check them; the index of an array is checked.
         """
         known = np.arange(len(self.cases))
-        chosen: list[int] = (known if envs is None else known[list(envs)]).tolist()
-        return chosen
+        return (known if envs is None else known[list(envs)]).tolist()
 
 
 def run_batch(

@@ -55,22 +55,15 @@ def effective_inertia(
     position command.
     """
     dofs = let_go(scene, robot, joints, q)
-    added = substep(scene) * passive_damping(robot, dofs)
+    added = scene.dt / scene.substeps * passive_damping(robot, dofs)
     return mass_diagonal(robot, dofs) - added
 
 
 def mass_diagonal(robot: Any, dofs: list[int]) -> FloatArray:
     """Return the diagonal (d,) of `get_mass_mat` as the latest step used it [kg·m² or kg]."""
-    return np.asarray(
-        to_numpy(robot.get_mass_mat()).astype(np.float64).diagonal()[dofs]
-    )
+    return to_numpy(robot.get_mass_mat()).astype(np.float64).diagonal()[dofs]
 
 
 def passive_damping(robot: Any, dofs: list[int]) -> FloatArray:
     """Return the joint damping (d,) of the model [N·m·s/rad or N·s/m], without gains."""
     return to_numpy(robot.get_dofs_damping(dofs)).astype(np.float64)
-
-
-def substep(scene: Any) -> float:
-    """Return the length of one solver step [s]."""
-    return float(scene.dt / scene.substeps)

@@ -166,4 +166,4 @@ def jacobian(robot: Any, joints: JointMap, link: str = END_EFFECTOR) -> FloatArr
     world's axes.
     """
     found = to_numpy(robot.get_jacobian(link=robot.get_link(link)))
-    return np.asarray(found[:, joints.dofs_idx_local])
+    return found[:, joints.dofs_idx_local]

@@ -77,7 +77,7 @@ def validate(case: ControlCase, joints: JointMap) -> None:
                 f"{name} has shape {values.shape}, expected ({n},): one value for each of "
                 f"{', '.join(joints.names)}. Slice values and indices together."
             )
-        limits: tuple[FloatArray, FloatArray] = (np.zeros(n), np.full(n, np.inf))
+        limits = np.zeros(n), np.full(n, np.inf)
         lower, upper = (joints.lower, joints.upper) if is_state else limits
         beyond = np.maximum(lower - values, values - upper)
         valid = np.isfinite(values) & (beyond <= LIMIT_TOLERANCE * is_state)

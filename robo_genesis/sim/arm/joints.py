@@ -40,7 +40,7 @@ class JointMap:
     @property
     def dofs(self) -> list[int]:
         """`dofs_idx_local` as the calls of the engine take it."""
-        return [int(k) for k in self.dofs_idx_local]
+        return self.dofs_idx_local.tolist()
 
     @property
     def position_units(self) -> tuple[str, ...]:
@@ -135,12 +135,17 @@ def describe(page: Any, robot: Any, of: RobotModel = FRANKA) -> JointMap:
         ModelError: the robot has other DOFs than its model, or, with a fixed base,
             another damping or armature than its file.
     """
-    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    page.readings["model"] = dict(zip(MODEL_COUNTS, counted, strict=True))
+    page.readings["model"] = read_counts(robot)
     page.links = [link.name for link in robot.links]
     page.joints = resolve_joints(robot, of.joints)
     require_model(robot, page.joints, of)
     return page.joints
+
+
+def read_counts(robot: Any) -> dict[str, int]:
+    """Return the engine's counts of a robot, by the names of `MODEL_COUNTS`."""
+    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    return dict(zip(MODEL_COUNTS, counted, strict=True))
 
 
 def require_model(robot: Any, joints: JointMap, of: RobotModel) -> None:

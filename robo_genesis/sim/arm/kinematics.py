@@ -37,9 +37,8 @@ DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 
 ARM = len(CHAIN) - 1  # Number of joints of the arm
 
-TIP = (
-    FRANKA.tip
-)  # From the hand's origin to the ends of the fingers, along its z axis [m]
+# From the hand's origin to the ends of the fingers, along its z axis [m]
+TIP = FRANKA.tip
 
 # Index of the hand among the links of the arrays: the parent of both fingers.
 HAND = LINK_PARENTS[-1]
@@ -70,7 +69,7 @@ def rotate(quat: FloatArray, vector: FloatArray) -> FloatArray:
     quat, vector = np.asarray(quat, dtype=float), np.asarray(vector, dtype=float)
     w, axis = quat[..., :1], quat[..., 1:]
     twice = 2.0 * np.cross(axis, vector)
-    return np.asarray(vector + w * twice + np.cross(axis, twice))
+    return vector + w * twice + np.cross(axis, twice)
 
 
 def about_z(angle: FloatArray) -> FloatArray:
@@ -91,7 +90,7 @@ def rotation_vector(quat: FloatArray) -> FloatArray:
     factor = np.divide(
         angle, length, out=np.full_like(length, 2.0), where=length > 1e-12
     )
-    return np.asarray(quat[..., 1:] * factor)
+    return quat[..., 1:] * factor
 
 
 def link_poses(q: FloatArray) -> Pose:
@@ -104,10 +103,8 @@ def link_poses(q: FloatArray) -> Pose:
         Positions (…, 8, 3) [m] and orientations (…, 8, 4).
     """
     q = np.asarray(q, dtype=float)
-    at, turn = (
-        np.zeros(3),
-        np.array([1.0, 0.0, 0.0, 0.0]),
-    )  # of the link before, first the base
+    # of the link before, first the base
+    at, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
     positions, quats = [], []
     for k, (_, position, quat) in enumerate(CHAIN):
         at = at + rotate(turn, np.array(position))
@@ -138,12 +135,12 @@ def jacobian(q: FloatArray) -> FloatArray:
     axes = rotate(poses.quat[..., :ARM, :], np.array([0.0, 0.0, 1.0]))  # (…, 7, 3)
     arms = poses.position[..., -1:, :] - poses.position[..., :ARM, :]
     columns = np.concatenate([np.cross(axes, arms), axes], axis=-1)  # (…, 7, 6)
-    return np.asarray(np.swapaxes(columns, -1, -2))
+    return np.swapaxes(columns, -1, -2)
 
 
 def manipulability(of: FloatArray) -> FloatArray:
     """Return √det(J Jᵀ) (…), the product of the singular values of a Jacobian (…, 6, n)."""
-    return np.asarray(np.prod(np.linalg.svd(of, compute_uv=False), axis=-1))
+    return np.prod(np.linalg.svd(of, compute_uv=False), axis=-1)
 
 
 def pose_error(target: Pose, pose: Pose) -> FloatArray:
@@ -193,9 +190,7 @@ def accepted(
     """
     finite = np.isfinite(q).all(axis=-1) & np.isfinite(error).all(axis=-1)
     apart, angle = distances(error)
-    return np.asarray(
-        finite & (apart <= position_tolerance) & (angle <= rotation_tolerance)
-    )
+    return finite & (apart <= position_tolerance) & (angle <= rotation_tolerance)
 
 
 def fingertip(pose: Pose) -> FloatArray:
@@ -206,7 +201,7 @@ def fingertip(pose: Pose) -> FloatArray:
 def overshoot_along_line(path: FloatArray, target: FloatArray) -> float:
     """Return how far a path (n+1, 3) leads past a target (3,), on the line from its start [m]."""
     way = np.asarray(path - target, dtype=float)
-    return max(0.0, float((way @ -way[0]).max() / np.linalg.norm(way[0])))
+    return max(0.0, (way @ -way[0]).max() / np.linalg.norm(way[0]))
 
 
 def damped_step(of: FloatArray, error: FloatArray, damping: float) -> FloatArray:
@@ -219,7 +214,7 @@ def damped_step(of: FloatArray, error: FloatArray, damping: float) -> FloatArray
     """
     across = np.swapaxes(of, -1, -2)
     normal = of @ across + damping**2 * np.eye(of.shape[-2])
-    return np.asarray((across @ np.linalg.solve(normal, error[..., None]))[..., 0])
+    return (across @ np.linalg.solve(normal, error[..., None]))[..., 0]
 
 
 def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
@@ -230,34 +225,4 @@ def limit_margin(q: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatAr
         lower: (n,) limits [rad].
         upper: (n,) limits [rad].
     """
-    return np.asarray(np.minimum(q - lower, upper - q).min(axis=-1))
-
-
-def solve(
-    target: Pose,
-    q: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
-    *,
-    iterations: int,
-    damping: float,
-    largest: float = 0.5,
-) -> FloatArray:
-    """Return the joint positions (…, 7) that damped least squares reaches from starts (…, 7) [rad].
-
-    Each joint moves by `largest` [rad] at most in one iteration and stays within its
-    limits.
-
-    Args:
-        target: pose of the hand.
-        q: the starts.
-        lower: (7,) limits [rad].
-        upper: (7,) limits [rad].
-        iterations: their number.
-        damping: λ of `damped_step`.
-        largest: bound of one step [rad].
-    """
-    for _ in range(iterations):
-        step = damped_step(jacobian(q), pose_error(target, hand_pose(q)), damping)
-        q = np.clip(q + np.clip(step, -largest, largest), lower, upper)
-    return q
+    return np.minimum(q - lower, upper - q).min(axis=-1)

@@ -64,7 +64,7 @@ def assigned_run(trace: Trace, links: Sequence[str], model: RobotModel) -> Findi
 def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
     """Return clip(KP (q_target − q) − KV q̇) of states (…, d) [N·m or N]."""
     effort = case.kp * (case.q_target - q) - case.kv * qd
-    return np.asarray(np.clip(effort, -case.effort_limit, case.effort_limit))
+    return np.clip(effort, -case.effort_limit, case.effort_limit)
 
 
 def poses(trace: Trace, links: Sequence[str], model: RobotModel) -> Findings:

@@ -92,11 +92,9 @@ def touches(robot: Any, joints: JointMap, fixed: Iterable[Any], q: FloatArray) -
     return sum({a, b} <= own or not others.isdisjoint((a, b)) for a, b in pairs)
 
 
-def line(ends: Sequence[FloatArray], points: int = 11) -> list[FloatArray]:
-    """Return joint positions on straight lines between ends, both ends of each included."""
-    return [
-        a + u * (b - a) for a, b in pairwise(ends) for u in np.linspace(0, 1, points)
-    ]
+def line(ends: Sequence[FloatArray]) -> list[FloatArray]:
+    """Return 11 joint positions on each straight line between ends, with both of its ends."""
+    return [a + u * (b - a) for a, b in pairwise(ends) for u in np.linspace(0, 1, 11)]
 
 
 def lift_command(q_start: FloatArray, answers: Sequence[IkAnswer]) -> FloatArray:

@@ -20,9 +20,8 @@ ONE_START = replace(IK, samples=1, iterations=100)
 # A target that no posture of the arm comes near to [m].
 BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 
-MARKER_RADIUS = (
-    0.03  # Radius of a sphere that marks a target [m]; nothing collides with it
-)
+# Radius of a sphere that marks a target [m]; nothing collides with it
+MARKER_RADIUS = 0.03
 
 # By unit: values that differ by no more than this are called equal, the noise floor.
 RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
@@ -39,7 +38,7 @@ SAME_POSE = (5e-6, 5e-6)
 SAME_RESIDUAL = 1e-6
 
 # For exercises: residuals, and whether `IK` lets such an answer be commanded.
-RESIDUALS: dict[str, tuple[tuple[float, ...], bool]] = {
+RESIDUALS = {
     "exact": ((0.0,) * 6, True),
     "at_both_limits": ((5e-4, 0, 0, 0, 0, 5e-3), True),
     "too_far": ((6e-4, 0, 0, 0, 0, 0), False),

@@ -12,13 +12,7 @@ from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.session import CaseError
 
 from .free_fall import GRAVITY
-from .rigid_bodies import (
-    new_scene,
-    read_body,
-    record_states,
-    stacked,
-    times,
-)
+from .rigid_bodies import new_scene, read_body, record_states, stacked, times
 from .soft_contact import Load
 
 # Length, width and thickness of the fixed box under the bodies [m].
@@ -30,8 +24,6 @@ TOP = 0.725  # Height of its upper face [m]
 SETTINGS = ("friction", "surface_friction", "substeps")
 
 Case = TypeVar("Case", bound="ContactRun")
-
-State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +92,7 @@ class ContactCase(ContactRun):
     def mass(self) -> float:
         """Mass of the solid body [kg]."""
         volume = self.size**3 * (1.0 if self.shape == "cube" else np.pi / 6)
-        return float(self.density * volume)
+        return self.density * volume
 
     @property
     def inertia(self) -> float:
@@ -112,7 +104,7 @@ class ContactCase(ContactRun):
         """Load of each of four equal contacts of the body at rest."""
         weight = self.mass * self.gravity / 4
         normal, along = weight * np.cos(self.tilt), weight * np.sin(self.tilt)
-        return Load(float(normal), float(along), 1 / self.mass)
+        return Load(normal, along, 1 / self.mass)
 
     @property
     def fall(self) -> FloatArray:
@@ -125,6 +117,20 @@ class ContactCase(ContactRun):
     def rest_height(self) -> float:
         """Height of the centre of a body on the surface without penetration [m]."""
         return TOP + self.size / 2
+
+    def clearance(self, z: FloatArray, quat: FloatArray) -> FloatArray:
+        """Return the height of the body's lowest point above the surface, (n,) [m].
+
+        Args:
+            z: heights of its centre (n,) [m].
+            quat: its orientations (n, 4), from which the lowest corner of a cube
+                follows.
+        """
+        if self.shape == "ball":
+            return z - self.size / 2 - TOP
+        w, x, y, q = quat.T
+        up = np.stack([2 * (x * q - w * y), 2 * (y * q + w * x), 1 - 2 * (x**2 + y**2)])
+        return z - self.size / 2 * np.abs(up).sum(axis=0) - TOP
 
 
 class World(NamedTuple):
@@ -178,7 +184,7 @@ def build_world(
         if case.spring:
             for geom in (*surface.geoms, *bodies[name].geoms):
                 geom.set_sol_params((*case.spring, *contact_constants(scene, geom)[2:]))
-    return World(scene, surface, bodies, dict(cases), camera)
+    return World(scene, surface, bodies, cases, camera)
 
 
 def rigid_options(gs: Any, case: ContactRun) -> dict[str, Any]:
@@ -245,7 +251,7 @@ def run_world(world: World) -> dict[str, ContactTrace]:
     }
 
 
-def read_world(world: World) -> dict[str, State]:
+def read_world(world: World) -> dict[str, tuple[np.ndarray, ...]]:
     """Return position, orientation, velocities, contact count and penetration of each body, now.
 
     The contacts are those of the beginning of the latest solver step.

@@ -7,7 +7,6 @@ positive. A `case` has `h`, `substeps` and `gravity`.
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
@@ -15,28 +14,27 @@ from robo_genesis.core.trace import BodyTrace
 GRAVITY = 9.81  # Magnitude of the engine's default acceleration of gravity [m/s²]
 
 
-def continuous_drop(t: ArrayLike, gravity: float) -> FloatArray:
-    """Return g t² / 2, the distance fallen from rest after times `t` (k,) [s]: (k,) [m]."""
-    return 0.5 * gravity * np.asarray(t, dtype=np.float64) ** 2
+def continuous_drop(t: Any, gravity: float) -> Any:
+    """Return g t² / 2, the distance fallen from rest after times `t` (…) [s]: (…) [m]."""
+    return 0.5 * gravity * t**2
 
 
-def summed_drop(h: float, steps: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
-    """Return g h² n (n + 1) / 2, the distance fallen after n = `steps` steps [m].
+def summed_drop(h: float, n: Any, gravity: float = GRAVITY) -> Any:
+    """Return g h² n (n + 1) / 2, the distance fallen after n (…) steps: (…) [m].
 
     Semi-implicit Euler changes the velocity first, then the position. The velocity
     after step k is k g h, so step k moves by k g h²; 1 + 2 + … + n is n (n + 1) / 2.
     """
-    n = np.asarray(steps, dtype=np.float64)
     return gravity * h**2 * n * (n + 1) / 2
 
 
-def ahead_of_continuous(h: float, t: ArrayLike, gravity: float) -> FloatArray:
-    """Return g h t / 2: how much farther the stepped body is than g t² / 2 after times `t` [m].
+def ahead_of_continuous(h: float, t: float, gravity: float) -> float:
+    """Return g h t / 2: how much farther the stepped body is than g t² / 2 after `t` [s]: [m].
 
     With t = n h, g h² n (n + 1) / 2 is g t² / 2 + g h t / 2. The second term goes to
     zero with h.
     """
-    return 0.5 * gravity * h * np.asarray(t, dtype=np.float64)
+    return 0.5 * gravity * h * t
 
 
 def fallen(trace: BodyTrace) -> FloatArray:
@@ -58,4 +56,4 @@ def formula_error(trace: BodyTrace, case: Any) -> float:
 
 def continuous_gap(trace: BodyTrace, case: Any) -> float:
     """Return how much farther than g t² / 2 the body fell until the last sample [m]."""
-    return float(fallen(trace)[-1] - continuous_drop(trace.t[-1:], case.gravity)[0])
+    return float(fallen(trace)[-1] - continuous_drop(trace.t[-1], case.gravity))

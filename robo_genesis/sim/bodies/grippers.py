@@ -13,27 +13,17 @@ from robo_genesis.sim import throughput
 from robo_genesis.sim.arm.joints import to_numpy
 
 from . import contacts
-from .rigid_bodies import (
-    new_scene,
-    read_body,
-    record_states,
-    stacked,
-    times,
-)
+from .rigid_bodies import new_scene, read_body, record_states, stacked, times
 from .soft_contact import Load
 
 # The links of a run: the box and both pads.
 LINKS = ("box", "left", "right")
 
-SIZE, PAD = (
-    0.04,
-    (0.005, 0.03, 0.03),
-)  # Edge of the box, and half the edges of a pad [m]
+# Edge of the box, and half the edges of a pad [m]
+SIZE, PAD = 0.04, (0.005, 0.03, 0.03)
 
-PAD_MASS, ARMATURE = (
-    1.0,
-    0.1,
-)  # [kg]; Genesis adds this armature to each joint of an MJCF file
+# Mass of a pad [kg], and the armature that Genesis adds to each joint of an MJCF file
+PAD_MASS, ARMATURE = 1.0, 0.1
 
 # Contact points of a box, four at each pad.
 CONTACTS = 8
@@ -111,7 +101,7 @@ def build_world(gs: Any, cases: Mapping[str, HeldCase]) -> World:
             scene.add_entity(box, rigid(rho=density, friction=case.friction)),
         )
     scene.build()
-    return World(scene, grippers, dict(cases))
+    return World(scene, grippers, cases)
 
 
 def record_world(

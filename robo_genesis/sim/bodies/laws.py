@@ -30,7 +30,7 @@ from robo_genesis.sim.arm.kinematics import quat_multiply
 from robo_genesis.sim.laws import apart, each_run
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
-from .contacts import TOP, ContactCase
+from .contacts import ContactCase
 from .free_fall import predicted
 from .rigid_bodies import Drop
 
@@ -45,8 +45,6 @@ NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
 ON_EDGE = 0.5
 
 UNTURNED = np.array([1.0, 0, 0, 0])  # Quaternion of a body that has not turned
-
-CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
 
 
 def free_fall(run: Any) -> Findings:
@@ -93,11 +91,7 @@ def depth_before_last_step(trace: BodyTrace, case: ContactCase) -> FloatArray:
         getattr(trace, name)[:, 0].astype(np.float64) for name in mujoco_contacts.MOTION
     )
     height = place[:, 2] - case.h * velocity[:, 2]
-    if case.shape == "ball":
-        return TOP - (height - case.size / 2)
     turn = -case.h * spin
     half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
     back = np.hstack([np.cos(half), turn / 2 * np.sinc(half / np.pi)])
-    w, x, y, z = quat_multiply(back, quat).T
-    up = np.stack([x * z - w * y, y * z + w * x, 0.5 - x**2 - y**2], axis=1) * 2
-    return TOP - (height[:, None] + up @ (case.size * CORNERS).T).min(axis=1)
+    return -case.clearance(height, quat_multiply(back, quat))

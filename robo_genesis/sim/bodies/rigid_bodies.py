@@ -126,7 +126,7 @@ def read_model(scene: Any, body: Any) -> dict[str, int]:
     }
 
 
-def read_body(body: Any) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def read_body(body: Any) -> tuple[FloatArray, ...]:
     """Return position (l, 3), orientation (l, 4), velocity and angular velocity (l, 3), now."""
     return (
         to_numpy(body.get_links_pos()),

@@ -31,7 +31,7 @@ def impedance(depth: float) -> float:
     x = min(depth / width, 1.0)
     low = x**power / middle ** (power - 1)
     high = (1 - x) ** power / (1 - middle) ** (power - 1)
-    return float(least + (most - least) * (low if x < middle else 1 - high))
+    return least + (most - least) * (low if x < middle else 1 - high)
 
 
 class Load(NamedTuple):
@@ -83,4 +83,4 @@ def depth_and_creep(case: Any, in_mujoco: bool = False) -> tuple[float, float]:
             pulling = 1.5 * load.friction / mu - load.normal / 2
             creep = soft * pulling * 2 * square * edges / mu / b
         d = (d + impedance(depth)) / 2
-    return float(depth), float(creep)
+    return depth, creep

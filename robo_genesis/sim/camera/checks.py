@@ -36,9 +36,8 @@ CENTROID = 0.15
 # middle. Largest distance of a point from a sphere's surface, as a share of the radius.
 MESH_SHARE = 0.006
 
-PLANE = (
-    1e-4  # Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]
-)
+# Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]
+PLANE = 1e-4
 
 PLANE_FAR = 3.0  # Depth up to which the bound of a plane holds [m]
 
@@ -66,11 +65,11 @@ def camera_matrix(label: str, view: View, given: Mapping[str, Any]) -> Findings:
             that is not on a link, `pos` and `lookat` [m].
     """
     apart = np.abs(view.intrinsics - cameras.intrinsics(given["fov"], view.size)).max()
-    yield at_most(f"{label}.intrinsics_error_px", float(apart), SAME_MATRIX)
+    yield at_most(f"{label}.intrinsics_error_px", apart, SAME_MATRIX)
     yield equal(f"{label}.limits_m", view.limits, (given["near"], given["far"]))
     if "pos" in given:
         turned = view.transform - cameras.looking(given["pos"], given["lookat"])
-        yield at_most(f"{label}.pose_error", float(np.abs(turned).max()), SAME_POSE)
+        yield at_most(f"{label}.pose_error", np.abs(turned).max(), SAME_POSE)
 
 
 def mounted_camera(
@@ -88,8 +87,8 @@ def mounted_camera(
     link = np.eye(4)
     link[:3, :3], link[:3, 3] = rotate(quat, np.eye(3)).T, position
     apart = np.abs(view.transform - link @ offset)
-    yield at_most(f"{label}.position_error_m", float(apart[:, 3].max()), SAME_POSE)
-    yield at_most(f"{label}.axes_error", float(apart[:, :3].max()), SAME_POSE)
+    yield at_most(f"{label}.position_error_m", apart[:, 3].max(), SAME_POSE)
+    yield at_most(f"{label}.axes_error", apart[:, :3].max(), SAME_POSE)
 
 
 def computed(view: View, marker: Marker) -> tuple[FloatArray, FloatArray]:
@@ -105,17 +104,15 @@ def projection(label: str, view: View, marker: Marker) -> Findings:
     The picture of its centre is recorded too: perspective puts it nearer to the middle.
     """
     for axis, place in zip("uv", computed(view, marker)[0], strict=True):
-        yield noted(f"{label}.centre_{axis}_px", float(place))
+        yield noted(f"{label}.centre_{axis}_px", place)
     if view.segmentation is None:
         yield noted(f"{label}.segmentation", SKIP)
         return
     mask = view.segmentation == marker.number
-    yield equal(
-        f"{label}.pixels_at_the_border", int(mask.sum() - mask[1:-1, 1:-1].sum()), 0
-    )
-    yield above(f"{label}.pixels", int(mask.sum()), FEWEST_PIXELS)
+    yield equal(f"{label}.pixels_at_the_border", mask.sum() - mask[1:-1, 1:-1].sum(), 0)
+    yield above(f"{label}.pixels", mask.sum(), FEWEST_PIXELS)
     apart = cameras.centroid(mask) - computed(view, marker)[1]
-    to_ellipse = float(np.linalg.norm(apart))
+    to_ellipse = np.linalg.norm(apart)
     yield at_most(f"{label}.centroid_to_silhouette_px", to_ellipse, CENTROID)
 
 

@@ -29,9 +29,8 @@ class Renderer(NamedTuple):
 def read_renderer(scene: Any) -> Renderer:
     """Read GL_VENDOR and GL_RENDERER from the scene's OpenGL context."""
     gl = importlib.import_module("OpenGL.GL")
-    context = (
-        scene.visualizer._rasterizer._renderer
-    )  # Genesis has no public access to it
+    # Genesis has no public access to it
+    context = scene.visualizer._rasterizer._renderer
     context.make_current()
     try:
         vendor, name = (
@@ -48,9 +47,8 @@ def capture(camera: Any, shape: tuple[int, ...] = FRAME_SHAPE) -> np.ndarray:
     Raises:
         FrameError: the frame is not usable.
     """
-    rgb = camera.render(force_render=True)[
-        0
-    ]  # also where no step has changed the scene
+    # also where no step has changed the scene
+    rgb = camera.render(force_render=True)[0]
     require_frame(rgb, shape)
     return np.array(rgb)
 

@@ -61,7 +61,7 @@ def project(points: FloatArray, K: FloatArray, transform: FloatArray) -> FloatAr
     """Return the pixel coordinates (…, 2) of points (…, 3) [m]; NaN for points not in front."""
     seen = in_camera(points, transform)
     depth = np.where(seen[..., 2:] > 0, seen[..., 2:], np.nan)
-    return np.asarray((seen / depth @ K.T)[..., :2])
+    return (seen / depth @ K.T)[..., :2]
 
 
 def silhouette_centre(
@@ -76,7 +76,7 @@ def silhouette_centre(
     if z <= radius:
         return np.full(2, np.nan)
     stretched = np.array([x, y, z - radius**2 / z])
-    return np.asarray((K @ stretched / stretched[2])[:2])
+    return (K @ stretched / stretched[2])[:2]
 
 
 def rays(

@@ -5,7 +5,6 @@ A depth takes 24 bits in units of `DEPTH_UNIT`, the highest in red. The number o
 segmentation is in red.
 """
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -17,9 +16,8 @@ from .views import View
 
 DEPTH_UNIT = 1e-5  # Resolution of a recorded depth [m]; 24 bits reach 167 m
 
-SEGMENTS = (
-    "segments"  # Group of counts: the numbers of things in the segmentation, by name
-)
+# Group of counts: the numbers of things in the segmentation, by name
+SEGMENTS = "segments"
 
 PICTURES = ("rgb", "depth", "segmentation")
 
@@ -71,7 +69,7 @@ def frames(name: str, view: View) -> dict[str, np.ndarray]:
 
 def view_of(run: Experiment, name: str) -> View:
     """Return a recorded view; without a camera, it has no pictures."""
-    found: Mapping[str, float] = run.readings[f"view_{name}"]
+    found = run.readings[f"view_{name}"]
     values = np.array([found[number] for number in NUMBERS])
     K, transform, limits = (
         values[:9].reshape(3, 3),

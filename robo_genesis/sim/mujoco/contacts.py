@@ -107,9 +107,8 @@ def each_step(trace: BodyTrace, case: ContactCase) -> dict[str, FloatArray]:
 def _state(data: Any) -> tuple[np.ndarray, ...]:
     """Return position, orientation, velocity, angular velocity in the world's axes, contacts."""
     quat = data.qpos[3:7]
-    angular_velocity = rotate(
-        quat, data.qvel[None, 3:6]
-    )  # MuJoCo has it in the body's axes
+    # MuJoCo has it in the body's axes
+    angular_velocity = rotate(quat, data.qvel[None, 3:6])
     deepest = max((-contact.dist for contact in data.contact), default=0.0)
     state = (data.qpos[None, :3], quat[None], data.qvel[None, :3], angular_velocity)
     return (

@@ -11,9 +11,8 @@ from robo_genesis.sim.bodies.grippers import PAD, SIZE, HeldCase, pads
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
 from robo_genesis.sim.bodies.soft_contact import impratio
 
-AXES = np.array(
-    [[1.0, 0, 0], [-1, 0, 0]]
-)  # Directions in which the left and the right pad press
+# Directions in which the left and the right pad press
+AXES = np.array([[1.0, 0, 0], [-1, 0, 0]])
 
 
 def load(case: HeldCase) -> Any:

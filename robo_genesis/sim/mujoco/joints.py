@@ -32,9 +32,8 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
 
     spec = bare_spec(case.model)
     for k, name in enumerate(case.model.joints):
-        motor = bool(
-            case.effort_limit[k] > 0
-        )  # MuJoCo takes no actuator with an empty range
+        # MuJoCo takes no actuator with an empty range
+        motor = bool(case.effort_limit[k] > 0)
         actuator = spec.add_actuator(
             name=name,
             target=name,

@@ -15,11 +15,8 @@ from robo_genesis.sim.arm.franka import FRANKA
 from robo_genesis.sim.arm.kinematics import Pose
 from robo_genesis.sim.arm.model import ModelError, RobotModel, model_file
 
-GRAVITY = (
-    0.0,
-    0.0,
-    -9.81,
-)  # That of a scene of Genesis, whatever the model file says [m/s²]
+# That of a scene of Genesis, whatever the model file says [m/s²]
+GRAVITY = 0.0, 0.0, -9.81
 
 
 @cache
@@ -137,7 +134,7 @@ def jacobian(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:
     mujoco.mj_comPos(model, data)
     rows = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body(of.hand).id)
-    return np.asarray(rows[:, dof_at])
+    return rows[:, dof_at]
 
 
 def at_rest(

@@ -93,7 +93,7 @@ def test_a_cube_on_its_edge_reaches_lower(axis, reach):
 def test_flights_are_the_stretches_in_the_air():
     up, down = REST + 0.01, REST - 0.001
     trace = body_at([up] * 4 + [down] * 2 + [up] * 2 + [down] + [up] * 3)
-    found = list(metrics.flights(trace, spec.DROPPED_BALL))
+    found = metrics.flights(trace, spec.DROPPED_BALL)
     assert found == [slice(0, 4), slice(9, 12)]  # two states are too few
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from robo_genesis.core.comparison import Comparison
 from robo_genesis.lessons.l04 import tables, text
 from robo_genesis.lessons.l04.metrics import StepMetrics
 
@@ -28,6 +29,22 @@ SAYS = {
 def test_the_lab_says_what_the_runs_show(experiment, says):
     changed = {name: replace(MEASURED, **of) for name, of in SAYS[says].items()}
     assert says in text.conclusions(with_metrics(experiment, **changed))
+
+
+@pytest.mark.parametrize(
+    ("predicted", "values", "says"),
+    [
+        ("no later", (0.4, 0.4), "Held in this run."),
+        ("no later", (0.4, None), f"**Did not hold**: measured higher. {text.INSPECT}"),
+        ("later", (0.4, 0.4), f"**Did not hold**: measured equal. {text.INSPECT}"),
+        ("lower", (None, 0.4), "Held in this run."),
+        ("higher", (None, None), "Cannot be judged: not observed in either case."),
+    ],
+)
+def test_a_prediction_is_compared_with_the_measured_order(predicted, values, says):
+    comparison = Comparison("rise time", "s", *values, 0.005)
+    sentence = text.prediction_sentence(("G1", "G2"), comparison, predicted)
+    assert sentence == f"Predicted: rise time {predicted} in G2 than in G1. {says}"
 
 
 @pytest.mark.parametrize(

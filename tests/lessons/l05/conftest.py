@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lessons.experiments import experiment_of
-from robot_runs import LINKS, answer, assigned, driven
+from robot_runs import LINKS, answer, assigned, driven, solve
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
@@ -29,9 +29,7 @@ def reaches(joints) -> Experiment:
             )
         target = kinematics.Pose(case.positions, case.quat)
         limits = spec.ARM_LIMITS
-        q = kinematics.solve(
-            target, starts[:, :7], *limits, iterations=100, damping=0.01
-        )
+        q = solve(target, starts[:, :7], *limits, iterations=100, damping=0.01)
         postures = np.hstack([q, starts[:, 7:]])
         runs[name] = assigned(case.start, LINKS, runs["baseline"], postures)
     apart, angle = map(float, kinematics.distances(found.error))

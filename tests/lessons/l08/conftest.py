@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from lessons.changed_runs import passed
-from robot_runs import LINKS
+from robot_runs import LINKS, solve
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Demonstrations, Episodes
@@ -60,7 +60,7 @@ def batch(
     )
     limits, how = ([-3.0] * 7, [4.0] * 7), {"iterations": 60, "damping": 0.01}
     start = np.tile(case.q_start[:7], (rows, 1))
-    ends = kinematics.solve(target, start, *map(np.array, limits), **how)
+    ends = solve(target, start, *map(np.array, limits), **how)
     share = np.minimum(states[:, None] / (2 * length), 1)[..., None]
     shut = (phase >= picking.CLOSE) & (phase < picking.OPEN)
     fingers = np.where(shut, 0.0235, 0.04)[..., None].repeat(2, axis=2)

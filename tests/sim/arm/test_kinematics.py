@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from robot_runs import solve
 
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.sim.arm import kinematics as of
@@ -49,7 +50,7 @@ def test_the_solver_reaches_a_target_within_the_limits_if_there_is_one(
     position, damping, reached
 ):
     target, start = of.Pose(position, spec.DOWN), Q_START[:7]
-    q = of.solve(target, start, *spec.ARM_LIMITS, iterations=100, damping=damping)
+    q = solve(target, start, *spec.ARM_LIMITS, iterations=100, damping=damping)
     error = of.pose_error(target, of.hand_pose(q))
     assert np.isfinite(q).all()
     assert of.accepted(q, error, 5e-4, 5e-3) == reached
