@@ -160,7 +160,7 @@ LABELS = (
 CASE_MARKS = dict(zip(SHOWN, ("baseline", "first", "second", "third"), strict=True))
 
 # By unit, the difference below which two values are equal.
-RESOLUTION = {"1": 0.5, "m": 1e-4, "N": 0.05} | creep.RESOLUTION
+RESOLUTION = {"1": 0.5, "m": 1e-4, "N": 0.05, "1/s": 0.05} | creep.RESOLUTION
 
 # Contacts make rounding grow: another version of the engine had three more successes of
 # 256.
