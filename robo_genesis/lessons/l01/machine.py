@@ -5,7 +5,6 @@ Each function starts a process of its own, because an engine starts once in a pr
 
 import json
 import os
-import shutil
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -88,9 +87,9 @@ def passed(report: Mapping[str, Any]) -> dict[str, int]:
 
 
 def measure_starts() -> dict[str, float]:
-    """Start the engine twice on the CPU, with an empty folder for its kernels; return times [s].
+    """Start the engine twice on the CPU, first with empty folders of code; return times [s].
 
-    In a build that has compiled nothing yet, this is the folder of all pages.
+    In a build that has compiled nothing yet, these are the folders of all pages.
 
     Raises:
         StartError: a process failed.
@@ -98,10 +97,9 @@ def measure_starts() -> dict[str, float]:
     found: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder:
         changed = {}
-        if project.nothing_compiled(os.environ):
-            # a build that was killed leaves what Numba compiled
-            shutil.rmtree(os.environ[project.NUMBA], ignore_errors=True)
-        else:
+        # A build that was killed has saved what Numba compiled, but no kernels.
+        numba = Path(project.cache_folders()[project.NUMBA])
+        if not project.nothing_compiled(os.environ) or any(numba.rglob("*.nbi")):
             changed = project.engine_cache_environment(cache=Path(folder))
         for start in STARTS:
             times = last_value(run_python(["-c", SCRIPT], changed))

@@ -38,7 +38,8 @@ LECTURE = MeasuringPage(
 SHEETS = [
     sheet
     for name in spec.FILMS
-    for sheet in film.sheet_names(name, spec.EXACT.steps + 1)
+    # a picture of each sample, and one of the end
+    for sheet in film.sheet_names(name, spec.EXACT.steps + 2)
 ]
 
 LAB = with_functions(

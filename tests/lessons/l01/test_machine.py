@@ -4,6 +4,8 @@ import json
 import tempfile
 from pathlib import Path
 
+import pytest
+
 from robo_genesis.core import project
 from robo_genesis.lessons.l01 import machine, text
 
@@ -40,7 +42,18 @@ def test_the_doctor_s_lines_fit_a_phone():
     ]
 
 
-def test_both_starts_share_one_folder_of_kernels(monkeypatch):
+@pytest.mark.parametrize(
+    ("left", "shared"),
+    [([], True), (["kernels/a.qdc"], False), (["numba/geom/a.nbi"], False)],
+)
+def test_both_starts_share_one_folder_which_is_that_of_all_pages_while_it_is_empty(
+    monkeypatch, tmp_path, left, shared
+):
+    monkeypatch.setenv(project.KERNELS, str(tmp_path / "kernels"))
+    monkeypatch.setenv(project.NUMBA, str(tmp_path / "numba"))
+    for name in left:
+        (tmp_path / name).parent.mkdir(parents=True)
+        (tmp_path / name).touch()
     seen = []
 
     def output(arguments, changed):
@@ -50,7 +63,13 @@ def test_both_starts_share_one_folder_of_kernels(monkeypatch):
     monkeypatch.setattr(machine, "run_python", output)
     found = machine.measure_starts()
     assert seen[0] == seen[1]
-    assert Path(seen[0][project.KERNELS]).is_relative_to(tempfile.gettempdir())
+    if shared:
+        assert seen[0] == {}
+    else:
+        own = Path(seen[0][project.KERNELS])
+        assert own.is_relative_to(tempfile.gettempdir())
+        assert not own.is_relative_to(tmp_path)
+    assert all((tmp_path / name).is_file() for name in left)  # a reader's stay
     assert list(found) == [
         f"{start}_{part}" for start in machine.STARTS for part in machine.PARTS
     ]
