@@ -38,8 +38,7 @@ LECTURE = MeasuringPage(
 SHEETS = [
     sheet
     for name in spec.FILMS
-    # a picture of each sample, and one of the end
-    for sheet in film.sheet_names(name, spec.EXACT.steps + 2)
+    for sheet in film.sheet_names(name, spec.EXACT.steps + 1)
 ]
 
 LAB = with_functions(
