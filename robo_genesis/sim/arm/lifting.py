@@ -30,8 +30,8 @@ PHASES = {
 # The state at the end of each phase.
 ENDS = dict(zip(PHASES, np.cumsum([*PHASES.values()]).tolist(), strict=True))
 
-# Distance of the pads from the object's top, and of the hand's origin from the pads
-# [m].
+# Distance of the grip from the object's top, and of the hand's origin from the grip,
+# which is 0.5 mm below the middle of the pads [m].
 PAD, HAND_TO_PAD = 0.025, 0.1034
 
 # Heights of the pregrasp above the grasp, and of the lift [m].

@@ -29,11 +29,39 @@ ANSWERS = {
 }
 
 
+def episodes(gs, case, **options):
+    world = picking.build(gs, case)
+    joints = describe(SimpleNamespace(readings={}), world.robot)
+    return picking.run(world, joints, case, **options)
+
+
 @pytest.mark.parametrize("name", ANSWERS)
 def test_an_answer_of_the_lab_is_true(real_engine, name):
     changes, counted, least, most = ANSWERS[name]
     case = replace(spec.EXACT, starts=STARTS, **{"beliefs": STARTS} | changes)
-    world = picking.build(real_engine.gs, case)
-    joints = describe(SimpleNamespace(readings={}), world.robot)
-    found = metrics.episodes_metrics(picking.run(world, joints, case)[0], case)
+    found = metrics.episodes_metrics(episodes(real_engine.gs, case)[0], case)
     assert least <= getattr(found, counted) <= most
+
+
+class Replayed(picking.Expert):
+    """Sends the actions of the rows (n, e, 9), each as long as a row lasts."""
+
+    actions: list[np.ndarray]
+
+    def act(self, q, qd):
+        self.since += 1
+        return self.actions[(self.since[0] - 1) // spec.EXACT.commands]
+
+
+@pytest.mark.parametrize(
+    ("starts", "least", "most"), [(spec.FEW, 62, 64), (STARTS, 0, 6)]
+)
+def test_the_actions_of_the_rows_work_from_their_own_starts_alone(
+    real_engine, monkeypatch, starts, least, most
+):
+    every = spec.EXACT.commands
+    sent = episodes(real_engine.gs, spec.EXACT)[1].sent
+    monkeypatch.setattr(Replayed, "actions", sent[every - 1 :: every], raising=False)
+    case = replace(spec.EXACT, starts=starts)
+    trace, _ = episodes(real_engine.gs, case, of=Replayed)
+    assert least <= metrics.episodes_metrics(trace, case).in_bowl <= most
