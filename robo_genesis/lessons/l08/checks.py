@@ -81,35 +81,36 @@ def edge_of_the_pads(run: Experiment) -> Findings:
         good = metrics.good(trace, spec.ASKEW)
         yield equal(f"{name}.inside.failed", (~good[apart < 8e-3]).sum(), 0)
         if name == "askew":
-            yield equal("outside.succeeded", good[apart > 9e-3].sum(), 0)
+            outside = good[apart > 9e-3]
+            yield equal("outside.succeeded", outside.sum(), 0)
+            yield above("outside.episodes", outside.size, 19.5)
     yield equal("round.failed", (~good).sum(), 0)
     yield above("round.farthest_m", apart.max(), 14e-3)
 
 
 def leaves_as_it_creeps(run: Experiment) -> Findings:
-    """A cylinder that is pressed beyond the end of the pads leaves them exponentially, at
-    the rate that force and creep of the same batch predict, within a fourth. With the
-    elliptic cone the rate is at most a fifth of that.
+    """Cylinders that are pressed up to 12 mm beyond the end of the pads leave them with a
+    speed that grows with this distance, at the rate of force and creep where the place is
+    known, within a fourth. With the elliptic cone it is less than 4 % of that rate.
     """
-    m = run.metrics["askew"]
-    share = m.growth / metrics.leaving_rate(m, spec.ASKEW)
-    yield within("askew.growth_share", share, 1, 0.25)
-    yield at_most("round.growth_share", run.metrics["round"].growth / m.growth, 0.2)
+    m = run.metrics
+    rate = m["exact"].leaving
+    yield within("askew.growth", m["askew"].growth, rate, rate / 4)
+    yield within("round.growth", m["round"].growth, 0, 0.04 * rate)
 
 
 def held_but_sliding(run: Experiment) -> Findings:
     """In the move the median force of a finger is 11 to 12.5 N, 40 to 46 times what the
-    object needs at rest. The median speed at which the object slides down in the
-    fingers is 0.5 to 2.5 mm/s.
+    object needs at rest. Where the place is known, the median speed at which the object
+    slides down in the fingers is 1.4 to 1.9 mm/s.
     """
     for name in run.metrics.keys() - {"round"}:
         press, case = run.metrics[name].press, run.cases[name]
         yield within(f"{name}.press_N", press, 11.75, 0.75)
-        margin = (
-            2 * press / (case.density * case.volume * GRAVITY)
-        )  # the fingers have µ = 1
+        # The fingers have µ = 1.
+        margin = 2 * press / (case.density * case.volume * GRAVITY)
         yield within(f"{name}.margin", margin, 43, 3)
-        yield within(f"{name}.creep_m_s", run.metrics[name].creep, 1.5e-3, 1e-3)
+    yield within("exact.creep_m_s", run.metrics["exact"].creep, 1.65e-3, 2.5e-4)
 
 
 def shown_episodes(run: Experiment) -> Findings:

@@ -27,6 +27,7 @@ MEASURES = False
 OBJECTS = {
     "on_the_table": ((0.5, -0.1, 0.0), 0.07),
     "above_the_bowl": ((0.55, 0.22, 0.02), 0.031),
+    "behind": ((-0.61234, 0.3, -0.2), 0.05),
 }
 
 
@@ -47,14 +48,21 @@ STATES: Examples = {
     "at_its_goal": (True, True, {}),
     "nan": (False, True, {("q", 2): nan}),
     "nan_of_a_finger": (True, False, {("qd", 8): nan}),
-    "near": (True, True, {("q", k): 0.9 * AT * (-1) ** k for k in range(ARM)}),
-    "slow": (True, True, {("qd", k): 0.9 * SLOW * (-1) ** k for k in range(ARM)}),
-    "last_joint_below": (False, True, {("q", 6): -1.1 * AT}),
+    "nan_of_a_speed": (False, True, {("qd", 4): nan}),
+    "near": (True, True, {("q", k): 0.98 * AT * (-1) ** k for k in range(ARM)}),
+    "slow": (True, True, {("qd", k): 0.98 * SLOW * (-1) ** k for k in range(ARM)}),
     "at": (False, True, {("q", 3): AT}),
-    "moves_back": (False, True, {("qd", 0): -1.1 * SLOW}),
+    "at_the_speed": (False, True, {("qd", 3): SLOW}),
+    "a_turn_away": (False, True, {("q", 6): 2 * np.pi}),
     "fingers_opposed": (True, False, {("qd", 7): -0.1, ("qd", 8): 0.1}),
-    "almost_still": (True, True, {("qd", 7): 0.9 * STILL, ("qd", 8): -0.9 * STILL}),
-    "left": (True, False, {("qd", 7): -1.1 * STILL}),
+    "almost_still": (True, True, {("qd", 7): 0.98 * STILL, ("qd", 8): -0.98 * STILL}),
+    "finger_at_the_speed": (True, False, {("qd", 8): STILL}),
+    "left": (True, False, {("qd", 7): -1.02 * STILL}),
+    "right": (True, False, {("qd", 8): 1.02 * STILL}),
+} | {
+    f"joint_{k}_of_{array}": (False, True, {(array, k): sign * 1.02 * limit})
+    for array, limit, sign in (("q", AT, 1), ("q", AT, -1), ("qd", SLOW, -1))
+    for k in range(ARM)
 }
 
 
@@ -67,7 +75,7 @@ def ends(ended: Written) -> Findings:
         state = {"q": goal.copy(), "qd": np.zeros(ARM + 2)}
         for (array, joint), value in changed.items():
             state[array][joint] += value
-        for since, of_fingers in product((1, 4, 5, 90), (False, True)):
+        for since, of_fingers in product((1, 4, 5, 300), (False, True)):
             early = of_fingers and since < picking.CLOSING
             right = expected[of_fingers] and not early
             rows.append((*state.values(), goal[:ARM], of_fingers, since, right))
@@ -90,6 +98,12 @@ EPISODES: Examples = {
     "done_at_first": ("phase", 0, 8, 0),
     "done_before_it_begins": ("phase", [0, 1], [8, 0], 0),
     "no_lift": ("phase", [3, 4], 2, 1),
+    "begins_later": ("phase", 0, 1, 7),
+    "held_at_first": ("force", 4, 0.0, 7),
+    "held_at_last": ("force", 3, 0.0, 7),
+    "dropped_before": ("pos", (1, 2), 0.0, "pos", (5, 2), 0.06, 2),
+    "no_move": ("phase", [5, 6], 3, 7),
+    "lost_and_caught": ("force", (6, 1), 0.0, 3),
     "fingers_in_turn": ("force", ([3, 4], [0, 1]), 0.0, 1),
     "rises_late": ("pos", (5, 2), 0.08, 2),
     "lifted_to_the_limit": ("pos", (0, 2), 0.0, "pos", (5, 2), metrics.RAISED, 7),
@@ -100,6 +114,9 @@ EPISODES: Examples = {
     "touched_at_the_end": ("touches", -1, 1, 4),
     "touched_before": ("touches", -2, 1, 7),
     "nan": ("lowest", (), nan, 5),
+    "there_at_last": ("pos", (slice(9, 15), 0), 0.3, 6),
+    "beside_it": ("pos", (END, 1), 0.15, 5),
+    "inside_the_diagonal": ("pos", (END, slice(0, 2)), [0.59, 0.26], 7),
     "diagonal": ("pos", (END, slice(0, 2)), [0.5, 0.27], 5),
     "on_rim": ("lowest", (), 0.041, 5),
     "at_the_depth": ("rim", 2, 0.02, "lowest", (), 0.01, 5),
@@ -108,6 +125,8 @@ EPISODES: Examples = {
     "moved_before": ("pos", 10, 0.55, 7),
     "moves_at_first": ("pos", (11, 0), 0.5503, 6),
     "moves_at_last": ("pos", (15, 2), 0.0403, 6),
+    "moves_near_the_end": ("pos", (14, 0), 0.5503, 6),
+    "in_two_directions": ("pos", 12, [0.55015, 0.2201, 0.04], 7),
     "in_all_directions": ("pos", 12, [0.55015, 0.22015, 0.04015], 6),
     "both_ways": ("pos", ([11, 12], 0), [0.55015, 0.54985], 7),
 }

@@ -1,6 +1,7 @@
 """Success as a ladder: which rungs the episodes of a batch reach, and what other words count."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -24,8 +25,9 @@ CENTRED, BELOW = 0.06, 0.01
 # Half of the length of a pad [m].
 HALF_PAD = 8.5e-3
 
-# An object has left the pads' middle part by so much, beyond their end [m].
-LEAVING = 1e-3, 6e-3
+# Distances beyond the end of the pads at which an object leaves them [m], and the least
+# number of such episodes.
+LEAVING, FEWEST = (5e-4, 12e-3), 10
 
 # Time at the end [s] in which an object at rest moves by less than this [m], as in L07.
 WINDOW, STILL = 0.2, 2e-4
@@ -129,7 +131,10 @@ class EpisodesMetrics(CaseMetrics):
         "object_pos_m",
         noun="speed at which the object slides in the fingers",
     )
-    growth: float = metric(
+    leaving: float = metric(
+        "1/s", "growth beyond a pad's end by force and creep", *CARRIED, "q_rad_or_m"
+    )
+    growth: float | None = metric(
         "1/s", "growth of the distance beyond a pad's end", *CARRIED, "q_rad_or_m"
     )
 
@@ -139,7 +144,9 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
     level, passed = reached(trace, case), rungs(trace, case)
     over = off_axis(trace, case)[-1] < CENTRED
     hanging = (trace.touches[-1] == 1) & (lowest(trace, case)[-1] > bowl.HEIGHT)
-    values = [
+    press, slide = grip(trace, level > RUNGS.index("carried"))
+    weight = case.density * case.volume * GRAVITY
+    values: list[Any] = [
         *((level > k).sum() for k in range(len(RUNGS))),
         (trace.phase[-1] == DONE).sum(),
         (risen(trace).max(axis=0) >= RAISED).sum(),
@@ -148,10 +155,14 @@ def episodes_metrics(trace: Episodes, case: PickCase) -> EpisodesMetrics:
         (over & hanging).sum(),
         (level[case.starts[:, 1] > np.median(case.starts[:, 1])] == len(RUNGS)).sum(),
         np.median(case.beliefs[:, 0] - at_closing(trace)[:, 0]),
-        *grip(trace, level > RUNGS.index("carried")),
-        np.median(growth(trace)),
+        press,
+        slide,
+        # A load creeps with a speed in proportion. At the distance e beyond the end both
+        # fingers push a cylinder with 2 N e / r.
+        2 * press / (case.size[0] / 2) * slide / weight,
+        growth(trace),
     ]
-    return EpisodesMetrics(*map(float, values))
+    return EpisodesMetrics(*values)
 
 
 def hand_above(trace: Episodes) -> FloatArray:
@@ -187,29 +198,22 @@ def offset(trace: Episodes) -> FloatArray:
     )
 
 
-def growth(trace: Episodes) -> FloatArray:
-    """Return the rates at which objects leave the pads (k,) [1/s]: an object that is pressed
-    by both fingers beyond the end of a pad, at distances between both of `LEAVING`.
+def growth(trace: Episodes) -> float | None:
+    """Return how the speed of an object that leaves the pads grows with its distance [1/s].
 
-    The rate is the slope of the logarithm of the distance. Episodes with fewer than five
-    such samples have none; if no episode has one, the only rate is 0.
+    These are objects that both fingers press while their middle is beyond the end of the
+    pads, at distances between both of `LEAVING`. With less than `FEWEST` of them the
+    rate is not observed.
     """
     beyond = np.abs(offset(trace)) - HALF_PAD
     leaves = pressed(trace) & (trace.phase >= CLOSE) & (trace.phase <= MOVE)
     leaves &= (beyond > LEAVING[0]) & (beyond < LEAVING[1])
-    rates = [
-        np.polyfit(trace.t[leaves[:, k]], np.log(beyond[leaves[:, k], k]), 1)[0]
-        for k in np.flatnonzero(leaves.sum(axis=0) >= 5)
-    ]
-    return np.array(rates or [0.0])
-
-
-def leaving_rate(m: EpisodesMetrics, case: PickCase) -> float:
-    """Return the rate that force and creep predict for `growth` [1/s]: a load creeps with a
-    speed in proportion, and both fingers push a cylinder with 2 N e / r at the distance e.
-    """
-    weight = case.density * case.volume * GRAVITY
-    return 2 * m.press / (case.size[0] / 2) * m.creep / weight
+    leaves = leaves[1:] & leaves[:-1]
+    if leaves.any(axis=0).sum() < FEWEST:
+        return None
+    speed = np.diff(beyond, axis=0)[leaves] / trace.dt
+    middle = (beyond[1:] + beyond[:-1])[leaves] / 2
+    return np.polyfit(middle, speed, 1)[0]
 
 
 def first_closing(trace: Episodes) -> np.ndarray:

@@ -60,7 +60,7 @@ def errors(run: Experiment, batch: str = "askew") -> Figure:
     ax.set(
         xlabel="error along the pads, x [mm]", ylabel="error across the pads, y [mm]"
     )
-    legend_above(ax, "Each sign is an episode")
+    legend_above(ax, "How episodes end, by their error")
     return figure
 
 
@@ -94,14 +94,8 @@ def leaving(run: Experiment) -> Figure:
             times = trace.t[held] - trace.t[closing[row]]
             ax.semilogy(times, 1000 * beyond[held, row], **look(mark) | {"lw": 0.8})
         ax.plot([], [], label=CONES[name], **look(mark))
-    m, t = run.metrics["askew"], np.linspace(0, 1, 2)
-    ax.plot(
-        t,
-        0.6 * np.exp(metrics.leaving_rate(m, spec.ASKEW) * t),
-        ":",
-        label="slope κ",
-        **OTHER,
-    )
+    t, rate = np.linspace(0, 1, 2), run.metrics["exact"].leaving
+    ax.plot(t, 0.6 * np.exp(rate * t), ":", label="slope κ", **OTHER)
     ax.set(
         xlabel="time after closing begins [s]",
         ylabel="beyond the end [mm]",

@@ -67,7 +67,7 @@ def cases() -> dict[str, PickCase]:
         "plain": batch(starts, noise),
         "corrected": batch(starts, noise + SAG),
         "compensated": batch(starts, noise, compensated=True),
-        "elliptic": batch(starts, noise, cone="elliptic", steps=70),
+        "elliptic": batch(starts, noise, cone="elliptic"),
         "timed": batch(
             np.tile(timed, (len(CLOCKS), 1)), timed=np.repeat(CLOCKS, TIMED)
         ),

@@ -53,7 +53,7 @@ def batch(
     place[..., 0] += beyond * (np.exp(leaving * case.dt * held.cumsum(axis=0)) - 1)
     hangs = (phase >= picking.MOVE) & hanging
     place[hangs, 2] += 2 * bowl.HEIGHT
-    inside = (phase >= picking.MOVE) & (level == 7) | (phase >= picking.OPEN) & falls_in
+    inside = (phase >= picking.OPEN) & ((level == 7) | falls_in)
     place[hangs | inside, :2] = case.bowl_at
     target = kinematics.Pose(
         case.waypoints[1] - [short, 0, 0], np.tile([0.0, 1, 0, 0], (rows, 1))
@@ -95,9 +95,9 @@ def episodes(joints) -> Experiment:
     levels = [error > -3.75e-3, error > -6.5e-3, error > -8.3e-3]
     level = np.select(levels, [7, 3, 2], 1)
     askew = batch(spec.ASKEW, level, falls_in=(level == 3) & (error > -4.5e-3))
-    exact = batch(spec.EXACT, np.full(len(spec.FEW), 7))
+    exact = batch(spec.EXACT, np.full(len(spec.FEW), 7), length=10)
     ordered = {n: of[:, spec.ORDER] for n, of in arrays_of(exact).items() if n != "t"}
-    everywhere = batch(spec.ROUND, np.full(len(spec.STARTS), 7), leaving=0.2)
+    everywhere = batch(spec.ROUND, np.full(len(spec.STARTS), 7), leaving=0.0)
     others = {"round": everywhere, "permuted": replace(exact, **ordered)}
     return experiment(LECTURE, {"exact": exact, "askew": askew} | others, joints)
 
@@ -107,6 +107,7 @@ def lab(episodes) -> Experiment:
     """A run of the lab that passes its checks."""
     exact = episodes.traces["exact"]
     target = exact.q[1:].copy()
+    target[:-2, :, :7] = exact.q[3:, :, :7]
     target[..., 7:] *= target[..., 7:] > 0.03
     traces = {"exact": Demonstrations(**arrays_of(exact), target=target)}
     run = experiment(LAB, traces, episodes.joints)

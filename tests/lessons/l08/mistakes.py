@@ -12,7 +12,7 @@ MISTAKES = {
             "grasp",
             "[0, 0, 1], grasp",
         ],
-        "x, y, z = place": ["place[2] = 1; x, y, z = place"],
+        "x, y, z = place": ["x, y, z = np.abs(place)", "place[2] = 1; x, y, z = place"],
     },
     "ended": {
         "near & slow": [
@@ -31,9 +31,12 @@ MISTAKES = {
         "np.abs(q[..., :7] - goal)": [
             "q[..., :7] - goal",
             "np.nan_to_num(q[..., :7] - goal)",
+            "np.abs((q[..., :7] - goal + 3) % (2 * np.pi) - 3)",
+            "np.abs((q[..., :7] - goal)[..., :4])",
         ],
         "(np.abs(qd[..., :7]) < 0.05)": [
             "(np.abs(qd) < 0.05)",
+            "(np.abs(qd[..., :1]) < 0.05)",
             "~(np.abs(qd[..., :7]) >= 0.05)",
         ],
         "np.abs(qd[..., 7:])": [
@@ -41,7 +44,8 @@ MISTAKES = {
             "np.abs(qd[..., 7:].sum(-1, keepdims=True))",
         ],
         ".all(axis=-1)": [".any(axis=-1)", ".all()", ".all(axis=1)"],
-        "0.002": ["0.05"],
+        "0.002": ["0.05", "0.0021"],
+        "0.015": ["0.0145"],
         "np.where(of_fingers, ": ["np.where(np.logical_not(of_fingers), "],
         "<": ["<="],
     },
@@ -53,9 +57,12 @@ MISTAKES = {
         ],
         "all(axis=1)": ["any(axis=1)"],
         "(force >": ["(force >="],
-        "phase[0] != of.DONE": ["phase[0] < 9", "(phase == 0).any()"],
+        "phase[0] != of.DONE": ["phase[0] < 9", "phase[0] == 0", "(phase == 0).any()"],
         "both[phase == of.LIFT].any()": [
             "both.any()",
+            "both[phase == of.LIFT].all()",
+            "both[phase == of.LIFT][:1].any()",
+            "both[phase == of.LIFT][-1:].any()",
             "(force > 0.1)[phase == 3].any(0).all()",
         ],
         "phase >= of.MOVE": ["phase == of.MOVE", "phase >= 0", "phase == of.LIFT"],

@@ -49,7 +49,7 @@ def run():
         )
     readings = {of: {n: getattr(cases[n], of) for n in creep.CASES} for of in GROUPS}
     readings["contacts"] = dict.fromkeys(creep.CASES, CONTACTS)
-    readings["turned"] = dict.fromkeys(creep.TURNED, 5e-6) | {"plain_45": 0.3}
+    readings["turned"] = dict.fromkeys(creep.TURNED, 5e-6) | {"plain_45": 0.0306}
     return Experiment(CREEP, traces, LINKS, readings, {}, False)
 
 

@@ -137,4 +137,4 @@ def test_each_check_fails_for_its_own_fault(episodes):
 def test_commands_that_are_shifted_by_one_row_are_found(lab, rows):
     assert failed(lab) == set()
     shifted = trace("exact", target=lambda values: np.roll(values, rows, axis=0))(lab)
-    assert failed(shifted) == {"commands_come_first"}
+    assert failed(shifted) == {"commands_come_first", "rows_wait_and_follow"}

@@ -16,7 +16,7 @@ def outcomes(name, case):
     """Return which episodes succeed, hang in the hand, and are touched early."""
     along, across = 1000 * (case.beliefs - case.starts).T
     k = np.arange(len(case.starts))
-    inside = (along > -3) & (along < 11) & (abs(across) < 19)
+    inside = (along > -3) & (along < 11) & (abs(across) < 23)
     noise = along - 1000 * rates.SAG[0] * (name == "corrected")
     good = {
         "plain": noise > -3,
