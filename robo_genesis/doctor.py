@@ -1,11 +1,9 @@
 """Run the steps of the diagnosis on this machine and stop at the first that is broken.
 
-    python -m robo_genesis.doctor                a table for the terminal
-    python -m robo_genesis.doctor --json         the same facts for a bug report
-    python -m robo_genesis.doctor --like BUNDLE  and what differs from the machine of a recorded run
+    python -m robo_genesis.doctor         a table for the terminal
+    python -m robo_genesis.doctor --json  the same facts for a bug report
 
-A bundle is a folder, or an archive as the ledger of the site offers it. The steps run
-in a process of their own. If the system ends it, the step that it ran is broken.
+The steps run in a process of their own. If the system ends it, the step that it ran is broken.
 Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 
@@ -27,11 +25,9 @@ import signal
 import subprocess
 import tempfile
 import textwrap
-import zipfile
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
@@ -174,48 +170,6 @@ def shareable(text: str) -> str:
     return re.sub(r"(?<![\w.~…/-])/(?!usr/(?:share|lib)/)(?:[^/\s'\"]+/)+", "…/", text)
 
 
-def recorded_machine(bundle: str) -> dict[str, str]:
-    """Return the same facts of the machine that recorded a bundle.
-
-    Raises:
-        BundleRefused: there is no bundle, or its manifest cannot be read.
-    """
-    from robo_genesis.evidence.bundle import read_manifest
-    from robo_genesis.evidence.compare import bundle_folder
-
-    with bundle_folder(Path(bundle)) as folder:
-        run = read_manifest(folder)
-    engine, backend, host = run.engine, run.backend, run.host
-    return {
-        "engine": engine.version,
-        "quadrants": engine.quadrants_version,
-        "torch": backend.torch_version,
-        "python": host.python,
-        "system": host.os,
-        "backend": backend.actual,
-        "device": backend.device_name,
-    }
-
-
-def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> Iterator[str]:
-    """Yield a line for each fact: equal, or both values.
-
-    Args:
-        here: the facts of this machine.
-        recorded: the facts of the machine that recorded a bundle.
-    """
-    line = "{:9}  {:50}  {}".format
-    yield line("", "recorded", "this machine")
-    for name, value in recorded.items():
-        found = here.get(name, "unknown: the engine did not start")
-        same = "equal" if found == value else printable(found)
-        yield line(name, printable(value), same)
-    yield (
-        "If the engine differs, install the site's version. Another backend rounds "
-        "differently; other differences usually change only the last digits."
-    )
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the results and return the exit status."""
     parser = argparse.ArgumentParser(
@@ -223,18 +177,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    one = parser.add_mutually_exclusive_group()
-    one.add_argument(
+    parser.add_argument(
         "--json", action="store_true", help="a report for a bug, on stdout"
     )
-    one.add_argument("--like", metavar="BUNDLE", help="compare with this run's machine")
     options = parser.parse_args(arguments)
-    try:
-        recorded = None if options.like is None else recorded_machine(options.like)
-    except ImportError as error:
-        parser.error(f"{error}. {project.import_advice()}")
-    except (ValueError, zipfile.BadZipFile) as error:
-        parser.error(printable(str(error)))
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
     print("The first start of the engine takes minutes.", file=sys.stderr)
     written = ""
@@ -245,8 +191,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             written = text
     if options.json:
         print(shareable(json.dumps(report, indent=2)))
-    if recorded is not None:
-        print("", *differences(report["machine"], recorded), sep="\n")
     return int(any(step["state"] != "ok" for step in report["steps"]))
 
 

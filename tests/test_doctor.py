@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import venv
-import zipfile
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -297,33 +296,3 @@ def test_a_python_without_packages_is_named_with_the_right_one(tmp_path):
     assert "ModuleNotFoundError" in said
     assert ".venv/bin/python, or run" in " ".join(said.split())
     assert error == MINUTES
-
-
-def test_a_machine_is_compared(steps_run, capsys, monkeypatch, pristine):
-    monkeypatch.setattr(project, "require_pinned_engine", fail)  # no engine starts
-    recorded = doctor.recorded_machine(str(pristine))
-    facts = "engine quadrants torch python system backend device"
-    assert list(recorded) == facts.split()
-    assert main(["--like", str(pristine)]) == 1
-    head, *lines = capsys.readouterr().out.split("DOCTOR: ")[1].splitlines()[2:]
-    assert head.endswith("  this machine")
-    assert [line.split()[0] for line in lines[: len(recorded)]] == list(recorded)
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        ("--like nowhere", "nowhere is neither a folder nor a zip"),
-        ("--like other.zip", "manifest.json cannot be read"),
-    ],
-)
-def test_what_cannot_be_compared_is_refused_before_the_first_step(
-    steps_run, capsys, monkeypatch, tmp_path, words, said
-):
-    monkeypatch.chdir(tmp_path)
-    zipfile.ZipFile("other.zip", "w").close()
-    with pytest.raises(SystemExit) as ended:
-        main(words.split())
-    assert ended.value.code == 2
-    assert said in capsys.readouterr().err
-    assert steps_run == []
