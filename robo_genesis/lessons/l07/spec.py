@@ -47,7 +47,9 @@ SCENES = {
     "filled": replace(GOOD, bowl="one_hull"),
     "outside": replace(GOOD, place=(0.15, 0.33, 0.0), fov=24.0),
     "below": replace(GOOD, place=(0.45, -0.46, -0.3)),
-    "wide": replace(GOOD, shape="box", size=(0.05, 0.082, 0.06)),
+    "wide": replace(
+        GOOD, shape="box", size=(0.05, 0.082, 0.06), place=(0.55, 0.0, 0.0)
+    ),
 }
 
 # What readers call the scenes, so that a name does not answer a question.
@@ -87,18 +89,19 @@ FORCED = replace(SCENES["wide"], friction=0.3, pads=0.3)
 SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 
 
-# Where all lifts begin: a fault of an object's own place cannot fail them [m].
-SPOT = (0.55, 0.0, 0.0)
-
-
 def lift_of(scene: SceneCase, **changed: Any) -> SceneCase:
-    """Return the run that lifts the object of a scene from the spot."""
-    return replace(scene, place=SPOT, steps=LIFTING, **changed)
+    """Return the run that lifts the object of a scene from its place."""
+    return replace(scene, steps=LIFTING, **changed)
+
+
+def is_lifted(scene: str) -> bool:
+    """Return whether an object is lifted, as all are that the hand can reach."""
+    return FAILS[scene] != "reachable"
 
 
 def runs(*scenes: str) -> dict[str, SceneCase]:
     """Return both runs of scenes: the lift has the name of the scene, the other one `_at_rest`."""
-    lifts = {name: lift_of(SCENES[name]) for name in scenes}
+    lifts = {name: lift_of(SCENES[name]) for name in scenes if is_lifted(name)}
     return lifts | {f"{name}_at_rest": SCENES[name] for name in scenes}
 
 
@@ -119,25 +122,75 @@ VIEW = CAMERA | {
 # open.
 WRIST = {"res": CAMERA["res"], "fov": 60, "near": 0.01, "far": 20.0, "GUI": False}
 
-# Least and largest value that passes, by quantity: [m], shares, pixels or counts.
+# Least and largest value that passes, by quantity: [m], [rad], shares, pixels or counts.
 LIMITS: dict[str, tuple[float, float]] = {
     "margin": (5e-3, np.inf),
+    "shape": (0, 1e-3),
+    "open": (0, 0),
+    "friction": (0, 0.01),
     "depth": (0, 1e-3),
     "mass": (0, 0.01),
     "ball": (0, 0.025),
+    "carried": (0.95, 1.05),
     "support": (0, 5e-4),
     "drift": (0, 2e-3),
     "moved": (0, 2e-4),
+    "pushed": (0, 2e-3),
+    "tilt": (0, np.radians(1)),
+    "reset": (0, 1e-6),
     "pixels": (200, np.inf),
     "share": (0.5, np.inf),
-    "accepted": (2, 2),
+    "accepted": (3, 3),
     "pregrasp": (0.03, np.inf),
     "grasp": (0.02, np.inf),
+    "over": (0.02, np.inf),
     "touches": (0, 0),
     "width": (0, 0.076),
     "descending": (0, 0),
     "fingers": (1, np.inf),
     "rise": (0.8, np.inf),
+}
+
+# A thinner ball sinks through the floor of the bowl: v T / e of its fall, and more [m].
+THIN = 0.005
+
+# The push of the rung "stable": gravity leans by this angle [rad].
+PUSH = np.radians(10)
+
+# Scenes that someone made to fool the ladder, with the quantity that must catch each,
+# and good ones with none. By name: what a reader reads, settings, quantity.
+ATTACKS: dict[str, tuple[str, SceneCase, str | None]] = {
+    name: (words, replace(GOOD, **changed), quantity)
+    for name, words, changed, quantity in (
+        ("floats_0", "no weight, no gap", {"weightless": True}, "carried"),
+        (
+            "floats_400um",
+            "no weight, a gap of 0.4 mm",
+            {"weightless": True, "gap": 4e-4},
+            "carried",
+        ),
+        ("in_air", "bowl beside the table", {"bowl_at": (1.35, 0.3)}, "margin"),
+        ("on_edge", "bowl half over the edge", {"bowl_at": (0.55, 0.4)}, "margin"),
+        ("far", "bowl too far away", {"bowl_at": (0.95, 0.32)}, "accepted"),
+        ("slick", "friction 0.01", {"friction": 0.01}, "friction"),
+        ("sunk", "object 65 mm inside the table", {"gap": -0.065}, "margin"),
+        ("beside", "object beside the bowl", {"place": (0.55, 0.11, 0.0)}, "touches"),
+        ("on_shelf", "good: object on a shelf", {"place": (0.5, -0.05, 0.1)}, None),
+        (
+            "through",
+            "shelf through the bowl",
+            {"place": (0.5, 0.15, 0.03)},
+            "margin",
+        ),
+        ("pencil", "pencil on its end", {"size": (0.006, 0.006, 0.15)}, "pushed"),
+        (
+            "low",
+            "flat object on a shelf",
+            {"place": (0.5, -0.05, 0.1), "size": (0.05, 0.05, 0.037)},
+            "grasp",
+        ),
+        ("tall", "good: tall cylinder", {"size": (0.06, 0.06, 0.2)}, None),
+    )
 }
 
 RESOLUTION = rest.RESOLUTION | {"s": DT / 2, "1": 0.5}

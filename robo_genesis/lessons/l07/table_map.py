@@ -154,7 +154,8 @@ def verdicts(found: Experiment) -> dict[str, np.ndarray]:
     reached, free = (np.array(good) == 2 for good in answers)
     least = [spec.LIMITS[name][0] for name in ("pregrasp", "grasp")]
     reached &= (residuals(found.traces["table"])[2].reshape(-1, 2) >= least).all(axis=1)
-    margins = [replace(spec.GOOD, place=(x, y, 0.0)).margin for x, y in CASE.places]
+    cases = [replace(spec.GOOD, place=(x, y, 0.0)) for x, y in CASE.places]
+    margins = [rungs.margin(case.boxes) for case in cases]
     free &= reached & (np.array(margins) >= spec.LIMITS["margin"][0])
     seen = {
         name: outlines(found, name) >= spec.LIMITS["pixels"][0]
