@@ -5,7 +5,7 @@ from typing import Any
 
 from robo_genesis.core.exercises import refused
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import SCALES, bullets, listed, with_unit
+from robo_genesis.core.text import bullets, listed, readable
 
 from . import rungs, spec
 from .study import Facts
@@ -15,17 +15,8 @@ MEASURES = False
 # By quantity: its value, and the least and the largest one that passes.
 Results = dict[str, tuple[float, float, float]]
 
-# Units in which quantities are printed; the others are counts, or true and false.
-UNITS = dict.fromkeys(
-    ("margin", "depth", "ball", "pregrasp", "grasp", "width"), "mm"
-) | {
-    "support": "µm",
-    "drift": "µm",
-    "moved": "µm",
-    "mass": "%",
-    "share": "%",
-    "rise": "%",
-}
+# Quantities that are printed in percent.
+SHARES = ("carried", "mass", "share", "rise")
 
 
 def given(facts: Facts, *names: str) -> Results:
@@ -49,11 +40,9 @@ def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results | None:
 
 def number(name: str, value: Any) -> str:
     """Return the value of a quantity with its unit."""
-    unit = UNITS.get(name)
-    if unit:
-        scaled = SCALES[unit] * value
-        return with_unit(scaled, unit, 1 if abs(scaled) >= 10 else 2)
-    return f"{value:.0f}" if isinstance(value, float) else f"{value}"
+    if name in SHARES:
+        return f"{100 * value:.1f} %"
+    return readable(value, "m") if spec.UNITS.get(name) == "m" else f"{value:g}"
 
 
 def compared(
@@ -116,13 +105,14 @@ def conclusions(run: Experiment) -> str:
             "Built: the object's footprint has a margin of "
             f"{t['margin']}, and its mass differs from "
             f"density × volume by {t['mass']}.",
-            f"Stable: at the end the object is {t['support']} from its "
-            "exact height, and in the last "
-            f"0.2 s no coordinate changed by more than {t['moved']}.",
+            f"Stable: contacts carry {t['carried']} of the weight, the object ends "
+            f"{t['support']} from its exact height, and in the last "
+            f"0.2 s no coordinate changed by more than {t['moved']}. A push moves it by "
+            f"{t['pushed']}.",
             f"Seen: {seen} {t['pixels']} pixels, {t['share']} of the whole outline.",
-            f"Reachable: {t['accepted']} of 2 answers are accepted, with the fingertips "
-            f"{t['pregrasp']} and {t['grasp']} above the table. The robot touches something in "
-            f"{t['touches']} postures of its way.",
+            f"Reachable: {t['accepted']} of 3 answers are accepted, with the fingertips "
+            f"{t['pregrasp']} and {t['grasp']} above the table, and {t['over']} above the rim of "
+            f"the bowl. The robot touches something in {t['touches']} postures of its way.",
             f"Graspable: the open hand touches the object in {t['descending']} steps. The object's "
             f"rise is {t['rise']} of the hand's.",
         ]

@@ -155,7 +155,7 @@ def verdicts(found: Experiment) -> dict[str, np.ndarray]:
     least = [spec.LIMITS[name][0] for name in ("pregrasp", "grasp")]
     reached &= (residuals(found.traces["table"])[2].reshape(-1, 2) >= least).all(axis=1)
     cases = [replace(spec.GOOD, place=(x, y, 0.0)) for x, y in CASE.places]
-    margins = [rungs.margin(case.boxes) for case in cases]
+    margins = [min(table.gap(*of) for of in rungs.pairs(case.boxes)) for case in cases]
     free &= reached & (np.array(margins) >= spec.LIMITS["margin"][0])
     seen = {
         name: outlines(found, name) >= spec.LIMITS["pixels"][0]

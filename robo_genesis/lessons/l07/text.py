@@ -6,18 +6,18 @@ from robo_genesis.core.text import decimal, scaled_value
 from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 
-from . import bowls, rest, rungs, spec
+from . import bowls, rest, rungs, spec, student
 
 MEASURES = False
 
 
-# By rung: head, quantity, factor and digits of the value that decides in this lesson.
+# By rung the quantity that decides in this lesson, with words.
 DECIDES = {
-    "built": ("built: ball above the bowl's foot [mm]", "ball", 1000.0, 1),
-    "stable": ("stable: support error [mm]", "support", 1000.0, 3),
-    "seen": ("seen: pixels", "pixels", 1.0, 0),
-    "reachable": ("reachable: touching postures", "touches", 1.0, 0),
-    "graspable": ("graspable: rise, share of the hand's", "rise", 1.0, 2),
+    "built": ("ball", "ball above the bowl's foot"),
+    "stable": ("carried", "carried share of the weight"),
+    "seen": ("pixels", "pixels"),
+    "reachable": ("touches", "touching postures"),
+    "graspable": ("rise", "rise, share of the hand's"),
 }
 
 
@@ -27,25 +27,36 @@ def ladder_table(run: Experiment) -> tables.Rows:
     for name in rungs.scenes(run):
         row = {"scene": spec.LETTERS[name]}
         for rung, found in rungs.measured(run, name).items():
-            head, quantity, factor, digits = DECIDES[rung]
-            value = decimal(factor * found[quantity], digits)
-            row[head] = value if rungs.passed(found) else f"**fails**, {value}"
+            quantity, words = DECIDES[rung]
+            value = student.number(quantity, found[quantity])
+            fails = "" if rungs.passed(found) else "**fails**, "
+            row[f"{rung}: {words}"] = fails + value
         yield row
+
+
+@tables.as_table
+def attack_table(run: Experiment) -> tables.Rows:
+    """Return which rung each scene fails that was made to fool the ladder, and by which value."""
+    for name, (_, quantity) in spec.ATTACKS.items():
+        found = run.readings["caught"].get(name)
+        value = f"{quantity} {student.number(quantity, found)}" if quantity else "–"
+        rung = rungs.NUMBERS[int(run.readings["attacks"][name])]
+        yield {"scene": name, "fails": rung or "none", "by": value}
 
 
 @tables.as_table
 def grip_table(run: Experiment) -> tables.Rows:
     """Return what the lifts of the page's objects measured."""
-    for name in (*rungs.scenes(run), *spec.FURTHER):
-        if name in spec.SHOWN_LIFTS:
-            m, contacts = run.metrics[name], run.readings["contacts"]
-            yield {
-                "object": spec.SHOWN_LIFTS[name],
-                "steps in contact before closing": f"{contacts[f'{name}_descending']:g}",
-                "pushed [mm]": decimal(1000 * m.pushed, 1),
-                "rise [mm]": decimal(1000 * m.rise, 1),
-                "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
-            }
+    for name, words in spec.SHOWN_LIFTS.items():
+        m, before = run.metrics[name], run.readings["before_closing"]
+        steps = before.get(name, run.readings["ladder"].get(f"{name}_descending"))
+        yield {
+            "object": words,
+            "steps in contact before closing": f"{steps:g}",
+            "pushed [mm]": decimal(1000 * m.pushed, 1),
+            "rise [mm]": decimal(1000 * m.rise, 1),
+            "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
+        }
 
 
 def ends(found: bowls.BowlMetrics) -> tuple[str, str]:
