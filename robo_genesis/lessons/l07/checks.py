@@ -63,27 +63,14 @@ def hovering_is_at_rest(run: Experiment) -> Findings:
     yield above("hovering.share_of_the_rise", lift.rise / lift.hand_rise, 0.99)
 
 
-def symptoms(found: Experiment) -> Findings:
-    """No camera has a pixel of scene D's object. The solver accepts all postures of
-    scene E, and the way to them touches something. In scene F the open hand touches the
-    box.
-    """
-    for camera, pixels in found.readings.get("pixels", {}).items():
-        if camera.startswith("outside"):
-            yield equal(camera, pixels, 0)
-    ladder = found.readings["ladder"]
-    yield equal("below.accepted", ladder["below_accepted"], 3)
-    yield above("below.touches", ladder["below_touches"], 0)
-    yield above("wide.descending", ladder["wide_descending"], 0)
-
-
 def attacks_are_caught(run: Experiment) -> Findings:
     """Each scene that was made to fool the ladder fails the rung of the quantity that
     was made for it, and by this quantity; the good ones pass all rungs.
     """
     for name, (_, quantity) in spec.ATTACKS.items():
-        rung = rungs.NUMBERS.index(rungs.rung_of(quantity))
-        yield equal(f"{name}.fails", run.readings["attacks"][name], rung)
+        rung = rungs.rung_of(quantity) if quantity else None
+        number = rungs.NUMBERS.index(rung)
+        yield equal(f"{name}.fails", run.readings["attacks"][name], number)
         if quantity:
             value = run.readings["caught"][name]
             yield equal(f"{name}.passes", rungs.passed({quantity: value}), False)

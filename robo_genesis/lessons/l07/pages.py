@@ -48,9 +48,7 @@ LECTURE = of_scenes(*SCENES).with_more(
 LAB = with_functions(
     of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder"
 )
-MISTAKES = of_scenes(*spec.SCENES).with_more(
-    checks=(checks.hovering_is_at_rest, checks.symptoms)
-)
+MISTAKES = of_scenes(*spec.SCENES).with_more(checks=(checks.hovering_is_at_rest,))
 
 LESSON = Lesson(
     spec=spec,

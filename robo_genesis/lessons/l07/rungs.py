@@ -91,11 +91,9 @@ def passed(values: Mapping[str, float]) -> bool:
     )
 
 
-def rung_of(quantity: str | None) -> str | None:
-    """Return the rung that a quantity belongs to, None for none."""
-    return next(
-        (of for of, names in spec.QUANTITIES.items() if quantity in names), None
-    )
+def rung_of(quantity: str) -> str:
+    """Return the rung that a quantity belongs to."""
+    return next(of for of, names in spec.QUANTITIES.items() if quantity in names)
 
 
 def failed(run: Experiment, scene: str) -> list[str]:

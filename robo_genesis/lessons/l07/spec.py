@@ -191,9 +191,6 @@ TOLERANCES = (
     | {
         "pixels": (20.0, 0.01),
         "steps": (20.0, 0.0),
-        "points": (4.0, 0.0),
-        "poses": (0.0, 0.0),
-        "postures": (3.0, 0.0),
     }
     | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1))
     | {"table": (np.inf, 0.0), "ladder": (0.02, 0.05), "caught": (0.02, 0.05)}

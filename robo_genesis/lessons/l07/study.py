@@ -179,8 +179,11 @@ class Facts:
         body = self.world.body.links[0]
         self.number = segment_number(self.world.scene, body) if self.render else 0
         self.outlines = {of: rungs.outline(corners, v) for of, v in self.views.items()}
-        shown = self.views.items() if self.render else ()
-        self.pixels = {of: np.sum(v.segmentation == self.number) for of, v in shown}
+        self.pixels = {
+            of: np.sum(v.segmentation == self.number)
+            for of, v in self.views.items()
+            if self.render
+        }
         areas = self.outlines
         views = [(n, n / max(areas[of], 1)) for of, n in (self.pixels or areas).items()]
         return dict(zip(("pixels", "share"), rungs.best(views), strict=True))
@@ -270,9 +273,9 @@ def attack(page: Any, gs: Any, worlds: Mapping[str, table.World]) -> None:
         known[case.shapes] = found.world
         failing = (of for of in spec.RUNGS if not rungs.passed(found.measure(of)))
         page.readings["attacks"][name] = rungs.NUMBERS.index(next(failing, None))
-        values = {name: value for of in found.values.values() for name, value in of.items()}
         if quantity:
-            page.readings["caught"][name] = values.get(quantity, np.nan)
+            of = found.values[rungs.rung_of(quantity)]
+            page.readings["caught"][name] = of[quantity]
     for world in known.values():
         world.scene.reset()
 

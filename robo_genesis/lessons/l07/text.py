@@ -83,25 +83,11 @@ def bowl_table(run: Experiment) -> tables.Rows:
         }
 
 
-def bowl_price(run: Experiment) -> str:
-    """Return the time of run and step by choice."""
-    whole, step = run.readings["run"], run.readings["step"]
-    rows = {
-        words: (whole[choice], 1000 * step[choice]) for choice, words in CHOICES.items()
-    }
-    heads = {"build and 200 steps [s]": 1, "step [ms]": 2}
-    return tables.timed_table("collision geometry", heads, rows)
-
-
 def bowl_runs(run: Experiment, group: str) -> str:
     """Return the runs of a group: `ATTACKS` or `SMALL`."""
     rows = {}
     for name, case in getattr(bowls, group).items():
-        words = f"{CHOICES[case.choice]}, h = {1000 * case.h:g} ms"
-        words += f", seed {case.seed}" * (case.seed > 0) + ", from inside" * (
-            case.drop < 0
-        )
-        words += f", start {1000 * case.shift:g} mm aside" * (case.shift > 0)
+        words = f"{CHOICES[case.choice]}, h = {1000 * case.h:g} ms{bowls.CHANGED.get(name, '')}"
         found = run.metrics[name]
         inside, lowest = ends(found)
         rows[words] = (
@@ -114,17 +100,10 @@ def bowl_runs(run: Experiment, group: str) -> str:
     return tables.number_table("run", dict.fromkeys(heads, 0), rows)
 
 
-# The runs of both tables of creep.
-CREEPS = {
-    "changes": [*rest.LABELS][:10],
-    "cures": ["tilt_10_box", "T_5ms_box", *[*rest.LABELS][10:]],
-}
-
-
-def creep_table(run: Experiment, which: str) -> str:
-    """Return creep and depth of the boxes of `CREEPS` in both engines, beside the formulas."""
+def creep_table(run: Experiment) -> str:
+    """Return creep and depth of boxes in both engines, beside the formulas."""
     rows = []
-    for name in CREEPS[which]:
+    for name, words in rest.LABELS.items():
         of, twin = run.metrics[name], run.metrics.get(f"mujoco_{name}")
         depth, creep = depth_and_creep(run.cases[name])
         found = {
@@ -140,5 +119,5 @@ def creep_table(run: Experiment, which: str) -> str:
             "sinks in": scaled_value(of.sunk, "µm"),
             "its formula": scaled_value(depth, "µm"),
         }
-        rows.append({"box": rest.LABELS[name]} | speeds | depths)
+        rows.append({"box": words} | speeds | depths)
     return tables.markdown(rows)
