@@ -120,10 +120,11 @@ QUANTITIES: dict[str, dict[str, tuple[str, float, float]]] = {
     "built": {
         "margin": ("m", 5e-3, np.inf),
         "shape": ("m", 0, 1e-3),
+        "open": ("1", 0, 0),
         "friction": ("1", 0, 0.01),
         "mass": ("1", 0, 0.01),
         "depth": ("m", 0, 1e-3),
-        "ball": ("m", 0, 0.025),
+        "ball": ("m", 2e-3, 0.025),
     },
     "stable": {
         "carried": ("1", 0.95, 1.05),

@@ -20,7 +20,7 @@ from robo_genesis.sim.camera.views import look, segment_number
 from robo_genesis.sim.session import CaseError
 
 from . import rungs, spec
-from .metrics import BALL, OBJECT, scene_metrics
+from .metrics import OBJECT, scene_metrics
 
 
 def areas(*scenes: str) -> Readings:
@@ -111,6 +111,7 @@ class Facts:
         self.world = world or table.build(gs, case, spec.VIEW, spec.WRIST)
         if world:
             table.arrange(world, case)
+            world.body.set_friction(case.friction)
         self.joints = describe(page, self.world.robot)
         page.links = [*page.links, "object", "ball"]
         self.values: dict[str, dict[str, float]] = {}
@@ -131,7 +132,7 @@ class Facts:
         """Return how the engine's geometry differs from the meant one, and where the ball is."""
         case = self.case
         depths: list[float] = []
-        own, *_, below = self.world.parts.values()
+        own, basin, *_, below = self.world.parts.values()
 
         def after(step: int) -> None:
             contacts = own.get_contacts()
@@ -142,15 +143,14 @@ class Facts:
         self.positions = self.rest.link_pos[:, OBJECT].astype(float)
         apart = [np.abs(case.boxes[name] - of).max() for name, of in self.boxes.items()]
         acts = max(geom.friction for geom in (*own.geoms, *below.geoms))
-        aside = np.hypot(*(self.rest.link_pos[-1, BALL, :2] - case.bowl_at))
-        inside = aside + case.ball_radius < bowl.RIM
         return {
             "margin": min(table.gap(*pair) for pair in self.pairs),
             "shape": max(apart),
+            "open": not all(one.get_trimesh().is_watertight for one in basin.vgeoms),
             "friction": abs(acts - case.friction),
             "mass": abs(own.get_mass() / (case.density * case.volume) - 1),
             "depth": depths[0],
-            "ball": scene_metrics(self.rest, case).ball if inside else np.inf,
+            "ball": scene_metrics(self.rest, case).ball,
         }
 
     def stable(self) -> dict[str, Any]:

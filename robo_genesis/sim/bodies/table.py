@@ -93,15 +93,15 @@ class SceneCase(Controlled):
         if z:
             found["shelf"] = ((x, y, z - SHELF[2]), SHELF)
         return {
-            name: np.array([(x - a / 2, y - b / 2, z), (x + a / 2, y + b / 2, z + c)])
-            for name, ((x, y, z), (a, b, c)) in found.items()
+            name: np.add(low, [(-a / 2, -b / 2, 0), (a / 2, b / 2, c)])
+            for name, (low, (a, b, c)) in found.items()
         }
 
     @property
     def shapes(self) -> tuple[Any, ...]:
-        """What a built scene keeps; `arrange` changes places and the object's friction."""
-        own = self.shape, self.size, self.weightless, self.density, self.pads
-        return *own, self.bowl, self.fov, self.place[2] != 0
+        """What a built scene keeps of what scenes of a page differ in; the rest can be changed."""
+        own = self.shape, self.size, self.weightless, self.bowl, self.fov
+        return *own, self.place[2] != 0
 
     def corners(self, centre: FloatArray) -> FloatArray:
         """Return corners (n, 3) of the upright object, 64 for each circle of a cylinder [m]."""
@@ -135,7 +135,6 @@ def arrange(world: World, case: SceneCase) -> None:
     """Put object, bowl, ball and shelf where a case has them, in a scene of equal `shapes`."""
     parts = world.parts
     parts["object"].set_pos(case.centre)
-    parts["object"].set_friction(case.friction)
     parts["bowl"].set_pos((*case.bowl_at, 0.0))
     world.ball.set_pos((*case.bowl_at, BALL_HEIGHT))
     if "shelf" in parts:

@@ -76,7 +76,7 @@ def readings() -> dict[str, dict[str, float]]:
         },
     }
     wrong = {"hovering_carried": 0.0, "filled_ball": 0.06, "wide_descending": 50}
-    usual |= {"pixels": 1300.0} | wrong | dict.fromkeys(spec.FURTHER, 3)
+    usual |= {"pixels": 1300.0, "ball": 0.0044} | wrong | dict.fromkeys(spec.FURTHER, 3)
     found = {
         group: {
             name: usual.get(name, usual.get(name.split("_", 1)[-1], 0))
