@@ -5,7 +5,7 @@ from typing import Any
 
 from robo_genesis.core.exercises import refused
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import bullets, listed, readable
+from robo_genesis.core.text import bullets, listed, scaled_value
 
 from . import rungs, spec
 from .study import Facts
@@ -42,7 +42,9 @@ def number(name: str, value: Any) -> str:
     """Return the value of a quantity with its unit."""
     if name in SHARES:
         return f"{100 * value:.1f} %"
-    return readable(value, "m") if spec.UNITS.get(name) == "m" else f"{value:g}"
+    if spec.UNITS.get(name) != "m":
+        return f"{value:g}"
+    return scaled_value(value, "mm" if abs(value) >= 1e-4 else "µm")
 
 
 def compared(
