@@ -14,41 +14,29 @@ from robo_genesis.core.checks import (
 )
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm import lifting
-from robo_genesis.sim.arm.kinematics import measured_hand
 from robo_genesis.sim.arm.laws import assigned_run, driven_run
 from robo_genesis.sim.bodies import table
 from robo_genesis.sim.common_checks import posture, stamps, structure
 from robo_genesis.sim.laws import apart, kept
 
 from . import rungs, spec
-from .metrics import OBJECT, lifts
+from .metrics import OBJECT
 
 
 def one_rung(run: Experiment) -> Findings:
     """Scene A passes all five rungs, and each other scene of the page fails the one
-    that it was made for, and no other. A run without a camera cannot fail "seen".
+    that it was made for, and no other, except that the hand cannot lift what it cannot
+    reach. A run without a camera cannot fail "seen".
     """
     for name in rungs.scenes(run):
         made_for = spec.FAILS[name]
         unseen = made_for == "seen" and not run.rendered
         expected = [made_for] if made_for and not unseen else []
+        expected += ["graspable"] * (made_for == "reachable")
         yield equal(f"{name}.fails", rungs.failed(run, name), expected)
         if expected:
             number = run.readings["fails"][name]
             yield equal(f"{name}.number", number, rungs.NUMBERS.index(made_for))
-
-
-def reached(run: Experiment) -> Findings:
-    """Before closing and at the end the hand is within 8 mm of its waypoint, if nothing
-    is in its way.
-    """
-    for name, case in run.cases.items():
-        if lifts(case) and case.size[1] <= spec.LIMITS["width"][1]:
-            points = lifting.waypoints(case.place, case.size[2])
-            for phase, point in zip(("settle", "hold"), points[1:], strict=True):
-                hand = measured_hand(run.traces[name], lifting.ENDS[phase]).position
-                yield at_most(f"{name}.{phase}_m", np.linalg.norm(hand - point), 8e-3)
 
 
 def hovering_is_at_rest(run: Experiment) -> Findings:
@@ -61,17 +49,17 @@ def hovering_is_at_rest(run: Experiment) -> Findings:
     yield above("hovering.share_of_the_rise", lift.rise / lift.hand_rise, 0.99)
 
 
-def symptoms(found: Experiment) -> Findings:
-    """No camera has a pixel of scene D's object. The solver accepts both postures of
-    scene E, and the way to them touches something. In scene F the open hand touches the
-    box.
+def attacks_are_caught(run: Experiment) -> Findings:
+    """Each scene that was made to fool the ladder fails the rung of the quantity that
+    was made for it, and by this quantity; the good ones pass all rungs.
     """
-    for camera, pixels in found.readings.get("pixels", {}).items():
-        if camera.startswith("outside"):
-            yield equal(camera, pixels, 0)
-    yield equal("below.accepted", found.readings["reach"]["below_accepted"], 2)
-    yield above("below.touches", found.readings["reach"]["below_touches"], 0)
-    yield above("wide.descending", found.readings["contacts"]["wide_descending"], 0)
+    for name, (_, quantity) in spec.ATTACKS.items():
+        rung = rungs.rung_of(quantity) if quantity else None
+        number = rungs.NUMBERS.index(rung)
+        yield equal(f"{name}.fails", run.readings["attacks"][name], number)
+        if quantity:
+            value = run.readings["caught"][name]
+            yield equal(f"{name}.passes", rungs.passed({quantity: value}), False)
 
 
 def lift_depends_on_the_step(run: Experiment) -> Findings:
@@ -82,10 +70,8 @@ def lift_depends_on_the_step(run: Experiment) -> Findings:
     coarse, fine = run.metrics["forced"], run.metrics["forced_fine"]
     yield above("forced.rise_m", coarse.rise, 0.04)
     yield below("forced_fine.rise_m", fine.rise, 5e-3)
-    for name in spec.FURTHER:
-        yield above(
-            f"{name}.descending", run.readings["contacts"][f"{name}_descending"], 0
-        )
+    for name, steps in run.readings["before_closing"].items():
+        yield above(f"{name}.before_closing", steps, 0)
 
 
 def laws_of_motion(run: Experiment) -> Findings:
@@ -109,5 +95,5 @@ def bodies(trace: Trace, case: table.SceneCase) -> Findings:
     yield from apart("start of link_pos of the bodies [m]", start, expected, 1e-6)
 
 
-CHECKS = (structure, stamps, one_rung, reached, laws_of_motion, posture)
-LECTURE = (hovering_is_at_rest, lift_depends_on_the_step)
+CHECKS = (structure, stamps, one_rung, laws_of_motion, posture)
+LECTURE = (hovering_is_at_rest, lift_depends_on_the_step, attacks_are_caught)

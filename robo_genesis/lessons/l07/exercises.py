@@ -62,9 +62,10 @@ def rest(at_rest: Written) -> Findings:
 PICTURES: Examples = {
     "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0),
     "absent": ([[0, 1], [2, 0]], 4, 12.5),
-    "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 2.0),
+    "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 3.0),
     "more_than_its_outline": ([[3, 3], [3, 0]], 3, 2.5),
     "no_outline": ([[3, 3], [0, 0]], 3, 0.0),
+    "many_links": ([[7, 263], [519, 8]], 7, 4.0),
 }
 
 
@@ -88,22 +89,23 @@ TIPS: Examples = {
     "second_nan": ((0.136, nan), (0, 0), False),
     "touches_last": ((1, 1), (0, 0, 2), False),
     "touches_on_the_way": ((0.136, 0.036), (0, 1, 0, 0), False),
+    "touches_once": ((0.136, 0.036), (0,) * 32 + (1,), False),
 }
 
 
 @as_test
 def reach(reachable: Written) -> Findings:
-    """Check `reachable(residuals, tips, touches, tolerances, clearances)` on two answers."""
-    limits, least = ONE_START.tolerances, np.array([0.03, 0.02])
+    """Check `reachable(residuals, tips, touches, tolerances, clearances)` on some answers."""
+    limits, least = ONE_START.tolerances, np.array([0.03, 0.02, 0.02])
     zero, still = np.zeros((2, 6)), np.zeros(4, dtype=int)
     for name, (residual, expected) in RESIDUALS.items():
-        for row in (0, 1):
-            residuals = np.where([[row == 0], [row == 1]], residual, 0.0)
+        for row in range(3):
+            residuals = np.where(np.arange(3)[:, None] == row, residual, 0.0)
             found = reachable(residuals, least, still, limits, least)
             yield equal(f"{name}.answer_{row}", found, expected)
     for name, (heights, touches, expected) in TIPS.items():
         given = zero, np.array(heights), np.array(touches)
-        yield equal(name, reachable(*given, limits, least), expected)
+        yield equal(name, reachable(*given, limits, least[:2]), expected)
     for last, expected in ((-0.1, True), (-0.3, False)):
         loose = np.full((3, 6), 0.1), np.array([0.02, 0.01, last]), still, (0.2, 0.2)
         yield equal(

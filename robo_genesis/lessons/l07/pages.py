@@ -3,7 +3,7 @@
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.exercises import with_functions
-from robo_genesis.core.experiment import MeasuringPage, runs_of
+from robo_genesis.core.experiment import MeasuringPage, json_value, runs_of
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record
@@ -26,7 +26,7 @@ def of_scenes(*scenes: str) -> MeasuringPage:
         kind=Trace,
         joints=JOINT_NAMES,
         readings=study.readings(*scenes) | record.groups(*rungs.CAMERAS),
-        with_camera={"pixels": study.group("outline", *scenes)},
+        with_camera={"pixels": study.areas(*scenes)},
         measure=scene_metrics,
         checks=checks.CHECKS,
         parameters=lambda: spec.parameters(runs),
@@ -36,17 +36,19 @@ def of_scenes(*scenes: str) -> MeasuringPage:
 
 SCENES = spec.SCENES_OF_LECTURE
 LECTURE = of_scenes(*SCENES).with_more(
-    lambda: spec.parameters(spec.runs(*SCENES) | spec.FURTHER) | table_map.parameters(),
+    lambda: (
+        spec.parameters(spec.runs(*SCENES) | spec.FURTHER)
+        | table_map.parameters()
+        | {"attacks": json_value(spec.ATTACKS)}
+    ),
     runs_of(spec.FURTHER) | table_map.RUNS,
-    {"contacts": study.group("contacts", *SCENES, *spec.FURTHER)} | table_map.READINGS,
+    study.FURTHER | table_map.READINGS,
     (*checks.LECTURE, table_map.map_follows),
 )
 LAB = with_functions(
     of_scenes("baseline"), "margin", "at_rest", "visible", "reachable", "ladder"
 )
-MISTAKES = of_scenes(*spec.SCENES).with_more(
-    checks=(checks.hovering_is_at_rest, checks.symptoms)
-)
+MISTAKES = of_scenes(*spec.SCENES).with_more(checks=(checks.hovering_is_at_rest,))
 
 LESSON = Lesson(
     spec=spec,

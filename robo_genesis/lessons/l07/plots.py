@@ -13,7 +13,7 @@ from robo_genesis.sim.bodies.bowl import CHOICES
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 
 from . import bowls, rungs, spec
-from .metrics import OBJECT, WINDOW
+from .metrics import OBJECT
 
 MEASURES = False
 
@@ -37,19 +37,6 @@ def views(run: Experiment) -> Figure:
     return plotting.stacked(
         {place: run.frames[f"{name}_rgb"] for name, place in rungs.CAMERAS.items()}
     )
-
-
-def settling(run: Experiment) -> Figure:
-    """Draw the gap below the objects of scenes A and B."""
-    figure, ax = plotting.axes(3.4)
-    for name in ("baseline", "hovering"):
-        trace, case = run.traces[f"{name}_at_rest"], spec.SCENES[name]
-        gap = 1000 * (trace.link_pos[:, OBJECT, 2] - case.size[2] / 2 - case.place[2])
-        ax.plot(trace.t, gap, label=spec.LABELS[name], **look(spec.CASE_MARKS[name]))
-    ax.axvline(trace.t[-WINDOW - 1], **LINE)
-    ax.set_xlabel("time [s]")
-    plotting.label_ends(ax, "Gap between object and table", "gap below [mm]")
-    return figure
 
 
 def lifts(run: Experiment) -> Figure:

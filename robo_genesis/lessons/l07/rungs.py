@@ -1,28 +1,24 @@
 """The ladder: what each rung measures of a scene, and whether the scene passes it."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping
+from itertools import combinations
 
 import numpy as np
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.bodies import bowl
-from robo_genesis.sim.bodies.table import SceneCase
+from robo_genesis.sim.bodies.table import Footprint
 from robo_genesis.sim.camera.geometry import project
 from robo_genesis.sim.camera.views import View
 
 from . import spec
-from .metrics import BALL
+from .spec import LIMITS
 
 # Where each camera is.
 CAMERAS = {"world": "beside the table", "wrist": "on the hand"}
 
 # No rung, and the rungs, by the number with which a page asks for them.
 NUMBERS = (None, *spec.RUNGS)
-
-# Names of the contact points of each finger in the counts of a lift.
-FINGERS = ("closed_left", "closed_right", "held_left", "held_right")
 
 
 def outline(corners: FloatArray, view: View, inside: bool = False) -> float:
@@ -43,63 +39,43 @@ def outline(corners: FloatArray, view: View, inside: bool = False) -> float:
     )  # of two dimensions: the area
 
 
+def pairs(boxes: Mapping[str, FloatArray]) -> list[tuple[Footprint, Footprint]]:
+    """Return the footprints that must not overlap.
+
+    They are those of two bodies that share more than 1 mm of height, and that of a body
+    beside the outside of each edge of its support, a rectangle of 10 m.
+    """
+    plan = {
+        name: (*of.mean(axis=0)[:2], *np.ptp(of, axis=0)[:2])
+        for name, of in boxes.items()
+    }
+    shared = [
+        (plan[a], plan[b])
+        for a, b in combinations(boxes, 2)
+        if min(boxes[a][1, 2], boxes[b][1, 2]) - max(boxes[a][0, 2], boxes[b][0, 2])
+        > 1e-3
+    ]
+    edges = [
+        (plan[name], (x + i * (5 + length / 2), y + k * (5 + width / 2), 10.0, 10.0))
+        for name, below in (("bowl", "table"), ("object", [*boxes][-1]))
+        for x, y, length, width in [plan[below]]
+        for i, k in ((1, 0), (-1, 0), (0, 1), (0, -1))
+    ]
+    return shared + edges
+
+
+def best(views: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """Return pixels and share of the view whose worse one is best, in units of its bound."""
+    pixels, share = (LIMITS[name][0] for name in ("pixels", "share"))
+    return max(views, key=lambda of: min(of[0] / pixels, of[1] / share))
+
+
 def measured(run: Experiment, scene: str) -> dict[str, dict[str, float]]:
     """Return by rung the values that decide about a scene, by the names of `spec.LIMITS`."""
-    rest = f"{scene}_at_rest"
-    found = {
-        group: {
-            name.removeprefix(f"{scene}_"): value
-            for name, value in run.readings[group].items()
-            if name.startswith(f"{scene}_")
-        }
-        for group in ("object", "outline", "reach", "contacts", "pixels")
-        if group in run.readings
-    }
-    ball = run.traces[rest].link_pos[-1, BALL]
-    return values(run.cases[rest], (run.metrics[rest], run.metrics[scene]), ball, found)
-
-
-def values(
-    case: SceneCase,
-    metrics: tuple[Any, Any],
-    ball: FloatArray,
-    found: Mapping[str, Mapping[str, float]],
-) -> dict[str, dict[str, float]]:
-    """Return by rung the values that decide about a scene.
-
-    Args:
-        case: its settings.
-        metrics: `SceneMetrics` of the run at rest and of the lift.
-        ball: (3,) where the ball ends [m].
-        found: readings by group and name.
-    """
-    rest, lift = metrics
-    inside = np.hypot(*(ball[:2] - case.bowl_at)) + case.ball_radius < bowl.RIM
-    shown, contacts = found.get("pixels", found["outline"]), found["contacts"]
-    best = max(CAMERAS, key=lambda name: shown[name])
+    found = run.readings["ladder"]
     return {
-        "built": {
-            "margin": case.margin,
-            "depth": found["object"]["depth"],
-            "mass": abs(found["object"]["mass"] / (case.density * case.volume) - 1),
-            "ball": rest.ball if inside else np.inf,
-        },
-        "stable": {
-            "support": abs(rest.support),
-            "drift": rest.drift,
-            "moved": rest.moved,
-        },
-        "seen": {
-            "pixels": shown[best],
-            "share": shown[best] / max(found["outline"][best], 1.0),
-        },
-        "reachable": dict(found["reach"]),
-        "graspable": {
-            "width": case.size[1],
-            "descending": contacts["descending"],
-            "fingers": min(contacts[name] for name in FINGERS),
-            "rise": lift.rise / lift.hand_rise,
-        },
+        rung: {name: found[f"{scene}_{name}"] for name in names}
+        for rung, names in spec.QUANTITIES.items()
     }
 
 
@@ -111,11 +87,15 @@ def scenes(run: Experiment) -> list[str]:
 def passed(values: Mapping[str, float]) -> bool:
     """Return whether all values of a rung are within their limits."""
     return all(
-        spec.LIMITS[name][0] <= value <= spec.LIMITS[name][1]
-        for name, value in values.items()
+        LIMITS[name][0] <= value <= LIMITS[name][1] for name, value in values.items()
     )
+
+
+def rung_of(quantity: str) -> str:
+    """Return the rung that a quantity belongs to."""
+    return next(of for of, names in spec.QUANTITIES.items() if quantity in names)
 
 
 def failed(run: Experiment, scene: str) -> list[str]:
     """Return the rungs that a scene fails."""
-    return [rung for rung, values in measured(run, scene).items() if not passed(values)]
+    return [rung for rung, of in measured(run, scene).items() if not passed(of)]

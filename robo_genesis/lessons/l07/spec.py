@@ -47,7 +47,9 @@ SCENES = {
     "filled": replace(GOOD, bowl="one_hull"),
     "outside": replace(GOOD, place=(0.15, 0.33, 0.0), fov=24.0),
     "below": replace(GOOD, place=(0.45, -0.46, -0.3)),
-    "wide": replace(GOOD, shape="box", size=(0.05, 0.082, 0.06)),
+    "wide": replace(
+        GOOD, shape="box", size=(0.05, 0.082, 0.06), place=(0.55, 0.0, 0.0)
+    ),
 }
 
 # What readers call the scenes, so that a name does not answer a question.
@@ -73,8 +75,6 @@ SHOWN_LIFTS = {
     "forced_fine": "82 mm, µ 0.3, half the step",
 }
 
-RUNGS = ("built", "stable", "seen", "reachable", "graspable")
-
 # The one rung that each scene fails; not fitted to a run.
 FAILS = dict(
     zip(
@@ -87,13 +87,9 @@ FORCED = replace(SCENES["wide"], friction=0.3, pads=0.3)
 SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 
 
-# Where all lifts begin: a fault of an object's own place cannot fail them [m].
-SPOT = (0.55, 0.0, 0.0)
-
-
 def lift_of(scene: SceneCase, **changed: Any) -> SceneCase:
-    """Return the run that lifts the object of a scene from the spot."""
-    return replace(scene, place=SPOT, steps=LIFTING, **changed)
+    """Return the run that lifts the object of a scene from its place."""
+    return replace(scene, steps=LIFTING, **changed)
 
 
 def runs(*scenes: str) -> dict[str, SceneCase]:
@@ -119,25 +115,70 @@ VIEW = CAMERA | {
 # open.
 WRIST = {"res": CAMERA["res"], "fov": 60, "near": 0.01, "far": 20.0, "GUI": False}
 
-# Least and largest value that passes, by quantity: [m], shares, pixels or counts.
-LIMITS: dict[str, tuple[float, float]] = {
-    "margin": (5e-3, np.inf),
-    "depth": (0, 1e-3),
-    "mass": (0, 0.01),
-    "ball": (0, 0.025),
-    "support": (0, 5e-4),
-    "drift": (0, 2e-3),
-    "moved": (0, 2e-4),
-    "pixels": (200, np.inf),
-    "share": (0.5, np.inf),
-    "accepted": (2, 2),
-    "pregrasp": (0.03, np.inf),
-    "grasp": (0.02, np.inf),
-    "touches": (0, 0),
-    "width": (0, 0.076),
-    "descending": (0, 0),
-    "fingers": (1, np.inf),
-    "rise": (0.8, np.inf),
+# By rung and quantity: unit, least and largest value that passes. Shares have the unit 1.
+QUANTITIES: dict[str, dict[str, tuple[str, float, float]]] = {
+    "built": {
+        "margin": ("m", 5e-3, np.inf),
+        "shape": ("m", 0, 1e-3),
+        "open": ("1", 0, 0),
+        "friction": ("1", 0, 0.01),
+        "mass": ("1", 0, 0.01),
+        "depth": ("m", 0, 1e-3),
+        "ball": ("m", 2e-3, 0.025),
+    },
+    "stable": {
+        "carried": ("1", 0.95, 1.05),
+        "support": ("m", 0, 5e-4),
+        "drift": ("m", 0, 2e-3),
+        "moved": ("m", 0, 2e-4),
+        "pushed": ("m", 0, 2e-3),
+        "reset": ("m", 0, 1e-6),
+    },
+    "seen": {"pixels": ("pixels", 200, np.inf), "share": ("1", 0.5, np.inf)},
+    "reachable": {
+        "accepted": ("poses", 3, 3),
+        "pregrasp": ("m", 0.03, np.inf),
+        "grasp": ("m", 0.02, np.inf),
+        "over": ("m", 0.02, np.inf),
+        "touches": ("postures", 0, 0),
+    },
+    "graspable": {
+        "width": ("m", 0, 0.076),
+        "descending": ("steps", 0, 0),
+        "fingers": ("points", 1, np.inf),
+        "rise": ("1", 0.8, np.inf),
+    },
+}
+
+RUNGS = (*QUANTITIES,)
+UNITS = {name: of[0] for rung in QUANTITIES.values() for name, of in rung.items()}
+LIMITS = {name: of[1:] for rung in QUANTITIES.values() for name, of in rung.items()}
+
+# A thinner ball sinks through the floor of the bowl: v T / e of its fall, and more [m].
+THIN = 0.005
+
+# The push of the rung "stable": gravity leans by this angle [rad].
+PUSH = np.radians(10)
+
+# Scenes that were made to fool a ladder, with the quantity that must catch each, and good
+# ones with none: by words for a reader, what differs from the good scene, and quantity.
+ATTACKS: dict[str, tuple[dict[str, Any], str | None]] = {
+    "no weight, no gap": ({"weightless": True}, "carried"),
+    "no weight, a gap of 0.4 mm": ({"weightless": True, "gap": 4e-4}, "carried"),
+    "bowl beside the table": ({"bowl_at": (1.35, 0.3)}, "margin"),
+    "bowl half over the edge": ({"bowl_at": (0.55, 0.4)}, "margin"),
+    "bowl too far away": ({"bowl_at": (0.95, 0.32)}, "accepted"),
+    "object with µ = 0.01": ({"friction": 0.01}, "friction"),
+    "object 65 mm deep in the table": ({"gap": -0.065}, "margin"),
+    "object beside the bowl": ({"place": (0.55, 0.11, 0.0)}, "touches"),
+    "object on a shelf": ({"place": (0.5, -0.05, 0.1)}, None),
+    "shelf through the bowl": ({"place": (0.5, 0.15, 0.03)}, "margin"),
+    "pencil on its end": ({"size": (0.006, 0.006, 0.15)}, "pushed"),
+    "flat object on a shelf": (
+        {"place": (0.5, -0.05, 0.1), "size": (0.05, 0.05, 0.037)},
+        "grasp",
+    ),
+    "cylinder of 60 × 200 mm": ({"size": (0.06, 0.06, 0.2)}, None),
 }
 
 RESOLUTION = rest.RESOLUTION | {"s": DT / 2, "1": 0.5}
@@ -151,12 +192,9 @@ TOLERANCES = (
     | {
         "pixels": (20.0, 0.01),
         "steps": (20.0, 0.0),
-        "points": (4.0, 0.0),
-        "poses": (0.0, 0.0),
-        "postures": (3.0, 0.0),
     }
     | dict.fromkeys((*SCENES, *FURTHER), (0.5, 0.1))
-    | {"table": (np.inf, 0.0)}
+    | {"table": (np.inf, 0.0), "ladder": (0.02, 0.05), "caught": (0.02, 0.05)}
 )
 
 # How the second case of a pair compares with the first [m]; not fitted to a run.

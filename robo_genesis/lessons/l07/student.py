@@ -5,7 +5,7 @@ from typing import Any
 
 from robo_genesis.core.exercises import refused
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import SCALES, bullets, listed, with_unit
+from robo_genesis.core.text import bullets, listed, scaled_value
 
 from . import rungs, spec
 from .study import Facts
@@ -15,17 +15,8 @@ MEASURES = False
 # By quantity: its value, and the least and the largest one that passes.
 Results = dict[str, tuple[float, float, float]]
 
-# Units in which quantities are printed; the others are counts, or true and false.
-UNITS = dict.fromkeys(
-    ("margin", "depth", "ball", "pregrasp", "grasp", "width"), "mm"
-) | {
-    "support": "µm",
-    "drift": "µm",
-    "moved": "µm",
-    "mass": "%",
-    "share": "%",
-    "rise": "%",
-}
+# Quantities that are printed in percent.
+SHARES = ("carried", "mass", "share", "rise")
 
 
 def given(facts: Facts, *names: str) -> Results:
@@ -49,11 +40,11 @@ def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results | None:
 
 def number(name: str, value: Any) -> str:
     """Return the value of a quantity with its unit."""
-    unit = UNITS.get(name)
-    if unit:
-        scaled = SCALES[unit] * value
-        return with_unit(scaled, unit, 1 if abs(scaled) >= 10 else 2)
-    return f"{value:.0f}" if isinstance(value, float) else f"{value}"
+    if name in SHARES:
+        return f"{100 * value:.1f} %"
+    if spec.UNITS.get(name) != "m":
+        return f"{value:g}"
+    return scaled_value(value, "mm" if abs(value) >= 1e-4 else "µm")
 
 
 def compared(
@@ -66,31 +57,23 @@ def compared(
         results: by rung what the student's functions found, None where one is missing.
         facts: of the same scene.
     """
-    course = {rung: rungs.passed(of) for rung, of in facts.values.items()}
     written = not isinstance(refused(lambda: ladder({})), NotImplementedError)
-    mine = {
-        rung: ladder({rung: of}) is None if written and of is not None else None
-        for rung, of in results.items()
-    }
-    words = {True: "passes", False: "FAILS", None: "-"}
-    lines = [f"{'rung':10} {'yours':8} course"]
-    lines += [
-        f"{rung:10} {words[mine[rung]]:8} {words[course[rung]]}" for rung in course
-    ]
-    if missing := [rung for rung in course if mine[rung] is None]:
-        lines.append(f"Your functions do not judge {listed(missing)} yet.")
+    lines, failed = [f"{'rung':10} {'yours':8} course"], []
+    judged = [rung for rung, of in results.items() if written and of is not None]
+    for rung, values in facts.values.items():
+        mine = "-"
+        if rung in judged:
+            mine = "FAILS" if ladder({rung: results[rung]}) else "passes"
+        if not rungs.passed(values):
+            failed.append(rung)
+        lines.append(f"{rung:10} {mine:8} {'FAILS' if rung in failed else 'passes'}")
+    if len(judged) < len(results):
+        lines.append("Your functions do not judge all rungs yet.")
     else:
         lines.append(
             f"The first rung that fails by your ladder: {ladder(results) or 'none'}."
         )
-    if other := [rung for rung in course if mine[rung] not in (None, course[rung])]:
-        lines.append(
-            f"Yours and the course's verdict differ: {listed(other)}. Compare the values."
-        )
-    failed = [rung for rung, good in course.items() if not good]
     lines.append(f"The scene {outcome(failed)}")
-    if len(failed) > 1:
-        lines.append("Change less, so that one rung fails alone.")
     return "\n".join(lines)
 
 
@@ -116,13 +99,14 @@ def conclusions(run: Experiment) -> str:
             "Built: the object's footprint has a margin of "
             f"{t['margin']}, and its mass differs from "
             f"density × volume by {t['mass']}.",
-            f"Stable: at the end the object is {t['support']} from its "
-            "exact height, and in the last "
-            f"0.2 s no coordinate changed by more than {t['moved']}.",
+            f"Stable: contacts carry {t['carried']} of the weight, the object ends "
+            f"{t['support']} from its exact height, and in the last "
+            f"0.2 s no coordinate changed by more than {t['moved']}. A push moves it by "
+            f"{t['pushed']}.",
             f"Seen: {seen} {t['pixels']} pixels, {t['share']} of the whole outline.",
-            f"Reachable: {t['accepted']} of 2 answers are accepted, with the fingertips "
-            f"{t['pregrasp']} and {t['grasp']} above the table. The robot touches something in "
-            f"{t['touches']} postures of its way.",
+            f"Reachable: {t['accepted']} of 3 answers are accepted, with the fingertips "
+            f"{t['pregrasp']} and {t['grasp']} above the table, and {t['over']} above the rim of "
+            f"the bowl. The robot touches something in {t['touches']} postures of its way.",
             f"Graspable: the open hand touches the object in {t['descending']} steps. The object's "
             f"rise is {t['rise']} of the hand's.",
         ]

@@ -1,77 +1,53 @@
 """What the pages of L07 record of their scenes, one after the other."""
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.experiment import Readings, counts
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import kinematics, lifting
 from robo_genesis.sim.arm.franka import MODEL_COUNTS
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.arm.joints import JointMap, describe, to_numpy
-from robo_genesis.sim.bodies import table
+from robo_genesis.sim.bodies import bowl, table
+from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.camera import record
-from robo_genesis.sim.camera.views import View, look, segment_number
+from robo_genesis.sim.camera.views import look, segment_number
+from robo_genesis.sim.session import CaseError
 
 from . import rungs, spec
-from .metrics import BALL, OBJECT, scene_metrics
-
-# Units of the readings of a scene, by group and name.
-GROUPS = {
-    "object": {"mass": "kg", "depth": "m"},
-    "outline": dict.fromkeys(rungs.CAMERAS, "pixels"),
-    "reach": {
-        "accepted": "poses",
-        "pregrasp": "m",
-        "grasp": "m",
-        "touches": "postures",
-    },
-    "contacts": {"descending": "steps"} | dict.fromkeys(rungs.FINGERS, "points"),
-}
+from .metrics import OBJECT, scene_metrics
 
 
-def group(name: str, *scenes: str) -> Readings:
-    """Return a group of readings of scenes, named by scene and reading."""
-    units = GROUPS[name].items()
+def areas(*scenes: str) -> Readings:
+    """Return readings of pixels, for each scene and camera."""
     return Readings(
-        {f"{scene}_{what}": unit for scene in scenes for what, unit in units}
+        {f"{scene}_{of}": "pixels" for scene in scenes for of in rungs.CAMERAS}
     )
 
 
 def readings(*scenes: str) -> dict[str, Readings]:
     """Return the groups of readings of a page with these scenes."""
-    found = {name: group(name, *scenes) for name in GROUPS}
+    units = {
+        f"{scene}_{name}": unit for scene in scenes for name, unit in spec.UNITS.items()
+    }
     others = {"fails": counts(scenes[1:])} if scenes[1:] else {}
+    found = {"ladder": Readings(units), "outline": areas(*scenes)}
     return found | {"model": counts(MODEL_COUNTS)} | others
 
 
-def note(page: Any, group: str, scene: str, **values: float) -> None:
-    """Add readings of a scene to a group of a page."""
-    more = {f"{scene}_{name}": value for name, value in values.items()}
-    page.readings.setdefault(group, {}).update(more)
-
-
-def let_rest(
-    world: table.World, joints: JointMap, case: table.SceneCase
-) -> tuple[Trace, float]:
-    """Let the scene rest while the robot holds its start.
-
-    Returns:
-        The run, and the depth of the object's deepest contact after the first step [m].
-    """
-    depths: list[float] = []
-
-    def after(step: int) -> None:
-        contacts = world.body.get_contacts()
-        depths.append(float(to_numpy(contacts["penetration"]).max(initial=0)))
-
-    held = case.commanding(case.q_start)
-    bodies = (world.body, world.ball)
-    trace = run_case(world.scene, world.robot, joints, held, bodies, after=after)
-    return trace, depths[0]
+# What the page records further: lifts that start in contact, and scenes made to fool.
+FURTHER = {
+    "before_closing": Readings(dict.fromkeys(spec.FURTHER, "steps")),
+    "attacks": counts(spec.ATTACKS),
+    "caught": Readings(
+        {name: spec.UNITS[of] for name, (_, of) in spec.ATTACKS.items() if of}
+    ),
+}
 
 
 def lift(
@@ -88,120 +64,184 @@ def lift(
         joints,
         command,
         (world.body, world.ball),
-        lambda: world.body.set_pos(case.centre),
+        lambda: table.arrange(world, case),
         after,
     )
     return trace, counts
 
 
-@dataclass(frozen=True, slots=True)
 class Facts:
-    """What one scene showed, before anything is judged.
+    """What one scene shows. Each rung measures its own facts, in order, and judges nothing.
 
-    | field | meaning |
-    |---|---|
-    | `case`, `world` | its settings, and the built scene |
-    | `rest`, `lift` | both runs |
-    | `views` | by camera |
-    | `number` | of the object in the segmentations |
-    | `residuals` | (2, 6) of the solver's answers: translation [m] and rotation vector [rad] |
-    | `tips` | heights (2,) of the fingertips at the answers, above the table [m] |
-    | `touches` | contacts of the robot at each posture on its way to the answers |
-    | `readings` | by group |
+    | attribute | meaning | measured by |
+    |---|---|---|
+    | `case`, `world` | its settings, and the built scene | |
+    | `boxes`, `pairs` | by name as the engine has them; footprints as in `rungs.pairs` | |
+    | `rest`, `positions` | the run at rest; centre (n + 1, 3) of the object [m] | `built` |
+    | `views`, `outlines` | by camera; area of the object in each [pixel] | `seen` |
+    | `number`, `pixels` | of the object in segmentations; by camera, if rendered | `seen` |
+    | `residuals` | (3, 6) of pregrasp, grasp, over the bowl [m], [rad] | `reachable` |
+    | `tips` | (3,) of the fingertips above the support, or the rim [m] | `reachable` |
+    | `touches` | (33,) contacts on the way to the grasp, and to the bowl | `reachable` |
+    | `lift` | its run | `graspable` |
+
+    Args:
+        page: gets the robot; its `render` decides about pictures.
+        gs: the engine after `gs.init`.
+        case: the settings.
+        world: a built scene of equal `shapes`, to be arranged; without it one is built.
+
+    Raises:
+        CaseError: the ball is too thin to test the bowl.
     """
 
-    case: table.SceneCase
-    world: table.World
-    rest: Trace
-    lift: Trace
-    views: dict[str, View]
-    number: int
-    residuals: FloatArray
-    tips: FloatArray
-    touches: np.ndarray
-    readings: dict[str, dict[str, float]]
+    def __init__(
+        self,
+        page: Any,
+        gs: Any,
+        case: table.SceneCase,
+        world: table.World | None = None,
+    ) -> None:
+        if case.ball_radius < spec.THIN:
+            raise CaseError(
+                f"ball_radius is {case.ball_radius:g} m. A ball thinner than {spec.THIN:g} m "
+                "sinks through the floor of the bowl and cannot test it. Choose a larger one."
+            )
+        self.case, self.render = case, page.render
+        self.world = world or table.build(gs, case, spec.VIEW, spec.WRIST)
+        if world:
+            table.arrange(world, case)
+            world.body.set_friction(case.friction)
+        self.joints = describe(page, self.world.robot)
+        page.links = [*page.links, "object", "ball"]
+        self.values: dict[str, dict[str, float]] = {}
+        self.boxes = {
+            name: to_numpy(of.get_AABB()).reshape(2, 3).astype(float)
+            for name, of in self.world.parts.items()
+        }
+        self.pairs = rungs.pairs(self.boxes)
 
-    @property
-    def positions(self) -> FloatArray:
-        """Centre (n + 1, 3) of the object at rest [m]."""
-        return self.rest.link_pos[:, OBJECT].astype(np.float64)
+    def run(self, after: Callable[[int], None] | None = None) -> Trace:
+        """Let the scene rest from its start, while the robot holds its own."""
+        case, (scene, robot, body, ball, *_) = self.case, self.world
+        held = case.commanding(case.q_start)
+        begin = partial(table.arrange, self.world, case)
+        return run_case(scene, robot, self.joints, held, (body, ball), begin, after)
 
-    @property
-    def outlines(self) -> dict[str, float]:
-        """Area of the object's outline in each view [pixel]."""
-        return self.readings["outline"]
+    def built(self) -> dict[str, Any]:
+        """Return how the engine's geometry differs from the meant one, and where the ball is."""
+        case = self.case
+        depths: list[float] = []
+        own, basin, *_, below = self.world.parts.values()
 
-    @property
-    def segmentations(self) -> dict[str, np.ndarray]:
-        """Segmentation (H, W) of each camera, none without pictures."""
-        found = {name: view.segmentation for name, view in self.views.items()}
-        return {name: picture for name, picture in found.items() if picture is not None}
+        def after(step: int) -> None:
+            contacts = own.get_contacts()
+            depths.append(float(to_numpy(contacts["penetration"]).max(initial=0)))
 
-    @property
-    def values(self) -> dict[str, dict[str, float]]:
-        """The values that decide about the scene, by rung."""
-        lift = spec.lift_of(self.case)
-        metrics = scene_metrics(self.rest, self.case), scene_metrics(self.lift, lift)
-        return rungs.values(
-            self.case, metrics, self.rest.link_pos[-1, BALL], self.readings
-        )
+        self.rest = self.run(after)
+        self.carried = to_numpy(own.get_links_net_contact_force())[..., 2].item()
+        self.positions = self.rest.link_pos[:, OBJECT].astype(float)
+        apart = [np.abs(case.boxes[name] - of).max() for name, of in self.boxes.items()]
+        acts = max(geom.friction for geom in (*own.geoms, *below.geoms))
+        return {
+            "margin": min(table.gap(*pair) for pair in self.pairs),
+            "shape": max(apart),
+            "open": not all(one.get_trimesh().is_watertight for one in basin.vgeoms),
+            "friction": abs(acts - case.friction),
+            "mass": abs(own.get_mass() / (case.density * case.volume) - 1),
+            "depth": depths[0],
+            "ball": scene_metrics(self.rest, case).ball,
+        }
 
+    def stable(self) -> dict[str, Any]:
+        """Return what carries the object, and how it moves: at rest, and with leaning gravity."""
+        lean = np.array([0.0, 0.0, -GRAVITY * np.cos(spec.PUSH)])
+        lean[np.argmin(self.case.size[:2])] = GRAVITY * np.sin(spec.PUSH)
+        self.world.scene.sim.set_gravity(lean)
+        pushed = self.run().link_pos[:, OBJECT].astype(float)
+        self.world.scene.sim.set_gravity((0.0, 0.0, -GRAVITY))
+        found: Any = scene_metrics(self.rest, self.case)
+        return {
+            "carried": self.carried / (self.world.body.get_mass() * GRAVITY),
+            "support": abs(found.support),
+            "drift": found.drift,
+            "moved": found.moved,
+            "pushed": np.linalg.norm(pushed[-1] - pushed[0]),
+            "reset": np.abs(self.run().link_pos - self.rest.link_pos).max(),
+        }
 
-def approach(
-    world: table.World, joints: JointMap, case: table.SceneCase
-) -> tuple[FloatArray, FloatArray, np.ndarray, int]:
-    """Ask for pregrasp and grasp, and assign postures on the way to the answers.
+    def seen(self) -> dict[str, float]:
+        """Return pixels and share of the camera that is nearest to fulfilling both bounds."""
+        self.run()
+        cameras, corners = self.world.cameras, self.case.corners(self.positions[-1])
+        cameras["wrist"].move_to_attach()
+        self.views = {name: look(of, self.render) for name, of in cameras.items()}
+        body = self.world.body.links[0]
+        self.number = segment_number(self.world.scene, body) if self.render else 0
+        self.outlines = {of: rungs.outline(corners, v) for of, v in self.views.items()}
+        self.pixels = {
+            of: np.sum(v.segmentation == self.number)
+            for of, v in self.views.items()
+            if self.render
+        }
+        areas = self.outlines
+        views = [(n, n / max(areas[of], 1)) for of, n in (self.pixels or areas).items()]
+        return dict(zip(("pixels", "share"), rungs.best(views), strict=True))
 
-    Returns:
-        Residuals, heights of the fingertips and contacts as in `Facts`, and how many
-        answers are accepted.
-    """
-    points = lifting.waypoints(case.place, case.size[2])[:2]
-    answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
-    residuals = np.array([answer.error for answer in answers], dtype=float)
-    tips = [kinematics.fingertip(kinematics.hand_pose(a.q))[2] for a in answers]
-    within = spec.ONE_START.tolerances
-    accepted = sum(int(kinematics.accepted(a.q, a.error, *within)) for a in answers)
-    way = lifting.line([case.q_start, *(answer.q for answer in answers)])
-    touches = [lifting.touches(world.robot, joints, world.fixed, q) for q in way]
-    return residuals, np.array(tips), np.array(touches), accepted
+    def reachable(self) -> dict[str, Any]:
+        """Return the accepted answers, the clearances, and postures that touch something."""
+        case, world, joints, z = self.case, self.world, self.joints, self.case.place[2]
+        rim = (*case.bowl_at, bowl.HEIGHT)
+        points = lifting.waypoints(case.place, case.size[2])[:2]
+        points += lifting.waypoints(rim, case.size[2])[:1]
+        answers = lifting.ask(world.robot, joints, case.q_start, spec.ONE_START, points)
+        self.residuals = np.array([answer.error for answer in answers], dtype=float)
+        tips = [kinematics.fingertip(kinematics.hand_pose(a.q))[2] for a in answers]
+        self.tips = np.array(tips) - (z, z, rim[2])
+        within = spec.ONE_START.tolerances
+        accepted = sum(int(kinematics.accepted(a.q, a.error, *within)) for a in answers)
+        over, at, away = (answer.q for answer in answers)
+        way = lifting.line([case.q_start, over, at]) + lifting.line([over, away])
+        touches = [lifting.touches(world.robot, joints, world.fixed, q) for q in way]
+        self.touches = np.array(touches)
+        found = accepted, *self.tips, (self.touches > 0).sum()
+        return dict(zip(spec.QUANTITIES["reachable"], found, strict=True))
+
+    def graspable(self) -> dict[str, Any]:
+        """Return the width, what the hand touches, and the share of its rise."""
+        case = spec.lift_of(self.case)
+        self.lift, contacts = lift(self.world, self.joints, case)
+        before, *fingers = contacts.values()
+        found: Any = scene_metrics(self.lift, case)
+        return {
+            "width": np.ptp(self.boxes["object"], axis=0)[1],
+            "descending": before,
+            "fingers": min(fingers),
+            "rise": found.rise / found.hand_rise,
+        }
+
+    def measure(self, rung: str) -> dict[str, float]:
+        """Measure a rung, after all lower ones, and keep its values."""
+        found = {name: float(value) for name, value in getattr(self, rung)().items()}
+        self.values[rung] = found
+        return found
 
 
 def facts(page: Any, gs: Any, case: table.SceneCase) -> Facts:
-    """Build a scene, give a page its robot, and return what the scene shows."""
-    world = table.build(gs, case, spec.VIEW, spec.WRIST)
-    joints = describe(page, world.robot)
-    page.links = [*page.links, "object", "ball"]
-    rest, depth = let_rest(world, joints, case)
-    world.cameras["wrist"].move_to_attach()
-    views = {name: look(camera, page.render) for name, camera in world.cameras.items()}
-    corners = case.corners(rest.link_pos[-1, OBJECT])
-    residuals, tips, touches, accepted = approach(world, joints, case)
-    lifted, contacts = lift(world, joints, spec.lift_of(case))
-    reach = accepted, *tips.tolist(), int((touches > 0).sum())
-    readings: dict[str, dict[str, float]] = {
-        "object": {"mass": float(world.body.get_mass()), "depth": depth},
-        "outline": {name: rungs.outline(corners, of) for name, of in views.items()},
-        "reach": dict(zip(GROUPS["reach"], reach, strict=True)),
-        "contacts": {**contacts},
-    }
-    number = 0
-    if page.render:
-        number = segment_number(world.scene, world.body.links[0])
-        readings["pixels"] = {
-            name: float(np.sum(view.segmentation == number))
-            for name, view in views.items()
-        }
-    return Facts(
-        case, world, rest, lifted, views, number, residuals, tips, touches, readings
-    )
+    """Build a scene, measure all rungs, and return what it shows."""
+    found = Facts(page, gs, case)
+    for rung in spec.RUNGS:
+        found.measure(rung)
+    return found
 
 
 def keep(page: Any, scene: str, found: Facts) -> None:
     """Give a page what a scene of the specification showed, of the good one its views as well."""
     page.traces |= {f"{scene}_at_rest": found.rest, scene: found.lift}
-    for group, of in found.readings.items():
-        note(page, group, scene, **of)
+    groups = [("ladder", of) for of in found.values.values()]
+    for group, of in (*groups, ("outline", found.outlines), ("pixels", found.pixels)):
+        for name, value in of.items():
+            page.readings.setdefault(group, {})[f"{scene}_{name}"] = float(value)
     if scene == "baseline":
         for name, view in found.views.items():
             page.readings[f"view_{name}"] = record.numbers(view)
@@ -215,12 +255,38 @@ def examine(page: Any, gs: Any, scene: str) -> table.World:
     return found.world
 
 
+def attack(page: Any, gs: Any, worlds: Mapping[str, table.World]) -> None:
+    """Give a page the first rung that each of `spec.ATTACKS` fails, and the value that shows it.
+
+    A scene of the same shapes as an earlier one is arranged, not built again.
+
+    Args:
+        page: gets the readings.
+        gs: the engine after `gs.init`.
+        worlds: built scenes of the specification by name, which are reset afterwards.
+    """
+    known = {spec.SCENES[name].shapes: world for name, world in worlds.items()}
+    page.readings |= {"attacks": {}, "caught": {}}
+    for name, (changed, quantity) in spec.ATTACKS.items():
+        case = replace(spec.GOOD, **changed)
+        found = Facts(page, gs, case, known.get(case.shapes))
+        known[case.shapes] = found.world
+        failing = (of for of in spec.RUNGS if not rungs.passed(found.measure(of)))
+        page.readings["attacks"][name] = rungs.NUMBERS.index(next(failing, None))
+        if quantity:
+            of = found.values[rungs.rung_of(quantity)]
+            page.readings["caught"][name] = of[quantity]
+    for world in known.values():
+        world.scene.reset()
+
+
 def record_forced(page: Any, gs: Any) -> None:
     """Give a page the lifts of the wide box with little friction, at two solver steps."""
+    page.readings["before_closing"] = {}
     for name, case in spec.FURTHER.items():
         world = table.build(gs, case, spec.VIEW, spec.WRIST)
         page.traces[name], contacts = lift(world, page.joints, case)
-        note(page, "contacts", name, **contacts)
+        page.readings["before_closing"][name] = contacts["descending"]
 
 
 def conclude(page: Any) -> None:

@@ -6,18 +6,18 @@ from robo_genesis.core.text import decimal, scaled_value
 from robo_genesis.sim.bodies.bowl import CHOICES, DENSITY
 from robo_genesis.sim.bodies.soft_contact import depth_and_creep
 
-from . import bowls, rest, rungs, spec
+from . import bowls, rest, rungs, spec, student
 
 MEASURES = False
 
 
-# By rung: head, quantity, factor and digits of the value that decides in this lesson.
+# By rung the quantity that decides in this lesson, with words.
 DECIDES = {
-    "built": ("built: ball above the bowl's foot [mm]", "ball", 1000.0, 1),
-    "stable": ("stable: support error [mm]", "support", 1000.0, 3),
-    "seen": ("seen: pixels", "pixels", 1.0, 0),
-    "reachable": ("reachable: touching postures", "touches", 1.0, 0),
-    "graspable": ("graspable: rise, share of the hand's", "rise", 1.0, 2),
+    "built": ("ball", "ball above the bowl's foot"),
+    "stable": ("carried", "carried share of the weight"),
+    "seen": ("pixels", "pixels"),
+    "reachable": ("touches", "touching postures"),
+    "graspable": ("rise", "rise, share of the hand's"),
 }
 
 
@@ -27,25 +27,36 @@ def ladder_table(run: Experiment) -> tables.Rows:
     for name in rungs.scenes(run):
         row = {"scene": spec.LETTERS[name]}
         for rung, found in rungs.measured(run, name).items():
-            head, quantity, factor, digits = DECIDES[rung]
-            value = decimal(factor * found[quantity], digits)
-            row[head] = value if rungs.passed(found) else f"**fails**, {value}"
+            quantity, words = DECIDES[rung]
+            value = student.number(quantity, found[quantity])
+            fails = "" if rungs.passed(found) else "**fails**, "
+            row[f"{rung}: {words}"] = fails + value
         yield row
+
+
+@tables.as_table
+def attack_table(run: Experiment) -> tables.Rows:
+    """Return which rung each scene fails that was made to fool the ladder, and by which value."""
+    for name, (_, quantity) in spec.ATTACKS.items():
+        found = run.readings["caught"].get(name)
+        value = f"{quantity} {student.number(quantity, found)}" if quantity else "–"
+        rung = rungs.NUMBERS[int(run.readings["attacks"][name])]
+        yield {"scene": name, "fails": rung or "none", "by": value}
 
 
 @tables.as_table
 def grip_table(run: Experiment) -> tables.Rows:
     """Return what the lifts of the page's objects measured."""
-    for name in (*rungs.scenes(run), *spec.FURTHER):
-        if name in spec.SHOWN_LIFTS:
-            m, contacts = run.metrics[name], run.readings["contacts"]
-            yield {
-                "object": spec.SHOWN_LIFTS[name],
-                "steps in contact before closing": f"{contacts[f'{name}_descending']:g}",
-                "pushed [mm]": decimal(1000 * m.pushed, 1),
-                "rise [mm]": decimal(1000 * m.rise, 1),
-                "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
-            }
+    for name, words in spec.SHOWN_LIFTS.items():
+        m, before = run.metrics[name], run.readings["before_closing"]
+        steps = before.get(name, run.readings["ladder"].get(f"{name}_descending"))
+        yield {
+            "object": words,
+            "steps in contact before closing": f"{steps:g}",
+            "pushed [mm]": decimal(1000 * m.pushed, 1),
+            "rise [mm]": decimal(1000 * m.rise, 1),
+            "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
+        }
 
 
 def ends(found: bowls.BowlMetrics) -> tuple[str, str]:
@@ -72,25 +83,11 @@ def bowl_table(run: Experiment) -> tables.Rows:
         }
 
 
-def bowl_price(run: Experiment) -> str:
-    """Return the time of run and step by choice."""
-    whole, step = run.readings["run"], run.readings["step"]
-    rows = {
-        words: (whole[choice], 1000 * step[choice]) for choice, words in CHOICES.items()
-    }
-    heads = {"build and 200 steps [s]": 1, "step [ms]": 2}
-    return tables.timed_table("collision geometry", heads, rows)
-
-
 def bowl_runs(run: Experiment, group: str) -> str:
     """Return the runs of a group: `ATTACKS` or `SMALL`."""
     rows = {}
     for name, case in getattr(bowls, group).items():
-        words = f"{CHOICES[case.choice]}, h = {1000 * case.h:g} ms"
-        words += f", seed {case.seed}" * (case.seed > 0) + ", from inside" * (
-            case.drop < 0
-        )
-        words += f", start {1000 * case.shift:g} mm aside" * (case.shift > 0)
+        words = f"{CHOICES[case.choice]}, h = {1000 * case.h:g} ms{bowls.CHANGED.get(name, '')}"
         found = run.metrics[name]
         inside, lowest = ends(found)
         rows[words] = (
@@ -103,17 +100,10 @@ def bowl_runs(run: Experiment, group: str) -> str:
     return tables.number_table("run", dict.fromkeys(heads, 0), rows)
 
 
-# The runs of both tables of creep.
-CREEPS = {
-    "changes": [*rest.LABELS][:10],
-    "cures": ["tilt_10_box", "T_5ms_box", *[*rest.LABELS][10:]],
-}
-
-
-def creep_table(run: Experiment, which: str) -> str:
-    """Return creep and depth of the boxes of `CREEPS` in both engines, beside the formulas."""
+def creep_table(run: Experiment) -> str:
+    """Return creep and depth of boxes in both engines, beside the formulas."""
     rows = []
-    for name in CREEPS[which]:
+    for name, words in rest.LABELS.items():
         of, twin = run.metrics[name], run.metrics.get(f"mujoco_{name}")
         depth, creep = depth_and_creep(run.cases[name])
         found = {
@@ -129,5 +119,5 @@ def creep_table(run: Experiment, which: str) -> str:
             "sinks in": scaled_value(of.sunk, "µm"),
             "its formula": scaled_value(depth, "µm"),
         }
-        rows.append({"box": rest.LABELS[name]} | speeds | depths)
+        rows.append({"box": words} | speeds | depths)
     return tables.markdown(rows)

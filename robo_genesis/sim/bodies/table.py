@@ -19,6 +19,8 @@ from .rigid_bodies import new_scene
 # Size of the table's top [m], and its centre (x, y).
 TABLE = ((1.2, 0.8, 0.05), (0.45, 0.0))
 
+SHELF = (0.16, 0.14, 0.02)  # Size of a shelf [m]
+
 FLOOR = -0.75  # Height of the floor [m]
 
 # The camera in the frame of the hand, z backwards: it looks along the fingers [m].
@@ -79,28 +81,27 @@ class SceneCase(Controlled):
         return np.array([x, y, z + self.gap + self.size[2] / 2])
 
     @property
-    def footprint(self) -> Footprint:
-        """Footprint of the object."""
-        return (*self.place[:2], *self.size[:2])
+    def boxes(self) -> dict[str, FloatArray]:
+        """Lowest and highest corner (2, 3) of object, bowl, table and shelf, as meant [m]."""
+        x, y, z = self.place
+        wide = 2 * bowl.RIM * np.cos(np.pi / bowl.SECTIONS)
+        found = {
+            "object": ((x, y, z + self.gap), self.size),
+            "bowl": ((*self.bowl_at, 0.0), (wide, wide, bowl.HEIGHT)),
+            "table": ((*TABLE[1], -TABLE[0][2]), TABLE[0]),
+        }
+        if z:
+            found["shelf"] = ((x, y, z - SHELF[2]), SHELF)
+        return {
+            name: np.add(low, [(-a / 2, -b / 2, 0), (a / 2, b / 2, c)])
+            for name, (low, (a, b, c)) in found.items()
+        }
 
     @property
-    def neighbours(self) -> list[Footprint]:
-        """What the object must not overlap: the bowl, and the outside of the table's edges.
-
-        The outside of an edge is a rectangle of 10 m. A shelf has no edges here.
-        """
-        (length, width, _), (x, y) = TABLE
-        near = (*self.bowl_at, 2 * bowl.RIM, 2 * bowl.RIM)
-        if self.place[2]:
-            return [near]
-        along, across = 5 + length / 2, 5 + width / 2
-        ends = [(x + side * along, y, 10.0, 10.0) for side in (-1, 1)]
-        return [near, *ends, *((x, y + side * across, 10.0, 10.0) for side in (-1, 1))]
-
-    @property
-    def margin(self) -> float:
-        """Distance of the object from the bowl, or from an edge of its support [m]."""
-        return min(gap(self.footprint, other) for other in self.neighbours)
+    def shapes(self) -> tuple[Any, ...]:
+        """What a built scene keeps of what scenes of a page differ in; the rest can be changed."""
+        own = self.shape, self.size, self.weightless, self.bowl, self.fov
+        return *own, self.place[2] != 0
 
     def corners(self, centre: FloatArray) -> FloatArray:
         """Return corners (n, 3) of the upright object, 64 for each circle of a cylinder [m]."""
@@ -121,6 +122,23 @@ class World(NamedTuple):
     ball: Any
     fixed: Sequence[Any]
     cameras: dict[str, Any]
+
+    @property
+    def parts(self) -> dict[str, Any]:
+        """Entities by the names of `SceneCase.boxes`."""
+        table, *others, basin = self.fixed
+        shelf = {"shelf": others[4]} if len(others) > 4 else {}
+        return {"object": self.body, "bowl": basin, "table": table} | shelf
+
+
+def arrange(world: World, case: SceneCase) -> None:
+    """Put object, bowl, ball and shelf where a case has them, in a scene of equal `shapes`."""
+    parts = world.parts
+    parts["object"].set_pos(case.centre)
+    parts["bowl"].set_pos((*case.bowl_at, 0.0))
+    world.ball.set_pos((*case.bowl_at, BALL_HEIGHT))
+    if "shelf" in parts:
+        parts["shelf"].set_pos(case.boxes["shelf"].mean(axis=0))
 
 
 def build(
@@ -167,7 +185,7 @@ def build(
     fixed = [block(TABLE[0], x, y, 0.0)]
     fixed += [block((0.05, 0.05, -FLOOR - thick), *at, -thick, 0.5) for at in corners]
     if case.place[2]:
-        fixed.append(block((0.16, 0.14, 0.02), *case.place, 0.5))
+        fixed.append(block(SHELF, *case.place, 0.5))
     robot = scene.add_entity(
         gs.morphs.MJCF(file=FRANKA_MJCF),
         material=gs.materials.Rigid(

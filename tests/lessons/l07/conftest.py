@@ -64,29 +64,31 @@ def wrist_pose() -> np.ndarray:
 
 def readings() -> dict[str, dict[str, float]]:
     """Return what the engine would report of the lecture's scenes."""
-    scenes = [spec.SCENES[name] for name in spec.SCENES_OF_LECTURE]
     usual = {
-        "depth": 2e-4,
-        "accepted": 2,
-        "pregrasp": 0.136,
-        "grasp": 0.036,
-        "touches": 0,
+        **dict.fromkeys(("margin", "pregrasp", "over"), 0.136),
+        **dict.fromkeys(("carried", "share", "rise"), 1.0),
+        **{
+            "grasp": 0.036,
+            "accepted": 3,
+            "fingers": 2,
+            "world": 1300.0,
+            "wrist": 1700.0,
+        },
     }
-    usual |= dict.fromkeys(rungs.FINGERS, 2) | {
-        "descending": 0,
-        "world": 1300.0,
-        "wrist": 1700.0,
-    }
+    wrong = {"hovering_carried": 0.0, "filled_ball": 0.06, "wide_descending": 50}
+    usual |= {"pixels": 1300.0, "ball": 0.0044} | wrong | dict.fromkeys(spec.FURTHER, 3)
     found = {
-        group: {name: usual.get(name.split("_", 1)[-1], 0) for name in of.units}
+        group: {
+            name: usual.get(name, usual.get(name.split("_", 1)[-1], 0))
+            for name in of.units
+        }
         for group, of in LECTURE.groups(rendered=True).items()
     }
-    for name, case in zip(spec.SCENES_OF_LECTURE, scenes, strict=True):
-        found["object"][f"{name}_mass"] = case.density * case.volume
-    found["contacts"]["wide_descending"] = 50
-    found["contacts"] |= dict.fromkeys(
-        ("forced_descending", "forced_fine_descending"), 3
-    )
+    for name, (_, quantity) in spec.ATTACKS.items():
+        rung = rungs.rung_of(quantity) if quantity else None
+        found["attacks"][name] = rungs.NUMBERS.index(rung)
+        if quantity:
+            found["caught"][name] = spec.LIMITS[quantity][0] - 1
     for name, field, pose in (
         ("world", 42.0, geometry.looking(spec.VIEW["pos"], spec.VIEW["lookat"])),
         ("wrist", 60.0, wrist_pose()),

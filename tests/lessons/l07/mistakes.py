@@ -33,10 +33,13 @@ MISTAKES = {
             "segmentation == 0",
             "segmentation > 0",
             "segmentation >= number",
+            "segmentation.astype(np.uint8) == number",
+            "segmentation // number == 1",
         ],
         "pixels / outline if": [
             "min(pixels / outline, 1) if",
             "100 * pixels / outline if",
+            "round(pixels / outline, 2) if",
             "(segmentation == number).mean() if",
         ],
         ".sum()": [".any(axis=1).sum()"],
@@ -44,7 +47,7 @@ MISTAKES = {
         "return pixels, ": ["return 0 if outline else pixels, "],
     },
     "reachable": {
-        "[:, :3]": ["[:, 3:]", "[:1, :3]"],
+        "[:, :3]": ["[:, 3:]", "[:1, :3]", "[:2, :3]"],
         "(angle <= tolerances[1])": ["True"],
         "tolerances[0]": ["5e-4"],
         "tips >= clearances": [
@@ -54,7 +57,13 @@ MISTAKES = {
         ],
         "good.all()": ["good.any()", "good[0]", "good[-1]"],
         "len(good) > 0 and": [""],
-        "not touches.any()": ["not touches.all()", "not touches[-1]", "True"],
+        "not touches.any()": [
+            "not touches.all()",
+            "not touches[-1]",
+            "True",
+            "touches.mean() < 0.05",
+            "not touches[:22].any()",
+        ],
     },
     "ladder": {
         "results.items()": [

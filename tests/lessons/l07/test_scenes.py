@@ -1,19 +1,46 @@
 """Rungs and checks of L07: known values, and each check with an input that breaks its claim."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from lessons.changed_runs import failed, put, reading, shift, trace
+from lessons.changed_runs import failed, reading, shift, trace
 from lessons.experiments import each
 
-from robo_genesis.lessons.l07 import checks, plots, rungs, spec, text
-from robo_genesis.lessons.l07.metrics import BALL, OBJECT
+from robo_genesis.lessons.l07 import plots, rungs, spec, study, text
+from robo_genesis.lessons.l07.metrics import OBJECT
+from robo_genesis.sim.bodies import table
+from robo_genesis.sim.session import CaseError
 
 
-def test_an_object_that_both_cameras_lose_is_not_seen(scenes):
-    for camera in rungs.CAMERAS:
-        scenes = reading("pixels", f"baseline_{camera}", 150.0)(scenes)
-    assert rungs.failed(scenes, "baseline") == ["seen"]
+def test_one_camera_must_fulfil_both_bounds():
+    assert rungs.best([(5416, 0.449), (4341, 0.998)]) == (4341, 0.998)
+    assert rungs.best([(150, 1.0), (900, 0.4)]) == (900, 0.4)
+
+
+# By words: what differs from the good scene, and whether some pair then overlaps
+PLACES = {
+    "as it is": ({}, False),
+    "half over the edge": ({"place": (0.5, -0.39, 0.0)}, True),
+    "off the shelf": ({"place": (0.5, -0.05, 0.1), "size": (0.2, 0.05, 0.07)}, True),
+    "above the bowl": ({"place": (0.55, 0.22, 0.1)}, False),
+    "in the shelf's height": ({"place": (0.55, 0.22, 0.06)}, True),
+    "inside the table": ({"gap": -2e-3}, True),
+    "bowl over the edge": ({"bowl_at": (1.0, 0.0)}, True),
+}
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_all_that_shares_a_height_needs_a_margin(name):
+    changed, overlap = PLACES[name]
+    boxes = replace(spec.GOOD, **changed).boxes
+    assert (min(table.gap(*pair) for pair in rungs.pairs(boxes)) < 0) == overlap
+
+
+def test_a_thin_ball_is_refused():
+    thin = replace(spec.GOOD, ball_radius=0.0)
+    with pytest.raises(CaseError, match="ball_radius"):
+        study.Facts(SimpleNamespace(), None, thin)
 
 
 def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
@@ -22,7 +49,8 @@ def test_the_checks_accept_the_scenes_and_each_fails_one_rung(scenes):
     assert (
         text.ladder_table(scenes).count("**fails**") == len(spec.SCENES_OF_LECTURE) - 1
     )
-    for figure in (plots.settling, plots.lifts, plots.views):
+    assert text.attack_table(scenes).count("margin") == 4
+    for figure in (plots.lifts, plots.views):
         assert figure(scenes).axes
 
 
@@ -31,17 +59,13 @@ SPOILED = {
     "structure": [reading("model", "links", 10)],
     "stamps": [trace("baseline", t=lambda t: 2 * t)],
     "one_rung": [
-        reading("object", "baseline_depth", 2e-3),
-        reading("object", "baseline_mass", 0.2),
-        trace("baseline_at_rest", link_pos=put((-1, BALL, 0), 0.9)),  # beside the bowl
-        trace("baseline_at_rest", link_pos=shift((-1, OBJECT, 0), 4e-4)),  # it slides
-        reading("reach", "baseline_accepted", 1),
-        reading("reach", "baseline_grasp", 0.01),
-        reading("reach", "baseline_touches", 1),
-        reading("contacts", "baseline_descending", 1),
-        reading("contacts", "baseline_held_left", 0),
-        trace("baseline", link_pos=shift((-1, OBJECT, 2), -0.02)),  # it slips
+        *(reading("ladder", f"baseline_{name}", -1e9) for name in spec.LIMITS),
         reading("fails", "hovering", 3),
+    ],
+    "attacks_are_caught": [
+        reading("attacks", "pencil on its end", 0),
+        reading("attacks", "object on a shelf", 5),
+        reading("caught", "pencil on its end", 1e-3),
     ],
     "hovering_is_at_rest": [
         trace("hovering_at_rest", link_pos=shift((-1, OBJECT, 2), -1e-5))
@@ -57,17 +81,13 @@ def test_a_check_fails_for_its_own_fault(scenes, check, spoil):
     assert failed(spoil(scenes)) == {check}
 
 
-@pytest.mark.parametrize(
-    "wrong", [None, "outside", "accepted", "touches", "descending"]
-)
-def test_the_symptoms_of_the_scenes(wrong):
-    readings = {
-        "pixels": {"outside_wrist": 1.0 * (wrong == "outside"), "wide_wrist": 9.0},
-        "reach": {
-            "below_accepted": 2 - (wrong == "accepted"),
-            "below_touches": wrong != "touches",
-        },
-        "contacts": {"wide_descending": wrong != "descending"},
-    }
-    found = checks.symptoms(SimpleNamespace(readings=readings))
-    assert all(one.passed for one in found) is (wrong is None)
+@pytest.mark.engine
+@pytest.mark.slow
+def test_verdicts_hold_at_half_the_step(real_engine, monkeypatch):
+    monkeypatch.setattr(spec, "GOOD", replace(spec.GOOD, substeps=4))
+    page = SimpleNamespace(render=True, readings={})
+    study.attack(page, real_engine.gs, {})
+    verdicts = page.readings["attacks"]
+    for name, (_, quantity) in spec.ATTACKS.items():
+        rung = rungs.rung_of(quantity) if quantity else None
+        assert verdicts[name] == rungs.NUMBERS.index(rung), name

@@ -28,15 +28,15 @@ def by_margin(results):
             ["seen", "built"],
             {},
             by_margin,
-            ["differ: built and seen", "fails built and seen."],
+            ["built      passes   FAILS", "fails built and seen."],
         ),
         (
             [],
             {"stable": None},
             by_margin,
-            ["do not judge stable yet", "passes all five"],
+            ["stable     -        passes", "not judge all", "passes all five"],
         ),
-        (["stable"], {}, not_written, ["graspable yet", "fails stable."]),
+        (["stable"], {}, not_written, ["not judge all", "fails stable."]),
     ],
 )
 def test_each_outcome_has_words(failed, mine, ladder, said):
@@ -44,7 +44,6 @@ def test_each_outcome_has_words(failed, mine, ladder, said):
     results = dict.fromkeys(spec.RUNGS, GOOD) | mine
     found = student.compared(ladder, results, SimpleNamespace(values=values))
     assert all(words in found for words in said), found
-    assert ("differ" in found) == ("differ" in said[0])
 
 
 def test_a_missing_function_is_named_and_another_error_is_raised(capsys):
@@ -52,7 +51,7 @@ def test_a_missing_function_is_named_and_another_error_is_raised(capsys):
     assert student.attempt(lambda facts: {"drift": (2e-3, 0, 1e-3)}, None)
     printed = capsys.readouterr().out
     assert "write ladder" in printed
-    assert "2000.0 µm   FAILS" in printed
+    assert "2.00 mm   FAILS" in printed
     with pytest.raises(KeyError):
         student.attempt(lambda facts: {}["drift"], None)
 
