@@ -216,7 +216,7 @@ def examine(page: Any, gs: Any, scene: str) -> table.World:
 
 
 def record_forced(page: Any, gs: Any) -> None:
-    """Give a page the lifts of the wide box with little friction, at two solver steps."""
+    """Give a page the lifts of the slippery box, at two solver steps."""
     for name, case in spec.FURTHER.items():
         world = table.build(gs, case, spec.VIEW, spec.WRIST)
         page.traces[name], contacts = lift(world, page.joints, case)

@@ -36,16 +36,16 @@ def ladder_table(run: Experiment) -> tables.Rows:
 @tables.as_table
 def grip_table(run: Experiment) -> tables.Rows:
     """Return what the lifts of the page's objects measured."""
-    for name in (*rungs.scenes(run), *spec.FURTHER):
-        if name in spec.SHOWN_LIFTS:
-            m, contacts = run.metrics[name], run.readings["contacts"]
-            yield {
-                "object": spec.SHOWN_LIFTS[name],
-                "steps in contact before closing": f"{contacts[f'{name}_descending']:g}",
-                "pushed [mm]": decimal(1000 * m.pushed, 1),
-                "rise [mm]": decimal(1000 * m.rise, 1),
-                "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
-            }
+    for name, label in spec.SHOWN_LIFTS.items():
+        m, contacts = run.metrics[name], run.readings["contacts"]
+        yield {
+            "object": label,
+            "steps in contact before closing": f"{contacts[f'{name}_descending']:g}",
+            "pushed [mm]": decimal(1000 * m.pushed, 1),
+            "rise [mm]": decimal(1000 * m.rise, 1),
+            "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
+            "tilt [mrad]": decimal(1000 * m.tilt, 0),
+        }
 
 
 def ends(found: bowls.BowlMetrics) -> tuple[str, str]:

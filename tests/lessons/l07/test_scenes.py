@@ -46,8 +46,11 @@ SPOILED = {
     "hovering_is_at_rest": [
         trace("hovering_at_rest", link_pos=shift((-1, OBJECT, 2), -1e-5))
     ],
-    "lift_depends_on_the_step": [
-        trace("forced_fine", link_pos=shift((-1, OBJECT, 2), 0.04))
+    "lifted_though_too_wide": [
+        trace("forced_fine", link_pos=shift((-1, OBJECT, 2), -0.02)),  # it slips
+        trace("forced", link_quat=put((-1, OBJECT, 1), 0)),  # upright
+        reading("contacts", "forced_fine_descending", 0),
+        reading("contacts", "forced_held_right", 0),
     ],
 }
 
