@@ -164,8 +164,6 @@ HOP_SPEED_CASES = {
     for k, speed in enumerate((0.1, 0.2, 0.5, 1.0, 2.0))
 }
 
-HALF_THE_STEP = "stop_2500us_high"  # The push at half the solver step of `HOPPED`
-
 # The second engine
 
 COMPARED = ("baseline", "dt10_sub1", "dt20_sub1")  # Landings that also run in MuJoCo
@@ -245,7 +243,7 @@ BLOW = 5.0
 # Number of the smallest steps that are compared for convergence, all at most T / 10
 FINEST = 6
 
-# Change at half the step, or spread over the finest steps, from which a stopping
+# Change at a finer step, or spread over the finest steps, from which a stopping
 # distance depends on the step, as a share of Coulomb's distance.
 UNSETTLED = 0.05
 

@@ -189,7 +189,7 @@ ANGLE_WEIGHT = 0.5
 
 # The engine's answer for the target beyond reach is farther than the nearest pose by
 # more [m].
-BEYOND_NEAREST = 0.01
+BEYOND_NEAREST = 1e-3
 
 
 def parameters() -> dict[str, Any]:

@@ -8,7 +8,6 @@ from robo_genesis.core.checks import (
     Findings,
     above,
     at_most,
-    below,
     equal,
     within,
 )
@@ -62,16 +61,18 @@ def attacks_are_caught(run: Experiment) -> Findings:
             yield equal(f"{name}.passes", rungs.passed({quantity: value}), False)
 
 
-def lift_depends_on_the_step(run: Experiment) -> Findings:
-    """With friction 0.3, a box that is 82 mm wide is lifted by more than 40 mm with two
-    solver steps in an outer step, and by less than 5 mm with four. Both times the open
-    hand touches it on its way down.
+def lifted_though_too_wide(run: Experiment) -> Findings:
+    """With friction 0.1, a box that is 80.5 mm wide is lifted by both fingers, by more
+    than 80 % of the hand's rise, with two solver steps in an outer step and with four.
+    Both times the open hand touches it on its way down, and it ends tilted by more than
+    20 mrad.
     """
-    coarse, fine = run.metrics["forced"], run.metrics["forced_fine"]
-    yield above("forced.rise_m", coarse.rise, 0.04)
-    yield below("forced_fine.rise_m", fine.rise, 5e-3)
-    for name, steps in run.readings["before_closing"].items():
-        yield above(f"{name}.before_closing", steps, 0)
+    for name in spec.FURTHER:
+        found, contacts = run.metrics[name], run.readings["contacts"]
+        yield above(f"{name}.share_of_the_rise", found.rise / found.hand_rise, 0.8)
+        yield above(f"{name}.tilt_rad", found.tilt, 0.02)
+        for of in spec.CONTACTS:
+            yield above(f"{name}.{of}", contacts[f"{name}_{of}"], 0)
 
 
 def laws_of_motion(run: Experiment) -> Findings:
@@ -96,4 +97,4 @@ def bodies(trace: Trace, case: table.SceneCase) -> Findings:
 
 
 CHECKS = (structure, stamps, one_rung, laws_of_motion, posture)
-LECTURE = (hovering_is_at_rest, lift_depends_on_the_step, attacks_are_caught)
+LECTURE = (hovering_is_at_rest, lifted_though_too_wide, attacks_are_caught)

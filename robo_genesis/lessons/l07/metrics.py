@@ -18,7 +18,10 @@ WINDOW = 20  # Steps at the end in which an object at rest keeps its place
 
 @dataclass(frozen=True, slots=True)
 class SceneMetrics(CaseMetrics):
-    """What one run shows of its object; the metrics of the other kind of run are None."""
+    """What one run shows of its object; the metrics of the other kind of run are None.
+
+    Both rises count from the end of closing; `tilt` is that of the object at the end.
+    """
 
     support: float | None = metric("m", "support error", "link_pos_m")
     drift: float | None = metric("m", "drift", "link_pos_m")
@@ -27,6 +30,7 @@ class SceneMetrics(CaseMetrics):
     pushed: float | None = metric("m", "pushed before closing", "link_pos_m")
     rise: float | None = metric("m", "rise of the object", "link_pos_m")
     hand_rise: float | None = metric("m", "rise of the hand", "link_pos_m")
+    tilt: float | None = metric("rad", "tilt of the object", "link_quat_wxyz")
 
 
 def lifts(case: SceneCase) -> bool:
@@ -42,9 +46,10 @@ def scene_metrics(trace: Trace, case: SceneCase) -> SceneMetrics:
         apart = np.linalg.norm(at - at[0], axis=1)[-1]
         window = np.ptp(at[-WINDOW - 1 :], axis=0).max()
         ball = trace.link_pos[-1, BALL, 2] - case.ball_radius
-        return SceneMetrics(*map(float, (support, apart, window, ball)), *[None] * 3)
+        return SceneMetrics(*map(float, (support, apart, window, ball)), *[None] * 4)
     before, opened, shut = (ENDS[name] for name in ("approach", "settle", "close"))
     hand = trace.link_pos[:, HAND, 2].astype(np.float64)
     pushed = np.linalg.norm(at[opened] - at[before])
-    rises = at[-1, 2] - at[shut, 2], hand[-1] - hand[shut]
-    return SceneMetrics(*[None] * 4, *map(float, (pushed, *rises)))
+    tilt = 2 * np.arcsin(np.hypot(*trace.link_quat[-1, OBJECT, 1:3]))
+    lifted = at[-1, 2] - at[shut, 2], hand[-1] - hand[shut], tilt
+    return SceneMetrics(*[None] * 4, *map(float, (pushed, *lifted)))

@@ -40,16 +40,17 @@ def views(run: Experiment) -> Figure:
 
 
 def lifts(run: Experiment) -> Figure:
-    """Draw the rise of the objects after the fingers have closed."""
+    """Draw the heights of the objects, relative to those at the end of closing."""
     figure, ax = plotting.axes(3.6)
     for name, label in spec.SHOWN_LIFTS.items():
         trace = run.traces[name]
-        rise = 1000 * (trace.link_pos[:, OBJECT, 2] - trace.link_pos[0, OBJECT, 2])
+        height = 1000 * trace.link_pos[:, OBJECT, 2]
+        rise = height - height[ENDS["close"]]
         ax.plot(trace.t, rise, label=label, **look(spec.CASE_MARKS.get(name, "other")))
     for phase in ("settle", "close", "lift"):
         ax.axvline(trace.t[ENDS[phase]], **LINE)
     ax.set_xlabel("time [s]")
-    plotting.label_ends(ax, "Height of the objects above their start", "rise [mm]")
+    plotting.label_ends(ax, "Height relative to the end of closing", "rise [mm]")
     return figure
 
 

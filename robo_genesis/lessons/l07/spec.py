@@ -71,8 +71,8 @@ CASE_MARKS |= {"forced": "second", "forced_fine": "third"}
 SHOWN_LIFTS = {
     "baseline": "50 mm",
     "wide": "82 mm",
-    "forced": "82 mm, µ 0.3",
-    "forced_fine": "82 mm, µ 0.3, half the step",
+    "forced": "80.5 mm, µ 0.1",
+    "forced_fine": "80.5 mm, µ 0.1, half the step",
 }
 
 # The one rung that each scene fails; not fitted to a run.
@@ -83,7 +83,8 @@ FAILS = dict(
 )
 
 
-FORCED = replace(SCENES["wide"], friction=0.3, pads=0.3)
+# A slippery box that is half a millimetre wider than the opening
+FORCED = replace(SCENES["wide"], size=(0.05, 0.0805, 0.06), friction=0.1, pads=0.1)
 SCENES_OF_LECTURE = ("baseline", "hovering", "filled", "wide")
 
 
@@ -98,8 +99,11 @@ def runs(*scenes: str) -> dict[str, SceneCase]:
     return lifts | {f"{name}_at_rest": SCENES[name] for name in scenes}
 
 
-# The wide box with little friction, at two solver steps.
+# The slippery box, at two solver steps.
 FURTHER = {"forced": lift_of(FORCED), "forced_fine": lift_of(FORCED, substeps=4)}
+
+# Counts of a lift, as `lifting.contact_counter` names them.
+CONTACTS = ("descending", "closed_left", "closed_right", "held_left", "held_right")
 
 CASES = runs(*SCENES) | FURTHER
 
@@ -198,7 +202,7 @@ TOLERANCES = (
 )
 
 # How the second case of a pair compares with the first [m]; not fitted to a run.
-RELATIONS = ((("forced", "forced_fine"), "rise", "lower", 5e-3),)
+RELATIONS = ((("forced", "forced_fine"), "rise", "equal", 5e-3),)
 
 
 def parameters(cases: dict[str, Any]) -> dict[str, Any]:

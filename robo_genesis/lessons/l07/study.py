@@ -42,7 +42,7 @@ def readings(*scenes: str) -> dict[str, Readings]:
 
 # What the page records further: lifts that start in contact, and scenes made to fool.
 FURTHER = {
-    "before_closing": Readings(dict.fromkeys(spec.FURTHER, "steps")),
+    "contacts": counts(f"{name}_{of}" for name in spec.FURTHER for of in spec.CONTACTS),
     "attacks": counts(spec.ATTACKS),
     "caught": Readings(
         {name: spec.UNITS[of] for name, (_, of) in spec.ATTACKS.items() if of}
@@ -281,12 +281,14 @@ def attack(page: Any, gs: Any, worlds: Mapping[str, table.World]) -> None:
 
 
 def record_forced(page: Any, gs: Any) -> None:
-    """Give a page the lifts of the wide box with little friction, at two solver steps."""
-    page.readings["before_closing"] = {}
+    """Give a page the lifts of the slippery box, at two solver steps."""
+    page.readings["contacts"] = {}
     for name, case in spec.FURTHER.items():
         world = table.build(gs, case, spec.VIEW, spec.WRIST)
         page.traces[name], contacts = lift(world, page.joints, case)
-        page.readings["before_closing"][name] = contacts["descending"]
+        page.readings["contacts"] |= {
+            f"{name}_{of}": contacts[of] for of in spec.CONTACTS
+        }
 
 
 def conclude(page: Any) -> None:

@@ -47,15 +47,16 @@ def attack_table(run: Experiment) -> tables.Rows:
 @tables.as_table
 def grip_table(run: Experiment) -> tables.Rows:
     """Return what the lifts of the page's objects measured."""
-    for name, words in spec.SHOWN_LIFTS.items():
-        m, before = run.metrics[name], run.readings["before_closing"]
-        steps = before.get(name, run.readings["ladder"].get(f"{name}_descending"))
+    for name, label in spec.SHOWN_LIFTS.items():
+        m, of = run.metrics[name], run.readings
+        read = {**of["ladder"], **of["contacts"]}
         yield {
-            "object": words,
-            "steps in contact before closing": f"{steps:g}",
+            "object": label,
+            "steps in contact before closing": f"{read[f'{name}_descending']:g}",
             "pushed [mm]": decimal(1000 * m.pushed, 1),
             "rise [mm]": decimal(1000 * m.rise, 1),
             "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
+            "tilt [mrad]": decimal(1000 * m.tilt, 0),
         }
 
 

@@ -16,7 +16,7 @@ from robo_genesis.sim.bodies import table
 from robo_genesis.sim.camera import geometry, record
 from robo_genesis.sim.camera.views import View
 
-UNTURNED = np.float32([1, 0, 0, 0])
+UPRIGHT, TILTED = np.float32([[1, 0, 0, 0], [1, 0.05, 0, 0]])
 
 
 def trace_of(name: str, case: table.SceneCase) -> Trace:
@@ -35,8 +35,7 @@ def trace_of(name: str, case: table.SceneCase) -> Trace:
         command = lifting.lift_command(case.q_start, answers)
     arm = driven(case.commanding(command), LINKS)
     body = np.tile(case.centre, (case.steps + 1, 1))
-    rises = case.size[1] < 0.08 or name == "forced"
-    if lifts and rises:
+    if lifts and name != "wide":
         held = slice(lifting.ENDS["close"], None)
         body[held, 2] += arm.link_pos[held, HAND, 2] - arm.link_pos[held, HAND, 2][0]
     if not lifts and not case.weightless:
@@ -44,7 +43,7 @@ def trace_of(name: str, case: table.SceneCase) -> Trace:
     ball = np.tile([*case.bowl_at, table.BALL_HEIGHT], (case.steps + 1, 1))
     ball[1:, 2] = 0.06 if case.bowl == "one_hull" else 0.013
     bodies = np.stack([body, ball], axis=1)
-    quat = np.tile(UNTURNED, (case.steps + 1, 2, 1))
+    quat = np.tile(TILTED if name in spec.FURTHER else UPRIGHT, (case.steps + 1, 2, 1))
     return replace(
         arm,
         link_pos=np.concatenate([arm.link_pos, np.float32(bodies)], axis=1),
@@ -76,7 +75,7 @@ def readings() -> dict[str, dict[str, float]]:
         },
     }
     wrong = {"hovering_carried": 0.0, "filled_ball": 0.06, "wide_descending": 50}
-    usual |= {"pixels": 1300.0, "ball": 0.0044} | wrong | dict.fromkeys(spec.FURTHER, 3)
+    usual |= {"pixels": 1300.0, "ball": 0.0044} | wrong
     found = {
         group: {
             name: usual.get(name, usual.get(name.split("_", 1)[-1], 0))
@@ -84,6 +83,7 @@ def readings() -> dict[str, dict[str, float]]:
         }
         for group, of in LECTURE.groups(rendered=True).items()
     }
+    found["contacts"] = dict.fromkeys(found["contacts"], 3)
     for name, (_, quantity) in spec.ATTACKS.items():
         rung = rungs.rung_of(quantity) if quantity else None
         found["attacks"][name] = rungs.NUMBERS.index(rung)

@@ -13,6 +13,7 @@ CONFIGURED = {
     "its mass, by hand [kg]": 0.055,
     "force that holds it, by hand [N]": 0.27,
     "weight of the cylinder, by hand [N]": 0.54,
+    "width of the slippery box [mm]": 1000 * spec.FORCED.size[1],
     "support error of a ball, by hand [mm]": 1.1,
     "the same with iteration [mm]": 0.64,
     "place of the bowl, x [m]": GOOD.bowl_at[0],

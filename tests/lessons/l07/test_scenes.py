@@ -4,7 +4,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from lessons.changed_runs import failed, reading, shift, trace
+from lessons.changed_runs import failed, put, reading, shift, trace
 from lessons.experiments import each
 
 from robo_genesis.lessons.l07 import plots, rungs, spec, study, text
@@ -70,8 +70,11 @@ SPOILED = {
     "hovering_is_at_rest": [
         trace("hovering_at_rest", link_pos=shift((-1, OBJECT, 2), -1e-5))
     ],
-    "lift_depends_on_the_step": [
-        trace("forced_fine", link_pos=shift((-1, OBJECT, 2), 0.04))
+    "lifted_though_too_wide": [
+        trace("forced_fine", link_pos=shift((-1, OBJECT, 2), -0.02)),  # it slips
+        trace("forced", link_quat=put((-1, OBJECT, 1), 0)),  # upright
+        reading("contacts", "forced_fine_descending", 0),
+        reading("contacts", "forced_held_right", 0),
     ],
 }
 
