@@ -88,7 +88,7 @@ def ends(ended: Written) -> Findings:
 
 
 PHASES = np.array([0, 1, 2, 3, 3, 4, 4, 5, 6, 7, 8, 8, 8, 8, 8, 8])
-LATE, END, RIM = slice(5, None), slice(9, None), (0.55, 0.22, 0.05)
+END, RIM = slice(9, None), (0.55, 0.22, 0.05)
 
 # Array, index and value of each fault of an episode, and how many rungs the episode
 # passes

@@ -66,16 +66,6 @@ def without_offer(name: str, data: bytes) -> bytes:
     return page.encode()
 
 
-def write_sums(html: Path) -> None:
-    """Write the digests of a complete site into the site.
-
-    Args:
-        html: the folder of the site with its archive, which has no SHA256SUMS: its own
-            digest is in the file.
-    """
-    (html / SUMS).write_bytes(sums(contents(html)))
-
-
 def sums(files: Iterable[tuple[str, bytes]]) -> bytes:
     """Return the digests of files by name, as `sha256sum -c` reads them."""
     return "".join(f"{bytes_digest(data)}  {name}\n" for name, data in files).encode()

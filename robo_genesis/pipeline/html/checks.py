@@ -18,9 +18,6 @@ POLICY = "default-src 'self' file: data: blob: 'unsafe-inline' 'unsafe-eval'"
 
 CHECKS = ("links", "anchors", "alt texts", "third parties", "leftovers")
 ADDRESSES = {"href", "src", "poster", "data", "action"}
-# Links of these kinds name a page for readers or crawlers; no browser loads it.
-NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "search"}
-ELSEWHERE = re.compile(r"(?:https?|wss?|ftp):|//", re.IGNORECASE)
 FILE_NAME = re.compile(
     r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.IGNORECASE
 )
@@ -43,7 +40,6 @@ class PageReader(HTMLParser):
         super().__init__()
         self.anchors: list[str] = []
         self.addresses: list[str] = []
-        self.loaded: list[str] = []
         self.alt_texts: list[tuple[str, str]] = []
         self.texts: list[str] = []
         self.policies: list[str | None] = []
@@ -56,13 +52,9 @@ class PageReader(HTMLParser):
         self.quotes += tag in QUOTING
         if identifier := given.get("id"):
             self.anchors.append(identifier)
-        found = [
+        self.addresses += [
             url for name in ADDRESSES & given.keys() if (url := given[name].strip())
         ]
-        self.addresses += found
-        named = NOT_LOADED.intersection(given.get("rel", "").lower().split())
-        if tag not in ("a", "area") and not (tag == "link" and named):
-            self.loaded += found
         if tag == "img":
             self.alt_texts.append((given.get("alt", ""), given.get("src", "")))
         if tag == "svg" and "drawing" in given.get("class", "").split():
@@ -89,7 +81,7 @@ def run_checks(html: Path, base: str) -> dict[str, list[str]]:
     | links | each address inside the site leads to a file, each fragment to an element |
     | anchors | no two elements of a page have one id |
     | alt texts | each image has a text that is neither empty nor a file name nor a hash |
-    | third parties | nothing is loaded from another host; readers may follow links |
+    | third parties | the policy forbids other hosts, and no picture is on one |
     | leftovers | no page shows unprocessed markup |
     | private paths | no published file names the builder's home or checkout |
 
@@ -122,10 +114,13 @@ def page_problems(page: PageReader) -> Iterator[tuple[str, str]]:
         stem = PurePosixPath(urlsplit(source).path).stem
         if not text.strip() or FILE_NAME.match(text) or text == stem:
             yield "alt texts", f"{source} has the alt text {text!r}."
+        if urlsplit(source).netloc:
+            yield (
+                "third parties",
+                f"{source} is on another host; put it beside the page.",
+            )
     if POLICY not in page.policies:
         yield "third parties", f"has no {POLICY_NAME} {POLICY!r}."
-    for address in filter(ELSEWHERE.match, page.loaded):
-        yield "third parties", address
     for text in filter(LEFTOVERS.search, page.texts):
         yield "leftovers", repr(text.strip()[:80])
 

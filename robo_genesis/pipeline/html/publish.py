@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robo_genesis.core.files import replaced
 from robo_genesis.core.project import PUBLISHED
 
-from .archive import pack, write_sums
+from .archive import pack
 
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
     from robo_genesis.pipeline.pages.results import PageResult
@@ -50,7 +50,6 @@ def publish(
                 )
                 shutil.copytree(bundle, site / own / bundle.name)
         pack(html)
-        write_sums(html)
         finish(site)
         for here, _, files in os.walk(site):
             os.chmod(here, 0o755)

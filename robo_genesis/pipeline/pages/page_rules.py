@@ -25,8 +25,6 @@ TAGS = (
     "inputs",
     "raises-exception",
     "remove-cell",
-    "remove-input",
-    "remove-output",
     SOLUTION,
 )
 

@@ -28,7 +28,7 @@ MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
 STUB = "raise NotImplementedError"
 
 # Tags of cells whose code is not visible.
-HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
+HIDDEN = {"hide-cell", "hide-input", "remove-cell"}
 
 # What is counted on a page, in words.
 MEASURES = {
