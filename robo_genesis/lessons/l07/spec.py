@@ -176,7 +176,7 @@ ATTACKS: dict[str, tuple[dict[str, Any], str | None]] = {
     "beside the bowl: postures exist": ({"place": (0.55, 0.11, 0.0)}, "touches"),
     "good, on a shelf: a lift elsewhere fails": ({"place": (0.5, -0.05, 0.1)}, None),
     "shelf in the bowl: a free object": ({"place": (0.5, 0.12, 0.055)}, "margin"),
-    "pencil on its end: it stands": ({"size": (0.006, 0.006, 0.15)}, "pushed"),
+    "pencil on its end: at rest": ({"size": (0.006, 0.006, 0.15)}, "pushed"),
     "flat, on a shelf: high above the table": (
         {"place": (0.5, -0.05, 0.1), "size": (0.05, 0.05, 0.037)},
         "grasp",
