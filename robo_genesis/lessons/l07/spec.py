@@ -164,25 +164,28 @@ THIN = 0.005
 # The push of the rung "stable": gravity leans by this angle [rad].
 PUSH = np.radians(10)
 
-# Scenes that were made to fool a ladder, with the quantity that must catch each, and good
-# ones with none: by words for a reader, what differs from the good scene, and quantity.
+# Scenes that were made to fool a ladder, and good ones: by scene and what misleads, how it
+# differs from the good scene, and the quantity that must catch it, none for a good one.
 ATTACKS: dict[str, tuple[dict[str, Any], str | None]] = {
-    "no weight, no gap": ({"weightless": True}, "carried"),
-    "no weight, a gap of 0.4 mm": ({"weightless": True, "gap": 4e-4}, "carried"),
-    "bowl beside the table": ({"bowl_at": (1.35, 0.3)}, "margin"),
-    "bowl half over the edge": ({"bowl_at": (0.55, 0.4)}, "margin"),
-    "bowl too far away": ({"bowl_at": (0.95, 0.32)}, "accepted"),
-    "object with µ = 0.01": ({"friction": 0.01}, "friction"),
-    "object 65 mm deep in the table": ({"gap": -0.065}, "margin"),
-    "object beside the bowl": ({"place": (0.55, 0.11, 0.0)}, "touches"),
-    "object on a shelf": ({"place": (0.5, -0.05, 0.1)}, None),
-    "shelf through the bowl": ({"place": (0.5, 0.15, 0.03)}, "margin"),
-    "pencil on its end": ({"size": (0.006, 0.006, 0.15)}, "pushed"),
-    "flat object on a shelf": (
+    "no weight, no gap: nothing moves": ({"weightless": True}, "carried"),
+    "no weight, 0.4 mm gap: a small gap": (
+        {"weightless": True, "gap": 4e-4},
+        "carried",
+    ),
+    "bowl beside the table: a free object": ({"bowl_at": (1.35, 0.3)}, "margin"),
+    "bowl over the edge: it is fixed": ({"bowl_at": (0.55, 0.4)}, "margin"),
+    "bowl far away: an object within reach": ({"bowl_at": (0.95, 0.32)}, "accepted"),
+    "µ = 0.01: the table's 0.8 acts": ({"friction": 0.01}, "friction"),
+    "65 mm inside the table: it falls through": ({"gap": -0.065}, "margin"),
+    "beside the bowl: postures exist": ({"place": (0.55, 0.11, 0.0)}, "touches"),
+    "good, on a shelf: a lift elsewhere fails": ({"place": (0.5, -0.05, 0.1)}, None),
+    "shelf in the bowl: a free object": ({"place": (0.5, 0.12, 0.055)}, "margin"),
+    "pencil on its end: at rest": ({"size": (0.006, 0.006, 0.15)}, "pushed"),
+    "flat, on a shelf: high above the table": (
         {"place": (0.5, -0.05, 0.1), "size": (0.05, 0.05, 0.037)},
         "grasp",
     ),
-    "cylinder of 60 × 200 mm": ({"size": (0.06, 0.06, 0.2)}, None),
+    "good, 60 × 200 mm: one camera is enough": ({"size": (0.06, 0.06, 0.2)}, None),
 }
 
 RESOLUTION = rest.RESOLUTION | {"s": DT / 2, "1": 0.5}

@@ -34,14 +34,33 @@ def ladder_table(run: Experiment) -> tables.Rows:
         yield row
 
 
+# Words for the quantities that catch scenes.
+CATCHES = {
+    None: "–",
+    "carried": "carried share of the weight",
+    "margin": "smallest margin",
+    "accepted": "accepted answers, of 3,",
+    "friction": "friction differs by",
+    "touches": "touching postures, of 33,",
+    "pushed": "moved by a push",
+    "grasp": "fingertips above the shelf",
+}
+
+
 @tables.as_table
 def attack_table(run: Experiment) -> tables.Rows:
     """Return which rung each scene fails that was made to fool the ladder, and by which value."""
     for name, (_, quantity) in spec.ATTACKS.items():
         found = run.readings["caught"].get(name)
-        value = f"{quantity} {student.number(quantity, found)}" if quantity else "–"
+        value = student.number(quantity, found) if quantity else ""
         rung = rungs.NUMBERS[int(run.readings["attacks"][name])]
-        yield {"scene": name, "fails": rung or "none", "by": value}
+        scene, _, misleads = name.partition(": ")
+        yield {
+            "scene": scene,
+            "what misleads": misleads,
+            "fails": rung or "none",
+            "caught by": f"{CATCHES[quantity]} {value}",
+        }
 
 
 @tables.as_table
