@@ -77,4 +77,4 @@ def test_a_new_lesson_is_on_the_site_at_once(tmp_path, build_output):
         assert f"lessons/l99-new-lesson/{page}" in (site / "searchindex.js").read_text()
         assert f"l99/{page}" in parsed(site, "evidence/ledger").get_text()
     taken = {path.name for path in (site / "takeaways" / "l99-lab").iterdir()}
-    assert {"l99-lab.ipynb", "l99-lab-executed.ipynb", "baseline.csv"} <= taken
+    assert {"l99-lab.ipynb", "l99-lab-executed.ipynb", "baseline.npz"} <= taken

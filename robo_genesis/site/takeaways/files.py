@@ -8,15 +8,13 @@ import shutil
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cache, partial
-from itertools import cycle
 from pathlib import Path
 from typing import Any
 
 import nbformat
-import numpy as np
 from nbformat import NotebookNode
 from sphinx.config import Config
 
@@ -28,15 +26,12 @@ from robo_genesis.core.files import (
     files_digest,
     write_whole,
 )
-from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.pages import page_index
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE
-from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.evidence.values import measured
 
 from .notebooks import (
@@ -48,15 +43,6 @@ from .plain_markdown import Writer
 
 # Replaces in the student notebook a value that the site measured.
 NOT_SHOWN = "*(your run measures it)*"
-
-AXES = {
-    "axis": ("x", "y", "z"),
-    "wxyz": ("w", "x", "y", "z"),
-    "finger": ("left", "right"),
-}
-
-# The field that holds the value before the first step, where it was read.
-AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
 
 # Packages of Debian that a fresh system lacks.
 DEBIAN = "python3-venv libegl1 libgl1"
@@ -103,7 +89,7 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
         "wheel": wheel,
         "constraints": Path(shutil.copy(lock, folder / CONSTRAINTS)),
         "units": Path(shutil.copy(run / "arrays.json", own)),
-        "arrays": [*_arrays(run, own)],  # (case, its CSV, its npz)
+        "arrays": [*_arrays(run, own)],
         "figures": [*_figures(page, executed, own)],
         "commands": commands,
     }
@@ -171,60 +157,10 @@ def _write(path: Path, notebook: NotebookNode) -> None:
     path.write_text(project.without_folders(nbformat.writes(notebook)) + "\n", "utf8")
 
 
-def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
-    """Copy each case's archive, and write it as a table; yield (case, CSV, npz)."""
-    described = bundle.read_arrays(run)
-    for case, arrays in described.cases.items():
-        archive, table = folder / f"{case}.npz", folder / f"{case}.csv"
-        shutil.copy(run / arrays.file, archive)
-        trace = read_any_trace(run, described, case)
-        table.write_text(csv_text(trace, described, case), "utf8", newline="")
-        yield case, table, archive
-
-
-def csv_text(trace: TimeSeries, described: bundle.Arrays, case: str) -> str:
-    """Return a run as a table: one row per state, one column per number, units in the head.
-
-    The first row is the state before any step. A quantity that is read only after a
-    step is empty there. A quantity of the whole run is repeated in each row. Each
-    number is the shortest text that reproduces the recorded value.
-    """
-    columns: dict[str, list[str]] = {}
-    for field, (name, dims, *_) in trace.arrays().items():
-        if field in AT_REST.values():
-            continue
-        labels = _labels(field, described.cases[case].variables[name], described)
-        rows = _by_state(trace, field, dims)
-        for label, column in zip(labels, zip(*rows, strict=True), strict=True):
-            columns[label] = ["" if value is None else str(value) for value in column]
-    return csv_bytes([list(columns), *zip(*columns.values(), strict=True)]).decode()
-
-
-def _by_state(trace: TimeSeries, field: str, dims: Sequence[str]) -> list[Any]:
-    """Return the numbers of a field at each state, None where nothing was read."""
-    values = np.asarray(getattr(trace, field))
-    if dims[0] not in ("state", "step"):
-        return [values.ravel()] * len(trace.t)
-    rows = list(values.reshape(len(values), -1))
-    if dims[0] == "state":
-        return rows
-    at_rest = AT_REST.get(field)
-    return [getattr(trace, at_rest) if at_rest else [None] * len(rows[0]), *rows]
-
-
-def _labels(
-    field: str, variable: bundle.Variable, described: bundle.Arrays
-) -> list[str]:
-    """Return the head of each column: field, environment, joint or link, axis and unit."""
-    names = [field]
-    for dim, size in zip(variable.dims, variable.shape, strict=True):
-        if dim not in ("state", "step"):
-            parts = described.coords.get(dim, AXES.get(dim)) or [
-                f"{dim} {k}" for k in range(size)
-            ]
-            names = [f"{name} {part}" for name in names for part in parts]
-    units = variable.unit if isinstance(variable.unit, list) else [variable.unit]
-    return [f"{name} [{unit}]" for name, unit in zip(names, cycle(units), strict=False)]
+def _arrays(run: Path, folder: Path) -> Iterator[Path]:
+    """Copy the archive of each case, and yield the copy."""
+    for case, arrays in bundle.read_arrays(run).cases.items():
+        yield Path(shutil.copy(run / arrays.file, folder / f"{case}.npz"))
 
 
 def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]:

@@ -1,5 +1,3 @@
-import csv
-import io
 import json
 import os
 import shutil
@@ -8,13 +6,9 @@ import sys
 import zipfile
 from email import message_from_bytes
 
-import numpy as np
-
 from robo_genesis.core import project
-from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways import files
 
-LINKS = ["link0", "link4", "hand"]
 UP_TO_THE_ENGINE = """
 import json
 from robo_genesis import doctor
@@ -26,34 +20,6 @@ def start(contract):
 session.start = start
 print(json.dumps([*doctor.examine()][-1]))
 """
-
-
-def test_each_number_is_in_its_table_with_its_unit_and_none_is_made_up(
-    tmp_path, traces, joints
-):
-    run = traces["G2"]
-    described = write_traces(tmp_path, {"G2": run}, joints, LINKS)
-    table = list(csv.DictReader(io.StringIO(files.csv_text(run, described, "G2"))))
-
-    def column(name: str) -> np.ndarray:
-        return np.array([row[name] for row in table], dtype=np.float32)
-
-    assert len(table) == len(run.t)
-    assert np.array_equal([float(row["t [s]"]) for row in table], run.t)
-    assert np.array_equal(column("q joint4 [rad]"), run.q[:, 3])
-    assert np.array_equal(column("q finger_joint2 [m]"), run.q[:, 8])
-    assert np.array_equal(column("link_pos hand x [m]"), run.link_pos[:, 2, 0])
-    assert np.array_equal(column("link_quat hand w [1]"), run.link_quat[:, 2, 0])
-    for field, unit in (("qd", "rad/s"), ("control_force", "N·m")):
-        name = f"{field} joint4 [{unit}]"
-        assert np.array_equal(column(name)[1:], getattr(run, field)[:, 3])
-        assert np.float32(table[0][name]) == getattr(run, f"start_{field}")[3]
-    assert {row["effort_limit joint4 [N·m]"] for row in table} == {
-        str(run.effort_limit[3])
-    }
-    empty = {name.split()[0] for name, value in table[0].items() if value == ""}
-    assert empty == {"target", "internal_force"}
-    assert [name for name, value in table[1].items() if value == ""] == []
 
 
 def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
