@@ -136,5 +136,5 @@ def test_the_lab_says_what_its_runs_show_or_which_check_failed(experiments):
     assert "Its depth is 7.80 mm with two steps of 5 ms" in said
     assert "The check" not in said
     never = text.conclusions(metric("bounce_sub100", first_kept=None)(run))
-    found = "bounce_sub100.first_kept_percent is not obs"
+    found = "bounce_sub100.first_kept_percent is None"
     assert f"The check `energy_converges` failed: {found}" in never
