@@ -34,6 +34,7 @@ HELD_BY = {
     "later": ("higher",),
     "higher": ("higher",),
     "lower": ("lower",),
+    "equal": ("equal",),
 }
 
 
@@ -53,8 +54,8 @@ def outcome(numbers: Mapping[str, Any], relation: Relation) -> tuple[str, str]:
     """Return whether one run confirms an ordering, and the two values as text.
 
     `numbers` has metrics with `value` and `unit` by `case.name`. A difference within
-    the margin confirms nothing, unless the claim is "no later" and the second value is
-    not later at all.
+    the margin confirms nothing, unless the claim is "equal", or is "no later" and the
+    second value is not later at all.
     """
     (first, second), metric, claim, margin = relation
     a, b = (numbers.get(f"{case}.{metric}") for case in (first, second))
@@ -66,7 +67,7 @@ def outcome(numbers: Mapping[str, Any], relation: Relation) -> tuple[str, str]:
     resolved, exact = (order(a.value, b.value, room) for room in (margin, 0))
     if claim == "no later" and exact in HELD_BY[claim]:
         return HELD, text
-    if resolved in (None, "equal"):
+    if resolved in (None, "equal") and resolved != claim:
         return WITHIN_MARGIN, text
     return (HELD if resolved in HELD_BY[claim] else BROKEN), text
 

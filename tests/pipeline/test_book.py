@@ -117,7 +117,7 @@ def test_a_release_requires_evidence(built, monkeypatch):
             "lab: the bundle .* is refused: metrics: metrics.js",
         ),
         (
-            "# A\n\n<script src='https://example.org/a.js'></script>\n",
+            "# A\n\n<img alt='a map' src='https://example.org/a.png'>\n",
             {},
             BuildError,
             "third p",

@@ -188,7 +188,7 @@ ATTACKS: dict[str, tuple[dict[str, Any], str | None]] = {
     "good, 60 × 200 mm: one camera is enough": ({"size": (0.06, 0.06, 0.2)}, None),
 }
 
-RESOLUTION = rest.RESOLUTION | {"s": DT / 2, "1": 0.5}
+RESOLUTION = rest.RESOLUTION | {"s": DT / 2, "1": 0.5, "rad": 1e-3}
 
 # Contacts make rounding grow, so lifts have wide tolerances. The answers on the map of
 # the table have no bound: rounding decides which of many postures a search finds.

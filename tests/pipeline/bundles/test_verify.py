@@ -74,7 +74,7 @@ HARMLESS = [
         ),
         ([(LAB, "page.facts()", "pass")], ["source.page"]),
         (
-            [(METRICS, "float(qd[-1])", "float(abs(qd[-1]))")],
+            [(METRICS, "velocity=qd[-1]", "velocity=abs(qd[-1])")],
             ["source.modules.lessons.l04.metrics"],
         ),
     ],
