@@ -3,7 +3,8 @@
     python -m robo_genesis.doctor         a table for the terminal
     python -m robo_genesis.doctor --json  the same facts for a bug report
 
-The steps run in a process of their own. If the system ends it, the step that it ran is broken.
+The steps run in a process of their own. If the system ends it, the step that it ran is
+broken.
 Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 

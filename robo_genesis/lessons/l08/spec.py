@@ -88,7 +88,7 @@ ORDER = np.random.default_rng(3).permutation(len(FEW))
 # The batch of the lecture that repeats `exact` in another order.
 COPIES = {"permuted": replace(EXACT, starts=FEW[ORDER], beliefs=FEW[ORDER])}
 
-# The same episodes with the elliptic cone, which differ from `ASKEW` in nothing else.
+# The same episodes with the elliptic cone, with which the scene has `impratio` 100 as well.
 ROUND = replace(ASKEW, cone="elliptic")
 
 CASES = {"exact": EXACT, "askew": ASKEW, "round": ROUND}
