@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.pipeline.html.archive import ARCHIVE
 from robo_genesis.pipeline.pages.book import find_pages
 
 FOLDER = ROOT / ".github"
@@ -51,6 +52,15 @@ def test_every_target_that_a_step_makes_or_a_document_names_is_one():
             assert {word for pair in spans for word in pair if word} <= TARGETS, (
                 document.name
             )
+
+
+def test_the_file_that_is_attested_is_part_of_the_site():
+    attested = [
+        one["with"]["subject-path"]
+        for one in JOBS["book.deploy"]["steps"]
+        if "attest" in one["uses"]
+    ]
+    assert attested == [f"site/{ARCHIVE}"]
 
 
 def test_what_is_published_was_linted_and_tested_and_is_a_release():

@@ -3,8 +3,11 @@
 "use strict";
 
 globalThis.memory = (() => {
-  const STORE = "robo-genesis";
-  const page = location.pathname.split("/").slice(-3).join("/");
+  // A school may have several of these sites on one server. Each has a memory of its own.
+  const root = new URL(document.documentElement.dataset.content_root ?? ".", location.href);
+  const STORE = `robo-genesis ${root.pathname}`;
+  const nameOf = (address) => new URL(address).pathname.slice(root.pathname.length);
+  const page = nameOf(location.href);
   let store; // undefined where the browser keeps nothing
   try {
     store = localStorage;
@@ -25,11 +28,11 @@ globalThis.memory = (() => {
     write(all);
   }
 
-  return { read, write, kept, keep, keeps: Boolean(store) };
+  return { read, write, kept, keep, keeps: Boolean(store), root, nameOf, page };
 })();
 
 document.addEventListener("DOMContentLoaded", () => {
-  const { read, write, kept, keep, keeps } = globalThis.memory;
+  const { read, write, kept, keep, keeps, root, nameOf, page } = globalThis.memory;
   const article = document.querySelector("article");
   const make = (name, properties) => Object.assign(document.createElement(name), properties);
 
@@ -58,7 +61,7 @@ document.addEventListener("DOMContentLoaded", () => {
   const place = document.querySelector(".memory");
   const { last, pages } = read();
   if (place && last) {
-    const go = make("a", { href: last.href, textContent: last.title });
+    const go = make("a", { href: new URL(last.page, root).href, textContent: last.title });
     const away = make("button", { type: "button", textContent: "Forget all" });
     away.addEventListener("click", () => {
       write({});
@@ -68,8 +71,7 @@ document.addEventListener("DOMContentLoaded", () => {
     });
     place.append("Continue where you left off: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
     for (const link of document.querySelectorAll(".course-map .time a")) {
-      const name = new URL(link.href).pathname.split("/").slice(-3).join("/");
-      if (!pages?.[name]?.finished) continue;
+      if (!pages?.[nameOf(link.href)]?.finished) continue;
       link.after(make("span", { className: "finished", textContent: " ✓ finished" }));
     }
   }
@@ -84,9 +86,9 @@ document.addEventListener("DOMContentLoaded", () => {
   });
 
   /* A page of a lesson: it is the last one, and its end offers to mark it. */
-  if (!article || !keeps || !/\/lessons\//.test(location.pathname)) return;
+  if (!article || !keeps || !page.startsWith("lessons/")) return;
   const title = article.querySelector("h1").firstChild.textContent;
-  write({ ...read(), last: { href: location.href.split("#")[0], title } });
+  write({ ...read(), last: { page, title } });
   const box = make("input", { type: "checkbox", id: "finished", checked: kept("finished") });
   box.addEventListener("change", () => keep("finished", box.checked || undefined));
   const line = make("p", { className: "finish-page" });

@@ -17,3 +17,4 @@ ELSEWHERE = "shown"
 def test_the_codes_on_the_page_are_those_of_the_spoiled_bundles():
     tested = {code for code, _ in (DAMAGED | CARELESS).values()}
     assert tested | {ELSEWHERE} == CODES
+    assert len(PAGE.split()) <= 900

@@ -8,7 +8,7 @@ import pytest
 from spoilers import facts, older_compiler, seal
 from tiny_book import commit, git
 
-from robo_genesis.core.project import BOOK, ProjectError
+from robo_genesis.core.project import BOOK, ROOT, ProjectError
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.pipeline import release
 from robo_genesis.pipeline.release import missing_for_release, worktree
@@ -76,6 +76,13 @@ def test_two_users_of_a_worktree_are_refused(root):
         worktree(root, folder, root / ".cache", ()),
     ):
         pass
+
+
+def test_no_setting_of_git_changes_the_bytes_of_a_checkout(root, tmp_path):
+    shutil.copy(ROOT / ".gitattributes", root)
+    commit(root)
+    git(tmp_path, "-c", "core.autocrlf=true", "clone", "--quiet", str(root), "clone")
+    assert (tmp_path / "clone/.gitignore").read_bytes() == b"/.cache\n__pycache__/\n"
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urlsplit
 
-from robo_genesis.core.project import ROOT
+from robo_genesis.core.project import PACKAGES, ROOT
 
 # Each page has this policy: the browser itself then loads nothing from another host.
 # `file:` is for a site that is read from disk; the viewer of the replays compiles
@@ -21,7 +21,9 @@ ADDRESSES = {"href", "src", "poster", "data", "action"}
 FILE_NAME = re.compile(
     r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.IGNORECASE
 )
-PRIVATE = (str(Path.home()), str(ROOT))  # No published file names them
+# No published file names them. IPython writes a home folder as `~`.
+HOME, CHECKOUT = str(Path.home()), str(ROOT)
+PRIVATE = (HOME, CHECKOUT, CHECKOUT.replace(HOME, "~"), PACKAGES)
 QUOTING = ("pre", "code", "script", "style")
 LEFTOVERS = re.compile(
     r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size "

@@ -49,6 +49,8 @@ def publish(
                     f"evidence/{lesson}" if page == "lab" else f"pages/{lesson}/{page}"
                 )
                 shutil.copytree(bundle, site / own / bundle.name)
+        # Without it, GitHub leaves out folders that begin with an underscore.
+        (html / ".nojekyll").touch()
         pack(html)
         finish(site)
         for here, _, files in os.walk(site):

@@ -53,7 +53,9 @@ def _record(output: NotebookNode) -> dict[str, Any]:
             kind: content if kind.endswith(TEXTS) else json_digest(content)
             for kind, content in output.data.items()
         }
-    return json.loads(without_folders(json.dumps(record, ensure_ascii=False)))
+    # IPython itself writes a home folder as `~` in the frames of an error.
+    text = json.dumps(record, ensure_ascii=False).replace("~/", f"{Path.home()}/")
+    return json.loads(without_folders(text))
 
 
 def keep_outputs(folder: Path, executed: NotebookNode) -> None:

@@ -1,8 +1,8 @@
 """Files to download from a lab, and the commands that run it: ```` ```{takeaways} ````.
 
 ```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` all
-but the last. The files are written into the site while the page is read, so that the page can
-show their sizes.
+but the last, `{run-commands} check` the one that checks downloads. The files are written
+into the site while the page is read, so that the page can show their sizes.
 """
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.pages import PageDirective
 
-from .files import run_commands, system, write_takeaways
+from .files import check_command, run_commands, system, write_takeaways
 
 TAKEAWAYS = "takeaways"  # Folder of the site
 GITHUB = "https://github.com/"
@@ -53,8 +53,11 @@ class RunCommands(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the block of code."""
         commands = run_commands(self.config.torch_index)
-        lines = commands[:-1] if self.arguments == ["install"] else commands
-        text = "\n".join(lines)
+        if self.arguments == ["install"]:
+            commands = commands[:-1]
+        elif self.arguments:
+            commands = (check_command(folder(self.env)),)
+        text = "\n".join(commands)
         return [nodes.literal_block(text, text, language="bash")]
 
 

@@ -29,6 +29,7 @@ from robo_genesis.core.files import (
 from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
+from robo_genesis.pipeline.html.archive import sums
 from robo_genesis.pipeline.pages import page_index
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE
@@ -48,6 +49,7 @@ NOT_SHOWN = "*(your run measures it)*"
 DEBIAN = "python3-venv libegl1 libgl1"
 
 CONSTRAINTS = "constraints.txt"  # The lock, beside the wheel
+LOCK = project.ROOT / "requirements.lock"
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 EPOCH = "315532800"  # 1980-01-01, the oldest time that a zip can hold
@@ -70,7 +72,6 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
     wheel = build_wheel(folder)
-    lock = project.ROOT / "requirements.lock"
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(config.torch_index, student.name)
     origin = partial(origin_of, page, bundle.read_manifest(run), commands, config)
@@ -87,7 +88,7 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
         "student": student,
         "executed": ran,
         "wheel": wheel,
-        "constraints": Path(shutil.copy(lock, folder / CONSTRAINTS)),
+        "constraints": Path(shutil.copy(LOCK, folder / CONSTRAINTS)),
         "units": Path(shutil.copy(run / "arrays.json", own)),
         "arrays": [*_arrays(run, own)],
         "figures": [*_figures(page, executed, own)],
@@ -115,6 +116,13 @@ def run_commands(torch_index: str, notebook: str = "") -> tuple[str, ...]:
         f"  --extra-index-url {torch_index}",
         f"course/bin/jupyter lab {notebook}".rstrip(),
     )
+
+
+def check_command(folder: Path) -> str:
+    """Return the command that compares downloads with the wheel and the constraints of the site."""
+    wheel = build_wheel(folder)
+    files = ((wheel.name, wheel.read_bytes()), (CONSTRAINTS, LOCK.read_bytes()))
+    return f"sha256sum --check <<< '{sums(files).decode().strip()}'"
 
 
 def system() -> str:

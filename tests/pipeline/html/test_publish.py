@@ -47,6 +47,7 @@ def test_site_and_bundles_are_published_together_for_everybody_to_read(
         "a",
         "evidence/l04/cpu/manifest.json",
         "pages/l04/lecture/cpu/manifest.json",
+        "html/.nojekyll",
         "html/index.html",
         "html/offline/robo-genesis-site.zip",
     }

@@ -57,3 +57,28 @@ def test_who_is_lost_at_any_depth_can_search_and_go_on(page, host, lost):
     page.locator("form.lost button").click()
     page.wait_for_url("**/search.html?q=joint4")
     assert results(page)
+
+
+LECTURE = "lessons/l04-joint-control/lecture.html"
+
+
+def test_two_sites_on_one_server_remember_and_search_each_for_itself(
+    page, site, tmp_path
+):
+    for term in ("spring", "autumn"):
+        (tmp_path / term).symlink_to(site)
+    with served(tmp_path) as server:
+        page.goto(f"{server}/spring/{LECTURE}")
+        page.get_by_label("I have finished this page").check()
+        for term, remembers in (("autumn", 0), ("spring", 1)):
+            page.goto(f"{server}/{term}/index.html")
+            assert page.locator("#lesson-l04 .finished").count() == remembers
+            assert page.locator(".memory a").count() == remembers
+        page.locator(".memory a").click()
+        page.wait_for_url(f"{server}/spring/{LECTURE}")
+        for term in ("spring", "autumn"):
+            page.goto(f"{server}/{term}/search.html?q=joint4")
+            found = results(page)
+            assert {link[: len(f"{server}/{term}/")] for link in found} == {
+                f"{server}/{term}/"
+            }
