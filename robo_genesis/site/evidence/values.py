@@ -46,11 +46,11 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
             value has three digits.
 
     Raises:
-        LookupError: there is no such page, or the page has no metric of this name, and
-            the message lists those there are; or the metric has no value in this unit.
+        LookupError: the page has no metric of this name, and the message lists its
+            metrics; or the metric has no value in this unit.
         BundleRefused: the bundle cannot be read.
     """
-    folder = bundle_of(lesson_page)
+    folder = page_bundle(lesson_page)
     manifest = read_manifest(folder)
     origin = (
         f"Measured by {lesson_page} on {BACKEND}, Genesis {manifest.engine.version}, "
@@ -76,16 +76,6 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     else:
         text = str(value) if name.startswith("model.") else format_value(value, given)
     return text, f"{origin}, {source}"
-
-
-def bundle_of(lesson_page: str) -> Path:
-    """Return the folder of the bundle that a page of a lesson left.
-
-    Raises:
-        LookupError: no lesson has such a page; the message lists those there are.
-    """
-    find_page(*lesson_page.partition("/")[::2])
-    return page_bundle(lesson_page)
 
 
 class Measured(PageRole):
@@ -118,11 +108,10 @@ def require_passed(lesson_page: str, check: str) -> None:
     """Require that a check of a page passed.
 
     Raises:
-        LookupError: there is no such page, or the page has no such check; the message
-            lists those there are.
+        LookupError: the page has no such check; the message lists those that it has.
         ValueError: the check failed, or the page has no bundle that can be read.
     """
-    folder = bundle_of(lesson_page)
+    folder = page_bundle(lesson_page)
     checks = {record.name: record for record in read_manifest(folder).checks}
     if check not in checks:
         raise LookupError(

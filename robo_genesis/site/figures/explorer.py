@@ -43,10 +43,10 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
+from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
-from robo_genesis.site.evidence.values import bundle_of
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay import directive as replays
@@ -80,7 +80,7 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        lesson, folder = lesson_page.split("/")[0], bundle_of(lesson_page)
+        lesson, folder = lesson_page.split("/")[0], page_bundle(lesson_page)
         run = accepted_experiment(folder)
         explored = find(f"robo_genesis.lessons.{lesson}.explorer.explored")
         key = f"{lesson_page}/{BACKEND}"

@@ -28,11 +28,11 @@ from robo_genesis.core.markup import filled
 from robo_genesis.core.text import bullets
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_replay
+from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
-from robo_genesis.site.evidence.values import bundle_of
 from robo_genesis.site.figures.case_labels import labels_of
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.text.questions import question
@@ -61,7 +61,7 @@ class ReplayDirective(PageDirective):
             raise LookupError(
                 "`:blind:` needs a question above it, as `{choice}` or `{number}`."
             )
-        key, folder = f"{lesson_page}/{BACKEND}", bundle_of(lesson_page)
+        key, folder = f"{lesson_page}/{BACKEND}", page_bundle(lesson_page)
         return [replay_block(self, key, folder, *chosen, brief=brief, blind=blind)]
 
 
@@ -193,7 +193,7 @@ def shape_file(lesson: str, thing: str) -> Path:
     Raises:
         ValueError: there is no such file.
     """
-    shape = bundle_of(f"{lesson}/{SHAPE_PAGE}") / visual_shape.FILE
+    shape = page_bundle(f"{lesson}/{SHAPE_PAGE}") / visual_shape.FILE
     if not shape.is_file():
         raise ValueError(
             f"{lesson} wrote no shape of its {thing}. A cell of its {SHAPE_PAGE} must call "

@@ -157,8 +157,7 @@ def floor_of(shape: Sequence[Part]) -> list[Part]:
 
     def size(part: Part) -> FloatArray:
         """Return length and width (2,) [m]."""
-        extent: FloatArray = np.ptp(part.vertices[:, :2], axis=0)
-        return extent
+        return np.ptp(part.vertices[:, :2], axis=0)
 
     wide = [part for part in shape if part.link == WORLD and size(part).min() > TILE]
     if not wide:

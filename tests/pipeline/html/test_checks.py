@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.core.project import ROOT
+from robo_genesis.core.project import PACKAGES, ROOT
 from robo_genesis.pipeline.html.checks import POLICY, run_checks
 
 HEAD = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
@@ -57,6 +57,7 @@ def test_a_good_site_passes(tmp_path):
         ("<p>&lt;Figure size 640x480&gt;</p>", "leftovers", "Figure size"),
         (f"<p>{ROOT}/book</p>", "private paths", str(ROOT)),
         (f"<p>{Path.home()}/a</p>", "private paths", str(Path.home())),
+        (f"<p>{PACKAGES}/a.py</p>", "private paths", PACKAGES),
     ],
 )
 def test_each_problem_is_found_by_its_check_alone(tmp_path, body, check, said):

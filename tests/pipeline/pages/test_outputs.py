@@ -15,7 +15,7 @@ from nbformat.v4 import new_code_cell, new_notebook, new_output
 from small_book import executed as run_pages
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
-from robo_genesis.core import shown
+from robo_genesis.core import project, shown
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import write_json
@@ -223,6 +223,16 @@ def test_a_number_that_a_cell_prints_is_the_value_that_its_option_names(
             BundleRefused, match=f"^shown: .*code cell 1: .*{re.escape(said)}"
         ):
             require_shown(page, ran, folder)
+
+
+def test_an_error_names_no_folder_of_the_machine(monkeypatch):
+    """IPython writes the home folder as `~` in the frames of an error."""
+    home = Path(project.PACKAGES).parent
+    monkeypatch.setenv("HOME", str(home))
+    error = new_output("error", ename="E", evalue="")
+    error.traceback = [f"File ~/{Path(project.PACKAGES).name}/genesis/a.py, in ~/b"]
+    (kept,) = outputs_of(new_notebook(cells=[new_code_cell(outputs=[error])]))
+    assert kept[0]["traceback"] == ["File site-packages/genesis/a.py, in ~/b"]
 
 
 PRINTS = """\

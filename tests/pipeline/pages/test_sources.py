@@ -1,9 +1,15 @@
 """Which changes of the package change the evidence keys and the fingerprints of which pages."""
 
+import ast
 import os
+import re
 import shutil
+from contextlib import suppress
 from copy import deepcopy
 from dataclasses import replace
+from importlib import import_module
+from inspect import isfunction
+from operator import attrgetter
 from unittest.mock import patch
 
 import pytest
@@ -143,6 +149,29 @@ def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(
     assert measuring_modules("l04", [], root).keys() == {*data[:3]}
     assert "l03" not in read  # a page that read it would be refused
     assert measuring_modules("l04", imports, root).keys() == {*data[:3]} | other
+
+
+# What a measuring module may call that is in no evidence key: places, words and
+# judgements, and what makes cases, which `parameters()` has.
+OUTSIDE_OF_KEYS = re.compile(
+    r"core\.(project|text)|sim\.(\w+\.)?laws|lessons\.(l07\.spec\.lift_of|l08\.spec\.starts)"
+)
+
+
+def test_what_measures_calls_nothing_that_is_in_no_evidence_key():
+    tree, called = Tree(), set()
+    for path in PACKAGE.rglob("*.py"):
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        if not tree.measures(name, path):
+            continue
+        for node in ast.walk(ast.parse(path.read_text())):
+            with suppress(AttributeError):  # of what is no call of a known function
+                function = attrgetter(ast.unparse(node.func))(import_module(name))
+                home = function.__module__.removeprefix("robo_genesis.")
+                of_us = isfunction(function) and home != function.__module__
+                if of_us and not tree.measures(home, tree.module(function.__module__)):
+                    called.add(f"{home}.{function.__name__}")
+    assert [name for name in called if not OUTSIDE_OF_KEYS.match(name)] == []
 
 
 def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):

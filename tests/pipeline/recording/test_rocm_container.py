@@ -1,13 +1,14 @@
 """`make evidence-rocm`: the command of the container, and what it says where none can start."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.core.project import BOOK, ROOT, ProjectError
 from robo_genesis.pipeline.recording import rocm_container
 from robo_genesis.pipeline.recording.rocm_container import record, run_command
 
@@ -17,6 +18,14 @@ NULL = Path(os.devnull)
 @pytest.fixture(autouse=True)
 def devices(monkeypatch):
     monkeypatch.setattr(rocm_container, "DEVICES", (NULL,))
+
+
+def test_the_page_names_the_versions_in_the_image():
+    (image,) = re.findall(r"FROM (\S+)", (ROOT / rocm_container.DOCKERFILE).read_text())
+    named = re.findall(r":rocm([\d.]+)_.*_py([\d.]+)_.*_release_([\d.]+)@", image)
+    page = (BOOK / "evidence/recording.md").read_text()
+    for name, version in zip(("ROCm", "Python", "PyTorch"), *named, strict=True):
+        assert f"{{literal}}`{name} {version}`" in page
 
 
 def options(command: list[str], name: str) -> list[str]:

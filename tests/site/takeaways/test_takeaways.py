@@ -47,6 +47,22 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
     assert shipped == sources | data
 
 
+def test_a_download_that_is_renamed_or_short_is_noticed(tmp_path):
+    command = ["bash", "-c", files.check_command(tmp_path)]
+    constraints = tmp_path / files.CONSTRAINTS
+    renamed = tmp_path / "constraints (1).txt"
+    shutil.copy(files.LOCK, constraints)
+
+    def status() -> int:
+        return subprocess.run(command, cwd=tmp_path, check=False).returncode
+
+    assert status() == 0
+    constraints.rename(renamed)
+    assert status() == 1
+    constraints.write_bytes(renamed.read_bytes()[:-9])
+    assert status() == 1
+
+
 def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path):
     """The metadata of the wheel has the pin; an unpacked wheel is what pip installs."""
     home, installed = tmp_path / "home", tmp_path / "installed"
