@@ -8,21 +8,28 @@ A page calls `gs.init` itself; `open_page` follows it:
 """
 
 import os
+import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from IPython import get_ipython
 from IPython.display import Markdown, display
 from matplotlib.figure import Figure
 
 from robo_genesis.core import checks, plotting, shown, tables
-from robo_genesis.core.checks import Check
-from robo_genesis.core.exercises import FUNCTIONS, FunctionFailed, Written
+from robo_genesis.core.checks import Check, CheckFailed
+from robo_genesis.core.exercises import FUNCTIONS, FunctionFailed, Written, refused
 from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.files import put
 from robo_genesis.core.project import RUN_ID, cache_folders, nothing_compiled
-from robo_genesis.evidence.recorder import Recorder
+from robo_genesis.evidence.bundle import read_manifest
+from robo_genesis.evidence.recorder import Recorder, RecordError
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources
 from robo_genesis.sim import session
@@ -72,9 +79,19 @@ def open_page(lesson: str, name: str) -> "LessonPage":
     page = LessonPage(lesson, name, contract, session.started(contract))
     _opened.append(f"{lesson}/{name}")
     plotting.use_course_style()
-    if RUN_ID not in os.environ and nothing_compiled(cache_folders()):
-        print(FIRST_START.format(count=len(declared.runs)))
+    if RUN_ID not in os.environ:
+        if shell := get_ipython():
+            short = NotImplementedError, CheckFailed, RecordError
+            shell.set_custom_exc(short, without_frames)
+            shell.events.register("post_run_cell", page.go_on)
+        if nothing_compiled(cache_folders()):
+            print(FIRST_START.format(count=len(declared.runs)))
     return page
+
+
+def without_frames(shell: Any, kind: type, error: Any, trace: Any, **_: Any) -> None:
+    """Show the message of an error alone."""
+    shell.showtraceback((FunctionFailed, FunctionFailed(str(error)), trace))
 
 
 class LessonPage:
@@ -111,6 +128,7 @@ class LessonPage:
         self.links: Sequence[str] = list(self._declared.links)
         names = getattr(self._declared.readings.get(FUNCTIONS), "units", ())
         self._written = dict.fromkeys(names, 0)
+        self._errors: dict[str, str] = {}
 
     @property
     def experiment(self) -> Experiment:
@@ -205,11 +223,35 @@ class LessonPage:
             )
         print(f"{name} passes its test")
 
+    def go_on(self, result: Any) -> None:
+        """Let the next cells run after an error, and name the functions that its cell needs.
+
+        Jupyter would skip the cells that wait, and the reader would see neither the error
+        nor a verdict.
+
+        Args:
+            result: of a cell, by IPython; it loses its error.
+        """
+        error, cell = result.error_before_exec or result.error_in_exec, result.info
+        self._errors.pop(cell.cell_id, None)
+        if isinstance(error, Exception):
+            self._errors[cell.cell_id] = f"[{result.execution_count}]"
+            result.error_before_exec = result.error_in_exec = None
+            missing = self._missing
+            used = [n for n in missing if re.search(rf"\b{n}\b", cell.raw_cell)]
+            if missing:
+                print(f"No passed test yet: {', '.join(used or missing)}.")
+
+    @property
+    def _missing(self) -> list[str]:
+        return [name for name, passed in self._written.items() if not passed]
+
     def finish(self, scene: Any) -> None:
-        """Measure, show the table of checks, write the bundle, and print the verdict.
+        """Measure, write the bundle, print the verdict, and show the table of checks.
 
         The verdict is `PASSED` if all checks passed. Where nothing but functions is
-        missing, it is `INCOMPLETE` and names them.
+        missing, it is `INCOMPLETE` and names them. An earlier bundle that passed is kept
+        beside one that does not.
 
         Args:
             scene: the scene with the camera; only its renderer is read.
@@ -217,24 +259,34 @@ class LessonPage:
         Raises:
             CheckFailed: naming every check that failed, with what it found.
         """
-        experiment = self.experiment
-        self.show(tables.checks_of_run)
+        experiment, folder = self.experiment, self._recorder.folder
+        outcomes = experiment.outcomes()
+        with suppress(BundleRefused):  # there is none
+            earlier = read_manifest(folder).checks
+            old, new = (all(c.passed for c in of) for of in (earlier, outcomes))
+            if old > new:
+                put(folder, folder.with_name(f"{folder.name}-passed"))
+                print(f"{folder.name}-passed keeps the earlier bundle, which passed.")
         renderer = cameras.read_renderer(scene) if self.render else None
-        folder = self._recorder.write(experiment, renderer, self._shape)
+        self._recorder.write(experiment, renderer, self._shape)
         files = sum(path.is_file() for path in folder.rglob("*"))
         print(
             f"{files} files in {self._recorder.lesson}/{self._recorder.page}/{folder.name}"
         )
-        missing = [name for name, passed in self._written.items() if not passed]
-        measured = [
-            c for c in experiment.outcomes() if not missing or c.name != FUNCTIONS
-        ]
-        verdict = checks.require(self._lesson, measured)
+        if self._errors:
+            print("Cells with an error:", *self._errors.values())
+        missing = self._missing
         if count := len(self._written):
             print(f"functions {count - len(missing)} of {count}")
-        if missing:
-            verdict = f"{self._lesson.upper()} CHECK: INCOMPLETE, not passed: {', '.join(missing)}"
-        print(verdict)
+        measured = [c for c in outcomes if not missing or c.name != FUNCTIONS]
+        failed = refused(partial(checks.require, self._lesson, measured))
+        verdict = (
+            f"INCOMPLETE, not passed: {', '.join(missing)}" if missing else "PASSED"
+        )
+        print(failed or f"{self._lesson.upper()} CHECK: {verdict}")
+        self.show(tables.checks_of_run)
+        if failed:
+            raise failed
 
 
 def curves(

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from bundles import RENDERER, RUN_ID
+from IPython.core.interactiveshell import ExecutionResult
 from lessons.body_runs import make_drop
 from lessons.exercise_cells import solutions
 
@@ -183,10 +184,15 @@ def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(
     manifest = json.loads((page.folder / "cpu" / "manifest.json").read_text())
     assert manifest["run_id"] == RUN_ID
     page.readings["body"] = {"mass": 2 * spec.BASELINE.mass}
-    with pytest.raises(CheckFailed, match=r"L02 CHECK: FAILED \[mass\]"):
-        page.finish(None)
+    for _ in range(2):  # what passed is kept once, and not replaced by what failed
+        with pytest.raises(CheckFailed, match=r"L02 CHECK: FAILED \[mass\]"):
+            page.finish(None)
+        kept = page.folder / "cpu-passed" / "manifest.json"
+        assert json.loads(kept.read_text()) == manifest
     assert "**FAILED**" in displayed[-1][0]["text/markdown"]
-    assert "PASSED" not in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert said.count("cpu-passed keeps the earlier bundle, which passed.") == 1
+    assert "PASSED" not in said
 
 
 def usable_frame(rgb):
@@ -218,6 +224,29 @@ def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(
     assert {
         name: of["value"] for name, of in metrics["functions"].items()
     } == page._written
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "named"),
+    [
+        (TypeError(), "at, turn = record(2)", "record"),
+        (SyntaxError(), "def record(:", "record"),
+        (NameError(), "recorded + 1", "make_scene, record, usable_frame"),
+        (KeyboardInterrupt(), "record(2)", None),
+        (None, "record(2)", None),
+    ],
+)
+def test_an_error_names_the_functions_that_its_cell_needs_and_the_next_cells_run(
+    page, capsys, error, code, named
+):
+    page._written["stepped"] = 1
+    result = ExecutionResult(SimpleNamespace(raw_cell=code, cell_id="a"))
+    result.error_in_exec, result.execution_count = error, 7
+    page.go_on(result)
+    said = f"No passed test yet: {named}.\n" if named else ""
+    assert capsys.readouterr().out == said
+    assert page._errors == ({"a": "[7]"} if named else {})
+    assert result.error_in_exec is (None if named else error)
 
 
 def test_without_a_camera_no_frame_is_taken(page, monkeypatch):

@@ -12,8 +12,6 @@ from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from .check_spec import MASS_SHARE
 from .text import quoted
 
@@ -46,8 +44,11 @@ class Finding:
     def problem(self) -> str:
         """The message about a value that is not allowed."""
         found = quoted(plain(self.found))
-        if found == self.expected:  # "1" and 1
-            found += f" ({type(self.found).__name__})"
+        if found in (
+            self.expected,
+            *self.expected.split(),
+        ):  # "1" and 1, 0.5 and 0.50000001
+            found = f"{self.found!r} ({type(self.found).__name__})"
         return f"{self.label} is {found}, expected {self.expected}"
 
 
@@ -71,19 +72,18 @@ class Check:
 
 
 def of_python(value: Any) -> Any:
-    """Return numbers of NumPy as those of Python, which are judged in float64."""
-    return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
+    """Return numbers of NumPy and Torch as those of Python, which are judged in float64."""
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def plain(value: Any) -> Value:
-    """Return a value as JSON can hold it: sequences and numbers that are not finite as text."""
+    """Return a value as JSON can hold it: numbers that are not finite, and all else, as text."""
     value = of_python(value)
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, list | tuple):
         return ", ".join(map(str, value))
-    assert value is None or isinstance(value, bool | int | float | str), value
-    return value
+    return value if isinstance(value, bool | int | float | str | None) else repr(value)
 
 
 Findings = Iterator[Finding]  # What a check yields
@@ -96,15 +96,15 @@ def noted(label: str, found: Any) -> Finding:
 
 def equal(label: str, found: Any, expected: Any, recorded: bool = True) -> Finding:
     """Require exactly the expected value."""
-    value, required = plain(found), plain(expected)
-    return Finding(label, value, value == required, quoted(required), recorded)
+    required = plain(expected)
+    return Finding(label, found, plain(found) == required, quoted(required), recorded)
 
 
 def within(label: str, found: Any, expected: float, tolerance: float) -> Finding:
     """Require a value that differs from the expected one by no more than the tolerance."""
     found = of_python(found)
     passed = found is not None and abs(found - expected) <= tolerance
-    return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
+    return Finding(label, found, bool(passed), f"{expected:.10g} ± {tolerance:g}")
 
 
 def nearly(

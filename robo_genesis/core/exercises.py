@@ -1,14 +1,16 @@
 """Functions that students write: tests of what they return, and the check that demands them."""
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
+from copy import deepcopy
+from functools import partial, wraps
+from inspect import signature
 from reprlib import Repr
 from traceback import extract_tb
 from typing import Any
 
 import numpy as np
 
-from .checks import Check, CheckFailed, Finding, Findings, at_most, equal
+from .checks import Check, CheckFailed, Finding, Findings, equal, within
 from .experiment import Experiment, MeasuringPage, counts
 from .scene import FloatArray
 
@@ -46,33 +48,31 @@ class FunctionFailed(CheckFailed):
         return str(self).splitlines()
 
 
+# Arguments that a student's function could change for later tests; robots and scenes are
+# given as they are.
+DATA = (np.ndarray, list, tuple, dict)
+
+
 class Watched:
-    """A student's function that notes its last call in words."""
+    """A student's function, called with copies, that notes its last call in words."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        self.function, self.call = function, ""
+        self.function, self.call, self.changed = function, "", ""
         self.name = getattr(function, "__name__", "the function")
 
-    def __call__(self, *given: Any, **named: Any) -> Any:
-        """Call the function.
-
-        Raises:
-            ValueError: it changed an array that it was given.
-        """
-        before = [np.copy(value) for value in given if isinstance(value, np.ndarray)]
-        words = [
-            *map(brief, given),
-            *(f"{name}={brief(value)}" for name, value in named.items()),
-        ]
-        self.call = f"{self.name}({', '.join(words)})"
-        result = self.function(*given, **named)
+    def __call__(self, *given: Any) -> Any:
+        """Call the function with copies, and note in `changed` which of them it changed."""
+        self.call = f"{self.name}({', '.join(map(brief, given))})"
+        copies = [deepcopy(of) if isinstance(of, DATA) else of for of in given]
+        result = self.function(*copies)
         self.call += f" returned {brief(result)}"
-        after = [value for value in given if isinstance(value, np.ndarray)]
-        pairs = zip(before, after, strict=True)
-        if not all(np.array_equal(*pair, equal_nan=True) for pair in pairs):
-            raise ValueError(
-                f"{self.name} changed an array that it was given. Use a copy."
-            )
+        for number, (before, after) in enumerate(zip(given, copies, strict=True)):
+            differ = partial(np.testing.assert_equal, after, before)
+            if after is not before and refused(differ):
+                names = [*signature(self.function).parameters][: number + 1]
+                self.changed = (
+                    f"{self.call}\n  It changed its argument {names[-1]}. Use a copy."
+                )
         return result
 
     def raised(self, error: Exception) -> str:
@@ -128,7 +128,8 @@ def as_test(findings: Callable[..., Iterable[Finding]]) -> Callable[..., Check]:
     """Make a test from a generator of findings about its first argument, a student's function.
 
     The test ends with the first value that is not allowed, and the outcome names its
-    call. An exception of the student's function fails the test as well.
+    call. An exception of the student's function and a changed argument fail the test as
+    well.
     """
 
     @wraps(findings)
@@ -141,9 +142,42 @@ def as_test(findings: Callable[..., Iterable[Finding]]) -> Callable[..., Check]:
                     break
         except Exception as error:  # whatever a student's function raises
             problem = watched.raised(error)
+        problem = watched.changed or problem
         return Check(findings.__name__, judged > 0 and not problem, problem)
 
     return judge
+
+
+# Largest error by rounding in float32, as a share of the largest value, or of 1.
+FLOAT32 = 1e-6
+
+
+def is_numeric(values: np.ndarray) -> bool:
+    """Return whether an array has numbers: neither text, truth values nor None."""
+    return values.dtype.kind in "iuf"
+
+
+def rounding(values: np.ndarray, expected: Any, tiny: float) -> float:
+    """Return the largest difference that rounding explains: `tiny`, or more in float32."""
+    if values.dtype != np.float32:
+        return tiny
+    return max(tiny, FLOAT32 * float(np.max(np.abs(expected), initial=1.0)))
+
+
+def same_number(label: str, found: Any, expected: float, tiny: float) -> Finding:
+    """Require a number that differs from the expected one by rounding.
+
+    Args:
+        label: of the finding.
+        found: what the student's function returned.
+        expected: the right result.
+        tiny: largest difference that rounding explains in float64.
+    """
+    values = np.asarray(found)
+    if values.size != 1 or not is_numeric(values):
+        return Finding(label, brief(found), False, f"the number {expected:g}")
+    room = rounding(values, expected, tiny)
+    return within(label, float(values.item()), expected, room)
 
 
 def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Findings:
@@ -156,33 +190,34 @@ def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Fin
         label: the beginning of the labels.
         found: what the student's function returned.
         expected: the right result.
-        tiny: largest difference that rounding explains.
+        tiny: largest difference that rounding explains in float64.
     """
-    values = np.asarray(found, dtype=float)
-    yield equal(f"{label}.shape", list(values.shape), list(expected.shape))
-    if values.shape != expected.shape:
+    values = np.asarray(found)
+    if not is_numeric(values):
+        yield Finding(label, brief(found), False, "numbers")
         return
-    errors = np.abs(values - expected)
-    if not (errors <= tiny).all():
-        row = tuple(np.argwhere(~(errors <= tiny))[0].tolist())[
-            : max(1, values.ndim - 1)
-        ]
+    yield equal(f"{label}.shape", str(values.shape), str(expected.shape))
+    room = rounding(values, expected, tiny)
+    good = np.abs(values - expected) <= room
+    if not good.all():
+        row = tuple(np.argwhere(~good)[0].tolist())[: max(1, values.ndim - 1)]
+        texts = [row_text(of[row]) for of in (values, expected)]
+        if texts[0] == texts[1]:
+            texts = [row_text(of[row], 15) for of in (values, expected)]
         place = f"{label}{list(row)}, the first that differs,"
-        required = f"{row_text(expected[row])} ± {tiny:g}"
-        yield Finding(place, row_text(values[row]), False, required)
-    yield at_most(f"{label}.largest_error", float(errors.max()), tiny)
+        yield Finding(place, texts[0], False, f"{texts[1]} ± {room:g}")
 
 
-def row_text(values: FloatArray) -> str:
-    """Return a number, or an array (n,), with six significant digits."""
-    text = ", ".join(f"{value:.6g}" for value in np.ravel(values))
+def row_text(values: FloatArray, digits: int = 6) -> str:
+    """Return a number, or an array (n,), with significant digits."""
+    text = ", ".join(f"{value:.{digits}g}" for value in np.ravel(values))
     return f"[{text}]" if np.ndim(values) else text
 
 
 def compared(
     run: str,
     names: Sequence[str],
-    found: Sequence[Any],
+    found: Any,
     expected: Sequence[Any],
     tiny: float,
 ) -> Findings:
@@ -193,12 +228,13 @@ def compared(
         names: of the values.
         found: what the student's function returned.
         expected: of the same length as `names`.
-        tiny: largest difference that rounding explains.
+        tiny: largest difference that rounding explains in float64.
     """
-    yield equal(f"{run}.number_of_values", len(found), len(expected))
-    for name, value, right in zip(names, found, expected, strict=False):
+    count = len(found) if hasattr(found, "__len__") else 1
+    yield equal(f"{run}.number_of_values", count, len(expected))
+    for name, value, right in zip(names, found, expected, strict=True):
         label = f"{run}.{name}"
-        if value is None or right is None:
-            yield equal(label, value, right)
+        if right is None:
+            yield equal(label, value, None)
         else:
-            yield at_most(f"{label}.error", abs(float(value) - float(right)), tiny)
+            yield same_number(label, value, right, tiny)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+import torch
 
 from robo_genesis.core import checks
 from robo_genesis.core.check_spec import MASS_SHARE
@@ -18,10 +19,16 @@ from robo_genesis.core.check_spec import MASS_SHARE
         (checks.equal("x", ("a", "b"), ["a", "b"]), True, None),
         (checks.equal("x", np.nan, None), False, "x is nan, expected None"),
         (checks.equal("x", np.float32(0), 0.0), True, None),
-        (checks.equal("x", "1", 1), False, "x is 1 (str), expected 1"),
+        (checks.equal("x", "1", 1), False, "x is '1' (str), expected 1"),
+        (checks.equal("x", [True], True), False, "x is [True] (list), expected True"),
         (checks.equal("x", [], ["a"]), False, "x is nothing, expected a"),
         (checks.within("x", 1.5, 1.0, 0.5), True, None),
         (checks.within("x", 1.6, 1.0, 0.5), False, "x is 1.6, expected 1 ± 0.5"),
+        (
+            checks.within("x", 0.50000001, 0.5, 1e-9),
+            False,
+            "x is 0.50000001 (float), expected 0.5 ± 1e-09",
+        ),
         (
             checks.within("x", None, 1.0, 0.5),
             False,
@@ -30,9 +37,9 @@ from robo_genesis.core.check_spec import MASS_SHARE
         (checks.at_most("x", 2.0, 2.0), True, None),
         (checks.at_most("x", 2.1, 2.0), False, "x is 2.1, expected at most 2"),
         (checks.below("x", 1.9, 2.0), True, None),
-        (checks.below("x", 2.0, 2.0), False, "x is 2, expected less than 2"),
+        (checks.below("x", 2.0, 2.0), False, "x is 2.0 (float), expected less than 2"),
         (checks.above("x", 2.1, 2.0), True, None),
-        (checks.above("x", 2.0, 2.0), False, "x is 2, expected more than 2"),
+        (checks.above("x", 2.0, 2.0), False, "x is 2.0 (float), expected more than 2"),
         (checks.above("x", np.nan, 2.0), False, None),
         (checks.noted("x", -7.0), True, None),
     ],
@@ -53,6 +60,8 @@ def test_a_finding_is_judged_and_says_found_and_allowed(finding, passed, problem
         (np.inf, "inf"),
         (np.arange(3), "0, 1, 2"),
         (("a", "b"), "a, b"),
+        (torch.tensor(True), True),
+        ({1}, "{1}"),
     ],
 )
 def test_a_value_becomes_one_that_json_can_hold(value, expected):

@@ -2,12 +2,18 @@
 
 import numpy as np
 import pytest
+import torch
 
 from robo_genesis.core import exercises
 
 
 def raises(values):
     return [*values][3]
+
+
+def doubles(values):
+    values *= 2
+    return values
 
 
 @exercises.as_test
@@ -17,8 +23,9 @@ def doubled(function, values):
 
 
 def test_a_right_function_passes_and_the_test_keeps_its_description():
-    check = doubled(lambda values: list(values + values), np.arange(3.0))
-    assert (check.name, check.passed) == ("doubled", True)
+    for kind in (np.float64, np.float32):
+        check = doubled(lambda of, kind=kind: list(kind(of + of)), np.arange(3) / 10)
+        assert (check.name, check.passed) == ("doubled", True)
     assert doubled.__doc__ == "Check `function(values)`."
 
 
@@ -30,14 +37,16 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
             "([0, 1, 2]) returned [0, 1, 2]\n"
             "  twice[1], the first that differs, is 1, expected 2 ± 1e-09",
         ),
-        (lambda values: values[:1], "twice.shape is 1, expected 3"),
+        (lambda values: values[:1], "twice.shape is (1,), expected (3,)"),
+        (lambda values: ["0", "2", "4"], "twice is ['0', '2', '4'], expected numbers"),
+        (lambda values: None, "returned None\n  twice is None, expected numbers"),
         (
-            lambda values: "no numbers",
-            "([0, 1, 2]) returned 'no numbers': ValueError: could not",
+            doubles,
+            "doubles([0, 1, 2]) returned [0, 2, 4]\n  It changed its argument values.",
         ),
         (
             raises,
-            "raises([0, 1, 2]): IndexError: list index out of range\n  line 10 of its cell",
+            "raises([0, 1, 2]): IndexError: list index out of range\n  line 11 of its cell",
         ),
     ],
 )
@@ -65,3 +74,27 @@ def test_the_first_wrong_row_is_named_with_what_it_should_be():
 )
 def test_a_message_shows_the_whole_of_a_short_input(value, words):
     assert exercises.brief(value) == words
+
+
+@exercises.as_test
+def counted(function, given):
+    """Check `function(given)` twice with the same argument."""
+    for label in ("first", "again"):
+        yield exercises.same_number(label, function(given), 0.1, 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("function", "says"),
+    [
+        (lambda given: given["a"][0], ""),
+        (lambda given: np.float32(given["a"][0]), ""),
+        (lambda given: torch.tensor(given["a"]), ""),
+        (lambda given: given["a"].pop(), "It changed its argument given. Use a copy."),
+        (lambda given: "0.1", "first is '0.1', expected the number 0.1"),
+        (lambda given: None, "returned None\n  first is None, expected the number 0.1"),
+        (lambda given: 0.10000001, "first is 0.10000001 (float), expected 0.1 ± 1e-09"),
+    ],
+)
+def test_a_function_gets_copies_and_returns_a_number(function, says):
+    check = counted(function, {"a": [0.1]})
+    assert (check.passed, says in check.detail) == (not says, True)

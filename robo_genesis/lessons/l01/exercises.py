@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from robo_genesis.core.checks import Findings, within
-from robo_genesis.core.exercises import Written, as_test
+from robo_genesis.core.checks import Findings
+from robo_genesis.core.exercises import Written, as_test, same_number
 from robo_genesis.sim.bodies.free_fall import summed_drop
 
 from . import spec
@@ -23,7 +23,7 @@ def height_after(height: Written) -> Findings:
         ("below_the_floor", 0.5, case.gravity, 0.01, 100),
     ):
         expected = z0 - summed_drop(h, n, g)
-        yield within(f"{name}_m", float(height(z0, g, h, n)), expected, TINY)
+        yield same_number(f"{name}_m", height(z0, g, h, n), expected, TINY)
 
 
 @as_test
@@ -34,5 +34,5 @@ def fall(run: Written, scene: Any, sphere: Any) -> Findings:
         expected = case.height - summed_drop(
             case.h, steps * case.substeps, case.gravity
         )
-        found = float(run(scene, sphere, steps))
-        yield within(f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE)
+        found = run(scene, sphere, steps)
+        yield same_number(f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE)

@@ -76,7 +76,7 @@ def usable_frame(usable: Written) -> Findings:
         "rows_and_columns_exchanged": (box.swapaxes(0, 1), False),
     }
     for name, (rgb, expected) in frames.items():
-        yield equal(name, bool(usable(rgb)), expected)
+        yield equal(name, usable(rgb), expected)
 
 
 @as_test

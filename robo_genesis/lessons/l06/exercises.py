@@ -7,8 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Findings, equal, within
-from robo_genesis.core.exercises import Examples, Written, as_test, refused
+from robo_genesis.core.checks import Findings, equal
+from robo_genesis.core.exercises import (
+    Examples,
+    Written,
+    as_test,
+    refused,
+    same_number,
+)
 from robo_genesis.sim.arm.reaching import ANSWERS
 
 from . import spec
@@ -28,7 +34,7 @@ def acceptance(accept: Written) -> Findings:
         for k, (_, ((joint, value), residual, _)) in enumerate(some):
             q[k, joint], error[k] = value, residual
         found = np.asarray(accept(q, error, *spec.IK.tolerances))
-        yield equal(f"{label}.shape", found.shape, (len(some),))
+        yield equal(f"{label}.shape", str(found.shape), str((len(some),)))
         yield equal(f"{label}.type", found.dtype.name, "bool")
         for (name, (*_, right)), value in zip(some, found, strict=True):
             yield equal(f"{label}.{name}", value, right)
@@ -150,7 +156,7 @@ def throughput(measure: Written) -> Findings:
     for name, (first, steps, repeats) in TRIALS.items():
         machine = Machine(*first, *np.repeat(repeats, steps))
         calls = machine.step, machine.finish, machine.clock
-        found = float(measure(*calls, len(first), steps, len(repeats)))
+        found = measure(*calls, len(first), steps, len(repeats))
         expected = STEP * np.median(repeats) + WAIT / steps
-        yield within(f"{name}.step_s", found, expected, TINY)
+        yield same_number(f"{name}.step_s", found, expected, TINY)
         yield equal(f"{name}.number_of_steps", machine.started, len(machine.durations))

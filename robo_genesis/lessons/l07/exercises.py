@@ -4,8 +4,14 @@ from math import inf, nan
 
 import numpy as np
 
-from robo_genesis.core.checks import Findings, equal, within
-from robo_genesis.core.exercises import Examples, Written, as_test, compared
+from robo_genesis.core.checks import Findings, equal
+from robo_genesis.core.exercises import (
+    Examples,
+    Written,
+    as_test,
+    compared,
+    same_number,
+)
 from robo_genesis.sim.arm.reaching import ONE_START, RESIDUALS
 from robo_genesis.sim.bodies.table import gap
 
@@ -24,7 +30,8 @@ def footprints(margin: Written) -> Findings:
     """Check `margin(one, other)`: the distance of two upright rectangles [m]."""
     for name, pair in PAIRS.items():
         for label, given in (("margin_m", pair), ("swapped_m", pair[::-1])):
-            yield within(f"{name}.{label}", float(margin(*given)), gap(*given), 1e-9)
+            found = margin(*given)
+            yield same_number(f"{name}.{label}", found, gap(*given), 1e-9)
 
 
 # Positions of one coordinate [m], window, bound [m], and whether the object is at rest

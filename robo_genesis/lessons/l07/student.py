@@ -59,19 +59,19 @@ def compared(
     """
     written = not isinstance(refused(lambda: ladder({})), NotImplementedError)
     lines, failed = [f"{'rung':10} {'yours':8} course"], []
-    judged = [rung for rung, of in results.items() if written and of is not None]
+    mine = {n: dict(of) for n, of in results.items() if written and of is not None}
     for rung, values in facts.values.items():
-        mine = "-"
-        if rung in judged:
-            mine = "FAILS" if ladder({rung: results[rung]}) else "passes"
+        own = "-"
+        if rung in mine:
+            own = "FAILS" if ladder({rung: dict(mine[rung])}) else "passes"
         if not rungs.passed(values):
             failed.append(rung)
-        lines.append(f"{rung:10} {mine:8} {'FAILS' if rung in failed else 'passes'}")
-    if len(judged) < len(results):
+        lines.append(f"{rung:10} {own:8} {'FAILS' if rung in failed else 'passes'}")
+    if len(mine) < len(facts.values):
         lines.append("Your functions do not judge all rungs yet.")
     else:
         lines.append(
-            f"The first rung that fails by your ladder: {ladder(results) or 'none'}."
+            f"The first rung that fails by your ladder: {ladder(mine) or 'none'}."
         )
     lines.append(f"The scene {outcome(failed)}")
     return "\n".join(lines)

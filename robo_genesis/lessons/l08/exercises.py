@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Findings, equal, within
+from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.exercises import (
     Examples,
     Written,
@@ -15,6 +15,7 @@ from robo_genesis.core.exercises import (
     compared,
     refused,
     same_array,
+    same_number,
 )
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
@@ -80,10 +81,10 @@ def ends(ended: Written) -> Findings:
             right = expected[of_fingers] and not early
             rows.append((*state.values(), goal[:ARM], of_fingers, since, right))
             label = f"{name}.of_fingers_{of_fingers}_since_{since}"
-            yield equal(label, bool(ended(*rows[-1][:-1])), right)
+            yield equal(label, ended(*rows[-1][:-1]), right)
     *batch, answers = (np.array(column) for column in zip(*rows, strict=True))
     found = np.asarray(ended(*batch))
-    yield equal("batch.shape", list(found.shape), [len(rows)])
+    yield equal("batch.shape", str(found.shape), str((len(rows),)))
     yield equal("batch.wrong_rows", np.flatnonzero(found != answers).tolist(), [])
 
 
@@ -154,7 +155,7 @@ def episode(*faults: Any) -> list[Any]:
 def ladders(rungs: Written) -> Findings:
     """Check `rungs(phase, force, pos, touches, lowest, rim)`: rungs before the first failure."""
     for name, (*faults, expected) in EPISODES.items():
-        yield equal(name, int(rungs(*episode(*faults))), expected)
+        yield equal(name, rungs(*episode(*faults)), expected)
 
 
 RATES = ((0, 1), (1, 1), (0, 64), (64, 64), (1, 3), (45, 64), (7, 1000))
@@ -189,5 +190,5 @@ def sliding(creep: Written) -> Findings:
         t, down = np.array(times), np.array(slid)
         right = float(np.polyfit(t - t.mean(), down, 1)[0])
         for moves, hand in (("at_rest", 0 * t + 0.3), ("moving", 0.3 + 0.2 * t**2)):
-            found = float(creep(hand, hand - 0.1 - down, t))
-            yield within(f"{name}.hand_{moves}_m_s", found, right, 1e-9)
+            found = creep(hand, hand - 0.1 - down, t)
+            yield same_number(f"{name}.hand_{moves}_m_s", found, right, 1e-9)

@@ -14,6 +14,10 @@ def not_written(*given, **named):
     raise NotImplementedError("write it")
 
 
+def nothing(*given):
+    pass
+
+
 def test_the_lab_passes_its_checks(lab):
     assert [one for one in lab.outcomes() if not one.passed] == []
 
@@ -65,11 +69,13 @@ def test_the_student_s_numbers_stand_beside_the_course_s(lab):
 
 def test_what_is_missing_is_named(lab, capsys):
     given = lab.traces["exact"], EXACT
-    assert "held            -      64" in student.counted(not_written, *given)
+    assert "held            -      64" in student.counted(nothing, *given)
     assert "yours   -" in student.rate(not_written, SOLVED["wilson"], *given)
     assert "yours   -" in student.rate(SOLVED["rungs"], not_written, *given)
     assert "yours   -" in student.slide(not_written, *given)
-    assert capsys.readouterr().out.count("write it") == 4
+    said = capsys.readouterr().out
+    assert said.count("nothing returns nothing") == 1
+    assert said.count("not_written returns nothing") == 3
 
 
 def test_the_student_s_expert_is_the_course_s():
