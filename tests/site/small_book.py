@@ -27,8 +27,10 @@ MAP = [
     },
 ]
 CARDS = "```{course-map}\n```\n"
-STATES = paragraphs(
+FEATURED = paragraphs(
     "{lesson}`The second <l02/lecture>` and {lesson}`the\nthird <l03/lab>`.",
+    ":::{featured} L04\nFour was measured.\n:::",
+    ":::{featured} L05\nFive was measured.\n:::",
     "```{course-status}\n```",
     "```{course-measured}\n```",
 )
@@ -93,7 +95,7 @@ def render_small_book(folder: Path) -> Path:
         "cards": f"Map\n\n{CARDS}",
     }
     pages |= {
-        "states": f"Map\n\n{STATES}",
+        "featured": f"Map\n\n{FEATURED}",
         "lessons/l06-six/lecture": f"Six\n\n{WORDS}",
     }
     pages |= {

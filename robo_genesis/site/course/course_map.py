@@ -1,8 +1,9 @@
-"""The lessons of the course, from `course_map.yml`: the map, and links to lessons.
+"""The lessons of the course, from `course_map.yml`: the map, links to lessons, what needs one.
 
 | in a page | shows |
 |---|---|
 | {course-map} (directive) | published lessons as cards, planned ones as a list of titles |
+| {featured} L04 (directive) | its content, while the map has this lesson published |
 | {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
 
@@ -78,6 +79,18 @@ class MapDirective(PageDirective):
         return lessons
 
 
+class Featured(MapDirective):
+    """Show content about one lesson while the map has it published, otherwise nothing."""
+
+    required_arguments = 1
+    has_content = True
+
+    def shown(self) -> list[nodes.Node]:
+        """Return the content; without the lesson it is not even parsed."""
+        published = [lesson.id for lesson in self.lessons() if lesson.page]
+        return self.parse_content_to_nodes() if self.arguments[0] in published else []
+
+
 class LessonLink(PageRole, ReferenceRole):
     """Link to a page of a lesson; without that lesson, the words alone remain."""
 
@@ -143,5 +156,6 @@ def times(
 
 def setup(app: Sphinx) -> None:
     """Register the directives and the role."""
+    app.add_directive("featured", Featured)
     app.add_role("lesson", LessonLink())
     app.add_directive("course-map", CourseMap)

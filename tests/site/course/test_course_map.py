@@ -91,11 +91,12 @@ def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(
     assert not planned.select("a")
 
 
-def test_lessons_that_are_absent_leave_words(small_site):
-    article = parsed(small_site, "states").article
-    _, first, *_ = article.select("section > p")
+def test_lessons_that_are_absent_leave_words_and_no_content(small_site):
+    article = parsed(small_site, "featured").article
+    _, first, second, *_ = article.select("section > p")
     assert first.get_text() == "The second and the third."
     assert [a["href"] for a in first.select("a")] == ["lessons/l02-two/lecture.html"]
+    assert second.get_text() == "Four was measured."
     assert [b.get_text() for b in article.select("section > p > strong")] == [
         "L04 ",
         "L06 ",
