@@ -58,10 +58,13 @@ def shape_rows(entities: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def two_geometries(run: Experiment) -> Findings:
     """The box collides with what is drawn; the duck collides with fewer triangles than
-    are drawn, the tray with several pieces for one drawn mesh.
+    are drawn, the tray with several pieces for one drawn mesh. The hammer has two.
     """
     found = run.readings[SHAPES]
+    for name, geoms in (("box", 1), ("hammer", 2)):
+        yield equal(f"{name}_pieces", found[f"{name}_pieces"], geoms)
     yield equal("box_felt", found["box_felt"], found["box_seen"])
+    yield above("duck_pieces", found["duck_pieces"], 0)
     yield below("duck_felt", found["duck_felt"], found["duck_seen"])
     yield above("tray_pieces", found["tray_pieces"], 1)
 

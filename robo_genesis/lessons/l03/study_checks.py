@@ -234,15 +234,15 @@ def one_stop_converges(run: Experiment) -> Findings:
 
 
 def engines_land_alike(run: Experiment) -> Findings:
-    """With equal settings, cubes land in MuJoCo as in the engine, at every shared sample."""
+    """With equal settings, cubes land in MuJoCo as in the engine: place and orientation
+    agree at every shared sample.
+    """
     for name, other in study_spec.ENGINE_PAIRS.items():
         if name not in checks.measured(run, SlideMetrics):
-            one, two = aligned(run.traces[name], run.traces[other], "link_pos")
-            apart, label = (
-                np.abs(one - two)[:, 2].max(),
-                f"{name}.distance_to_{other}_m",
-            )
-            yield at_most(label, apart, study_spec.ENGINES_APART)
+            for array in ("link_pos", "link_quat"):
+                one, two = aligned(run.traces[name], run.traces[other], array)
+                apart, label = np.abs(one - two).max(), f"{name}.{array}_in_{other}"
+                yield at_most(label, apart, study_spec.ENGINES_APART)
 
 
 def engines_hop_alike(run: Experiment) -> Findings:

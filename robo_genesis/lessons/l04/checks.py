@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 
 from robo_genesis.core import checks
-from robo_genesis.core.check_spec import LIMIT_TOLERANCE, READ_BACK
+from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.checks import (
     Finding,
     Findings,
@@ -80,14 +80,6 @@ def one_factor(run: Experiment) -> Findings:
     for (one, other), expected in spec.ONE_FACTOR.items():
         found = differences(spec.CASES[one], spec.CASES[other], run.joints)
         yield equal(f"difference of {one} and {other}", found, expected, recorded=False)
-
-
-def saturation(run: Experiment) -> Findings:
-    """The limit reads back as it was set; saturated samples are counted against it."""
-    for name, case in spec.CASES.items():
-        limit = run.traces[name].effort_limit
-        share = np.abs(limit / case.effort_limit - 1)
-        yield at_most(f"{name}.limit_read_back_share", share.max(), READ_BACK)
 
 
 # The compared cases, gravity and a longer window
@@ -194,7 +186,6 @@ WITHOUT_CAMERA = (
     stamps,
     same_start,
     one_factor,
-    saturation,
     laws_of_motion,
 )
 CHECKS = (*WITHOUT_CAMERA, posture)

@@ -8,7 +8,7 @@ from robo_genesis.lessons.l02 import life_cycle, spec, trials
 from robo_genesis.lessons.l02.pages import LECTURE
 
 COUNTED = dict.fromkeys(spec.COUNTS, 12) | {"duck_seen": 3534, "duck_felt": 500}
-COUNTED |= {"tray_seen": 260, "tray_felt": 344}
+COUNTED |= {"tray_seen": 260, "tray_felt": 344, "box_pieces": 1, "hammer_pieces": 2}
 
 
 @pytest.fixture(scope="session")

@@ -64,6 +64,10 @@ SPOILED = {
         reading("shapes", "duck_felt", 3534),
         {"two_geometries"},
     ),
+    "a duck that nothing touches": (
+        reading("shapes", "duck_pieces", 0),
+        {"two_geometries"},
+    ),
     "a heavier box that falls faster": (
         reading("further", "heavier", 0.21),
         {"further_falls"},

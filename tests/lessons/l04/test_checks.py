@@ -65,7 +65,6 @@ SPOILERS = {
         trace("G3", link_pos=put((0, 1, 2), 0.6)),
     ],
     "one_factor": [case("G3", kp=put(0, 4501.0)), case("G2", seed=1)],
-    "saturation": [trace("G1", effort_limit=put(0, 90.0))],
     "posture": [frames()],
     "claimed_orders": [overshoot("G3", 0.1)],
     "clipped_start": [
