@@ -19,7 +19,7 @@ from .camera.frames import FrameError, require_frame
 
 # A robot or a body that moves changes a larger share of the pixels than this, and moves
 # farther [m].
-CHANGED, MOVED = 1e-3, 1e-3
+CHANGED, MOVED = 5e-3, 1e-3
 
 
 def structure(run: Experiment) -> Findings:
@@ -56,8 +56,9 @@ def start(run: Experiment) -> Findings:
 
 
 def posture(run: Experiment) -> Findings:
-    """Two camera frames that differ in more than one pixel of a thousand, or a schematic
-    whose links moved by more than 1 mm, show both ends of the run.
+    """Two camera frames that differ, or a schematic whose links moved, show both ends of the run.
+
+    More than 0.5 % of the pixels differ, or a link moved by more than 1 mm.
     """
     views = {*run.page.frames} - {"initial", "final"} if run.rendered else set()
     frames = {name: frame for name, frame in run.frames.items() if name not in views}

@@ -1,11 +1,8 @@
 """Named checks of a step experiment, in the lab and in the lecture."""
 
-from itertools import product
-
 import numpy as np
 
 from robo_genesis.core import checks
-from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.checks import (
     Finding,
     Findings,
@@ -43,17 +40,6 @@ def mapping(run: Experiment) -> Findings:
         distinct = len(set(indices)) == len(JOINT_NAMES)
         expected = f"nine different indices below {model[what]}"
         yield Finding(f"local_{what}", indices, bool(distinct and inside), expected)
-
-
-def target_limits(run: Experiment) -> Findings:
-    """Every start and target lies within the model's limits."""
-    for case, name in product(spec.CASES, ("q_start", "q_target")):
-        q = getattr(spec.CASES[case], name)
-        beyond = np.maximum(run.joints.lower - q, q - run.joints.upper)
-        worst = run.joints.names[np.argmax(beyond)]
-        yield at_most(
-            f"{case}.{name}.beyond_limit_of_{worst}", beyond.max(), LIMIT_TOLERANCE
-        )
 
 
 def baseline_approaches(run: Experiment) -> Findings:
@@ -181,7 +167,6 @@ def laws_of_motion(run: Experiment) -> Findings:
 
 WITHOUT_CAMERA = (
     mapping,
-    target_limits,
     baseline_approaches,
     stamps,
     same_start,

@@ -57,7 +57,6 @@ SPOILERS = {
         joints(types=("SPHERICAL",) * 9),
         joints(dofs_idx_local=np.arange(9) // 2),
     ],
-    "target_limits": [joints(upper=put(3, -1.9))],
     "baseline_approaches": [metric("baseline", final_error=0.25)],
     "stamps": [case("baseline", steps=119)],
     "same_start": [

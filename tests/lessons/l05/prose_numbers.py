@@ -15,6 +15,7 @@ CONFIGURED = {
     "near limit that cuts the hand [m]": spec.CUT[0],
     "far limit that cuts the floor [m]": spec.CUT[1],
     "fingertips from the hand's origin [m]": kinematics.TIP,
+    "height of a target near the border of the reach [m]": 0.143,
     "depth of the sag, rounded for a calculation by hand [m]": 1.7,
     "planar arm, first link [m]": 0.4,
     "planar arm, second link [m]": 0.3,

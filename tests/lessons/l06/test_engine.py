@@ -62,6 +62,14 @@ def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
     assert set_link_mass(four.robot, "hand", [0.73], [1]) == pytest.approx([0.73] * 4)
 
 
+def test_friction_is_that_of_one_environment_until_a_reset(four):
+    four.robot.set_friction_ratio([[0.5]], [four.robot.n_links - 1], envs_idx=[2])
+    ratio = four.scene.rigid_solver.get_geoms_friction_ratio
+    assert to_numpy(ratio())[:, -1].tolist() == [1, 1, 0.5, 1]
+    four.scene.reset()
+    assert (to_numpy(ratio()) == 1).all()
+
+
 @pytest.mark.parametrize("size", [2, 64])
 def test_rows_of_batches_of_other_sizes_agree_within_the_bounds(
     real_engine, measured, size
