@@ -17,8 +17,9 @@ options = $(foreach name,$(1),$(if $($(name)),--$(shell tr A-Z_ a-z- <<< $(name)
 
 # The code under test is this checkout's, whatever environment runs it.
 export PYTHONPATH := $(CURDIR)
-# A build starts some fifty processes: each would compile all modules of the engine again.
-unexport PYTHONDONTWRITEBYTECODE
+# A build starts some fifty processes: each would compile all modules of the engine again. The claims
+# of checks are docstrings, which the second removes.
+unexport PYTHONDONTWRITEBYTECODE PYTHONOPTIMIZE
 
 .PHONY: help book execute evidence evidence-rocm verify compare test test-all lint lesson serve live \
   home-picture lock repin clean distclean

@@ -19,6 +19,11 @@ from robo_genesis.pipeline.command import TIMEOUT, run
 if TYPE_CHECKING:
     from robo_genesis.pipeline.stages import Build  # loads slowly
 
+if sys.flags.optimize > 1:
+    sys.exit(
+        "PYTHONOPTIMIZE=2 removes docstrings, which are the claims of checks: unset it."
+    )
+
 
 def book(options: Namespace) -> Sequence[str] | int:
     """Measure every lesson on CPU, verify, render and check the site."""
@@ -211,7 +216,7 @@ COMMANDS: dict[Callable[..., Any], tuple[str, dict[str, dict[str, Any]]]] = {
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
     top = argparse.ArgumentParser(
-        "python -m robo_genesis", description=(__doc__ or "").splitlines()[0]
+        "python -m robo_genesis", description=str(__doc__).splitlines()[0]
     )
     commands = top.add_subparsers(required=True, metavar="command")
     for function, (done, described) in COMMANDS.items():

@@ -83,7 +83,10 @@ def report_of(steps: Sequence[Mapping[str, str]], engine: Any = None) -> dict[st
             (step["step"] for step in steps if step["state"] == "broken"), None
         ),
         "steps": steps,
-        "machine": machine(engine),
+        "machine": {
+            "python": platform.python_version(),
+            "system": platform.platform(),
+        },
         "versions": {name: project.installed_version(name) for name in PACKAGES},
         "environment": project.environment_contract(),
         "warnings": engine.log.warnings if engine else [],
@@ -129,7 +132,8 @@ def reports() -> Iterator[dict[str, Any]]:
         encoding="utf8",
         errors="replace",
     ) as process:
-        signal.signal(signal.SIGINT, lambda *_: process.send_signal(signal.SIGINT))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda sent, _: process.send_signal(sent))
         for line in process.stdout or ():
             text, mark, sent = line.partition(MARK)
             if mark:
@@ -138,30 +142,36 @@ def reports() -> Iterator[dict[str, Any]]:
                 last_lines.append(text.strip())
     left = [step for step in report["steps"] if step["state"] == "not run"]
     if left and not report["broken"]:
-        status, last = process.returncode, last_lines
-        if status >= 0:
-            words = (
-                f"{last[-1] if last else f'Status {status}'}. {project.import_advice()}"
-            )
-        else:
+        status = process.returncode
+        words = f"{[f'Status {status}', *last_lines][-1]}. {project.import_advice()}"
+        if status < 0:
             folders = " and ".join(project.cache_folders().values())
-            words = f"Ended by {ended(status, folders)}. {' '.join(last)}"
+            words = f"Ended by {ended(status, folders)}. {' '.join(last_lines)}"
         left[0] |= {"state": "broken", "found": words}
         yield report | {"broken": left[0]["step"]}
 
 
-def machine(engine: Any) -> dict[str, str]:
-    """Return the facts that the manifest of a run has too; fewer if the engine did not start."""
-    names = {"engine": project.ENGINE, "quadrants": "quadrants", "torch": "torch"}
-    facts = {
-        fact: project.installed_version(name) or "not installed"
-        for fact, name in names.items()
+def with_cause(found: str) -> str:
+    """Return what a broken step found, with the variables that may be its cause.
+
+    Folders of PYTHONPATH come before the packages of the course, and those of
+    LD_LIBRARY_PATH before the libraries of the system.
+    """
+    missed = {
+        "PYTHONPATH": {*os.listdir(project.PACKAGES)} - {"__pycache__"},
+        "LD_LIBRARY_PATH": {*re.findall(r"[^\s/]+\.so[.\d]*", found)},
     }
-    facts |= {"python": platform.python_version(), "system": platform.platform()}
-    if engine:
-        backend = engine.backend
-        facts |= {"backend": backend.actual, "device": backend.device_name}
-    return facts
+    causes = [
+        f"{name} names {folder}, which has another {min(others)}"
+        for name, own in missed.items()
+        for folder in os.environ.get(name, "").split(os.pathsep)
+        if os.path.isdir(folder) and folder != str(project.ROOT)
+        if (others := own.intersection(os.listdir(folder)))
+    ]
+    if not causes:
+        return found
+    found = found.replace(project.import_advice(), "").rstrip(". ")
+    return f"{found}. {'. '.join(causes)}. Unset the variable, and run this again."
 
 
 def shareable(text: str) -> str:
@@ -186,13 +196,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print("The first start of the engine takes minutes.", file=sys.stderr)
     written = ""
     for report in reports():
+        for step in report["steps"]:
+            if step["state"] == "broken":
+                step["found"] = with_cause(step["found"])
         if not options.json:
             text = table(report["steps"])
             print(text[len(written) :], end="", flush=True)
             written = text
     if options.json:
         print(shareable(json.dumps(report, indent=2)))
-    return int(any(step["state"] != "ok" for step in report["steps"]))
+    return int(not report["ok"])
 
 
 if __name__ == "__main__":

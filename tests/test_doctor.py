@@ -12,6 +12,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+import psutil
 import pytest
 
 from robo_genesis import doctor
@@ -258,6 +259,10 @@ MACHINES = [
     ({"ROBO_GENESIS_BACKEND": "µ", "PYTHONIOENCODING": "ascii"}, {}, "backend", "\\xb5 auto, cpu"),
     ({}, {GENESIS: "import genesis\ngenesis.cpu"}, "backend", "genesis.py rename"),
     ({}, {"random.py": "raise SystemExit"}, "version", "random.py rename"),
+    ({"PYTHONPATH": "ros"}, {"ros/numpy/__init__.py": "raise ImportError"}, "version",
+     "PYTHONPATH names ros, another numpy. Unset"),
+    ({"LD_LIBRARY_PATH": "old"}, {"old/libEGL.so.1": "no library"}, "libraries",
+     "LD_LIBRARY_PATH names old, another libEGL.so.1. Unset"),
     ({}, {GENESIS: DIES("SIGKILL")}, "backend", "SIGKILL memory"),
     ({}, {GENESIS: DIES("SIGBUS")}, "backend", "SIGBUS disk kernels"),
 ]  # fmt: skip
@@ -277,17 +282,20 @@ def test_a_machine_with_one_fault_is_named_with_its_step(
     assert (doctor.returncode, error) == (1, MINUTES)
 
 
-def test_ctrl_c_ends_the_step_that_was_begun(tmp_path):
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_an_end_by_signal_ends_the_step_that_was_begun(tmp_path, sent):
     (tmp_path / GENESIS).write_text("import time\ntime.sleep(60)")
-    doctor = started(tmp_path)
+    process = started(tmp_path)
     begun = ""
     while not begun.endswith(" 3/11  backend  "):  # written before the step ends
-        begun += doctor.stdout.read(1)
-    doctor.send_signal(signal.SIGINT)
-    said, error = doctor.communicate()
+        begun += process.stdout.read(1)
+    below = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(sent)
+    said, error = process.communicate()
     assert "DOCTOR: step 3, backend, is broken" in said
-    assert "SIGINT" in said
-    assert (doctor.returncode, error) == (1, MINUTES)
+    assert sent.name in said
+    assert (process.returncode, error) == (1, MINUTES)
+    assert len(below) == len(psutil.wait_procs(below, timeout=5)[0]) == 1
 
 
 def test_a_python_without_packages_is_named_with_the_right_one(tmp_path):

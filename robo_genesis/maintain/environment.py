@@ -46,8 +46,8 @@ def install() -> int:
 def torch_index() -> str:
     """Return the address of an index with Torch for the CPU, empty if it cannot be reached."""
     config = Path("book/_config.yml").read_text("utf8")
-    configured = re.search(r"torch_index: (\S+)", config)
-    index = os.environ.get("TORCH_INDEX") or (configured[1] if configured else "")
+    configured = re.findall(r"torch_index: (\S+)", config)
+    index = os.environ.get("TORCH_INDEX") or "".join(configured)
     if not index:
         return ""
     try:

@@ -30,7 +30,15 @@ def add_lesson(root: Path, lesson: str) -> list[str]:
         ProjectError: the name is not valid, or the lesson exists.
         OSError: a file cannot be written. A next call names the folders that were made.
     """
-    require_new(root, lesson)
+    if not re.fullmatch(r"l\d\d", lesson):
+        raise ProjectError(
+            f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07."
+        )
+    if used := sorted(root.glob(f"*/lessons/{lesson}*")):
+        names = ", ".join(path.relative_to(root).as_posix() for path in used)
+        raise ProjectError(
+            f"Lesson {lesson} exists: {names}. Give another number, or remove it."
+        )
     toc, course_map = root / "book" / "_toc.yml", root / "book" / "course_map.yml"
     files = lesson_files(root, lesson)
     files[toc] = with_chapter(toc.read_text("utf8"), lesson)
@@ -43,23 +51,6 @@ def add_lesson(root: Path, lesson: str) -> list[str]:
         *written,
         "Next: edit these files, then `make book`.",
     ]
-
-
-def require_new(root: Path, lesson: str) -> None:
-    """Refuse a name that is not valid or is in use.
-
-    Raises:
-        ProjectError: the message says what is valid.
-    """
-    if not re.fullmatch(r"l\d\d", lesson):
-        raise ProjectError(
-            f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07."
-        )
-    if used := sorted(root.glob(f"*/lessons/{lesson}*")):
-        names = ", ".join(path.relative_to(root).as_posix() for path in used)
-        raise ProjectError(
-            f"Lesson {lesson} exists: {names}. Give another number, or remove it."
-        )
 
 
 def lesson_files(root: Path, lesson: str) -> dict[Path, str]:

@@ -137,14 +137,26 @@ def prepare(
     Args:
         build: where book and caches are.
         store: a folder of the caches.
+
+    Raises:
+        ProjectError: pin, lock and installed engine are not of one version, or a page
+            breaks a rule.
     """
     settle_below(build.book / "evidence")
     settle_below(build.cache / project.STORE)
     settle((build.to or build.book) / project.PUBLISHED)
     project.remove_stale_kernel_lock(build.cache)
-    engine = project.require_pinned_engine()
+    pin, lock = project.engine_pin(), project.ROOT / "requirements.lock"
+    project.lock_digest()
+    if f"{project.ENGINE}=={pin}\n" not in lock.read_text("utf8"):
+        raise BuildError(
+            f"pyproject.toml pins {project.ENGINE} {pin}, but {lock.name} has another version. "
+            "`make lock` makes the lock follow the pin. To try another version, restore both "
+            "files; `make repin GENESIS=version` changes both."
+        )
+    project.require_pinned_engine()
     pages = find_pages(build.book)
-    return engine, pages, places(pages, build.cache / store)
+    return pin, pages, places(pages, build.cache / store)
 
 
 def execute(

@@ -67,7 +67,7 @@ def root(tmp_path, monkeypatch) -> Path:
     (root / "requirements.lock").write_text(LOCK.format(OLD))
     (root / "failed").write_text(FAILED)
     (root / ".gitignore").write_text("/.cache\n/.venv\n/book/_build\n")
-    (root / "book" / "index.md").write_text("committed\n")
+    (root / "book" / "index.md").write_text("# Committed\n")
     (root / "book" / "_toc.yml").write_text("format: jb-book\nroot: index\n")
     commit(root)
     return root

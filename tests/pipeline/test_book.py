@@ -23,13 +23,14 @@ from tiny_book import (
     wait,
 )
 
-from robo_genesis.core.project import ProjectError
+from robo_genesis.core import project
+from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.pages.book import PageError
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
 from robo_genesis.pipeline.stages import Build, BuildError, build_lock, run_build
 
-LAB = lab("cpu")
+LAB, PIN = lab("cpu"), project.engine_pin()
 
 
 def build(folder: Path, said: list[str] | None = None, **settings) -> list[str]:
@@ -117,10 +118,10 @@ def test_a_release_requires_evidence(built, monkeypatch):
             "lab: the bundle .* is refused: metrics: metrics.js",
         ),
         (
-            "# A\n\n<img alt='a map' src='https://example.org/a.png'>\n",
+            "# A\n\nA word[^note].\n",
             {},
             BuildError,
-            "third p",
+            "leftovers: lab",
         ),
     ],
     ids=[
@@ -182,6 +183,27 @@ def test_a_build_repairs_what_a_kill_left_before_it_reads_a_page(tmp_path):
     assert not stale.exists()
     assert stored.is_dir()
     assert (book / "_build/html/index.html").read_text() == "the old site"
+
+
+def test_a_lock_that_does_not_follow_the_pin_is_named_before_a_page(
+    tmp_path, monkeypatch
+):
+    make_book(tmp_path, page=notebook(cell("1")))
+    said: list[str] = []
+    lock = (ROOT / "requirements.lock").read_text()
+    (tmp_path / "requirements.lock").write_text(lock.replace(f"=={PIN}", "==9.8.7"))
+    monkeypatch.setattr(project, "ROOT", tmp_path)
+    monkeypatch.setattr(project, "engine_pin", lambda: PIN)
+    with pytest.raises(
+        BuildError, match=f"pins genesis-world {PIN}, but .* `make lock`"
+    ):
+        build(tmp_path, said)
+    assert said == []
+
+
+def test_python_without_docstrings_is_refused_with_its_variable(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONOPTIMIZE", "2")
+    assert fails("book", tmp_path).startswith("PYTHONOPTIMIZE=2 removes docstrings")
 
 
 def test_a_cache_that_cannot_be_written_is_named(tmp_path, no_file):

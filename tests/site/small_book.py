@@ -88,7 +88,7 @@ def render_small_book(folder: Path) -> Path:
     """Render the book and return the folder of its site."""
     for name in ("l02-two", "l06-six"):
         (folder / "book" / "lessons" / name).mkdir(parents=True)
-    (folder / "book" / "lessons" / "l06-six" / "worksheet.md").touch()
+    (folder / "book" / "lessons" / "l06-six" / "worksheet.md").write_text("# Sheet\n")
     pages = {
         "page": "Page",
         "lessons/l02-two/lecture": "Two",

@@ -52,10 +52,5 @@ def all_bundles(book: Path) -> Iterator[tuple[str, Status]]:
 
 def line(place: str, status: Status) -> str:
     """Return one bundle's line."""
-    text = status.reason
-    if not text and status.manifest:
-        run = status.manifest
-        text = (
-            f"run {run.run_id[:8]} of {run.started[:10]}, Genesis {run.engine.version}"
-        )
-    return printable(f"{place:14} {status.backend:8} {status.state:12} {text}")
+    why = status.reason or status.sentence
+    return printable(f"{place:14} {status.backend:8} {status.state:12} {why}")

@@ -4,21 +4,18 @@ import os
 import shutil
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from robo_genesis.core.files import replaced
 from robo_genesis.core.project import PUBLISHED
+from robo_genesis.pipeline.pages.results import PageResult
 
 from .archive import pack
-
-if TYPE_CHECKING:  # commands that need only names load no Jupyter
-    from robo_genesis.pipeline.pages.results import PageResult
 
 
 def publish(
     book: Path,
     rendered: Path,
-    results: Iterable["PageResult"],
+    results: Iterable[PageResult],
     finish: Callable[[Path], None],
 ) -> Path:
     """Replace the published site and its pages' bundles by new ones, which everybody may read.

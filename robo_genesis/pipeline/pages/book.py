@@ -1,6 +1,7 @@
 """The executed pages of the book and their code cells."""
 
 import pickle
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 from robo_genesis.core.files import derived, json_digest
 from robo_genesis.core.project import ROOT, ProjectError
 
-from .page_rules import declared, page_problems
+from .page_rules import declared, page_problems, text_problems
 from .syntax import Code, read_code
 
 # The name of a lesson's lab, and the file with its work sheet.
@@ -51,9 +52,7 @@ class Page:
 
         From there on it measures time: no other page is executed meanwhile.
         """
-        return next(
-            (n for n, tags in enumerate(self._tags(), 1) if "alone" in tags), None
-        )
+        return next(self._tagged("alone"), None)
 
     @property
     def compiles_first(self) -> int:
@@ -62,13 +61,13 @@ class Page:
         Where no kernel is compiled yet, no other page starts before the end of this
         cell.
         """
-        tagged = (
-            n for n, tags in enumerate(self._tags(), 1) if "compiles-first" in tags
-        )
-        return max(tagged, default=0)
+        return max(self._tagged("compiles-first"), default=0)
 
-    def _tags(self) -> list[list[str]]:
-        return [cell.metadata.get("tags", []) for cell in code_cells(self.notebook)]
+    def _tagged(self, tag: str) -> Iterator[int]:
+        """Yield the numbers of the code cells with a tag."""
+        for number, cell in enumerate(code_cells(self.notebook), start=1):
+            if tag in cell.metadata.get("tags", []):
+                yield number
 
     @property
     def code(self) -> Code:
@@ -86,28 +85,30 @@ def find_pages(book: Path) -> list[Page]:
         The MyST text notebooks among the pages that the table of contents names.
 
     Raises:
-        PageError: naming file, line and cure of each problem of the book's pages.
+        PageError: naming file, line and cure of each problem of the book's pages and
+            work sheets.
     """
     pages: list[Page] = []
     problems: list[str] = []
     measuring: dict[tuple[str, str], Path] = {}
-    for name, path in page_files(book).items():
+    sheets = {path.as_posix(): path for path in book.glob(f"*/*/{WORK_SHEET}")}
+    for name, path in (page_files(book) | sheets).items():
         try:
             notebook = read_notebook(path)
         except PageError as error:
             problems.append(str(error))
             continue
-        if notebook is None:
-            continue
-        found = [*page_problems(notebook)]
-        if measures := declared(notebook):
-            other = measuring.setdefault(measures, path)
-            if other != path:
-                found.append(
-                    (1, f"it declares the lesson and page that {other} declares.")
-                )
+        found = [*text_problems(path)]
+        if notebook:
+            found += page_problems(notebook)
+            if measures := declared(notebook):
+                other = measuring.setdefault(measures, path)
+                if other != path:
+                    found.append(
+                        (1, f"it declares the lesson and page that {other} declares.")
+                    )
+            pages.append(Page(name, path, notebook, *(measures or ())))
         problems += [f"{path}:{line}: {problem}" for line, problem in found]
-        pages.append(Page(name, path, notebook, *(measures or ())))
     if problems:
         raise PageError("\n".join(problems).replace(f"{ROOT}/", ""))
     return pages

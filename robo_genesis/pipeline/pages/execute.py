@@ -2,12 +2,14 @@
 
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from math import ceil
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
 
 from robo_genesis.core import project
+from robo_genesis.core.text import printable
 
 from .book import Page
 from .page_folder import PageRefused
@@ -89,31 +91,27 @@ def execute_pages(
     return [results[page.docname] for page in pages]
 
 
+@dataclass(slots=True)
 class Schedule:
-    """The pages that wait and those that run, each in a thread of its own."""
+    """The pages that wait and those that run, each in a thread of its own.
 
-    def __init__(
-        self,
-        waiting: list[PageRun],
-        first: PageRun | None,
-        jobs: int,
-        say: Say,
-    ) -> None:
-        """Start nothing yet.
+    `waiting` has them in the order in which they start, `first` the one that starts
+    before the others, if there is one. `jobs` run at once. `say` prints each event.
+    """
 
-        Args:
-            waiting: in the order in which they start.
-            first: the one that starts before the others, if there is one.
-            jobs: how many run at once.
-            say: prints each event.
-        """
-        self.waiting, self.first, self.jobs = waiting, first, jobs
-        self.say = say
-        self.running: dict[PageRun, Thread] = {}
-        # The number of pages that ended, what they should have taken and what they took.
-        self.ended, self.expected, self.elapsed = 0, 0.0, 0.0
-        # A run that ended with its result, or with None where it waits for its turn.
-        self.events: SimpleQueue[tuple[PageRun, PageResult | None]] = SimpleQueue()
+    waiting: list[PageRun]
+    first: PageRun | None
+    jobs: int
+    say: Say
+    running: dict[PageRun, Thread] = field(default_factory=dict)
+    # The number of pages that ended, what they should have taken and what they took.
+    ended: int = 0
+    expected: float = 0.0
+    elapsed: float = 0.0
+    # A run that ended with its result, or with None where it waits for its turn.
+    events: SimpleQueue[tuple[PageRun, PageResult | None]] = field(
+        default_factory=SimpleQueue
+    )
 
     def start_pages(self) -> None:
         """Start pages while there is room, unless one is alone."""
@@ -124,7 +122,8 @@ class Schedule:
             and not any(run.alone and not run.waits for run in self.running)
         ):
             run = self.waiting.pop(0)
-            self.say(run.page.docname, run.start_line)
+            cells = f"started: {len(run.page.code.sources)} cells, about {run.expected:.0f} s"
+            self.say(run.page.docname, f"{cells}; its log: {run.log}")
             self.running[run] = Thread(target=self._work, args=(run,), daemon=True)
             self.running[run].start()
 
@@ -148,8 +147,10 @@ class Schedule:
         self.ended += 1
         self.expected += run.expected
         self.elapsed += result.seconds
-        left = "" if result.failure else f"; {self.left}"
-        self.say(run.page.docname, result.ended + left)
+        more = f"; {self.left}"
+        if result.failure:
+            more = f": {printable(' '.join(str(result.failure).split()))}"
+        self.say(run.page.docname, f"{result.status} in {result.seconds:.0f} s{more}")
         return [result]
 
     @property

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from robo_genesis.core.project import BUILD_BACKEND, EXECUTED_PAGES
 from robo_genesis.evidence.bundle import Strict
+from robo_genesis.lessons import find_page
 
 from .book import code_cells
 from .page_folder import OUTPUTS, SECONDS, executed_cells
@@ -104,10 +105,17 @@ def cell_seconds(docname: str) -> list[float]:
 
 
 def measuring_page(docname: str) -> str:
-    """Return the lesson and page of an executed page: `l04/lab`, or a name without a bundle."""
+    """Return the lesson and page of an executed page: `l04/lab`.
+
+    Raises:
+        LookupError: the page leaves no bundle.
+    """
     pages, folder = page_index(), page_index().folders.get(docname)
-    return next(
-        (n for n, left in pages.outputs.items() if folder in left.parents), docname
+    for name, left in pages.outputs.items():
+        if folder in left.parents:
+            return name
+    raise LookupError(
+        f"{docname} measures nothing. Name another page first: `l04/lab near_coulomb`."
     )
 
 
@@ -115,8 +123,15 @@ def page_bundle(lesson_page: str) -> Path:
     """Return the folder of the bundle that a page's run of this build left.
 
     Args:
-        lesson_page: `l04/lab`. Without such a page in this build, the folder does not
+        lesson_page: `l04/lab`. If this build has no run of the page, the folder does not
             exist.
+
+    Raises:
+        LookupError: no lesson has such a page; the message lists the choices.
     """
+    outputs = page_index().outputs
     absent = Path(os.environ[EXECUTED_PAGES]).with_name("not executed") / lesson_page
-    return page_index().outputs.get(lesson_page, absent) / BUILD_BACKEND
+    if lesson_page not in outputs:
+        lesson, _, page = lesson_page.partition("/")
+        find_page(lesson, page)
+    return outputs.get(lesson_page, absent) / BUILD_BACKEND

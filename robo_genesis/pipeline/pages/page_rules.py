@@ -1,9 +1,13 @@
 """Rules for pages: each problem is named with its line before anything is executed.
 
-What MyST, Sphinx, YAML or nbformat report has no rule here.
+What MyST, Sphinx, YAML or nbformat report has no rule here. At a picture that Sphinx
+cannot read, or one above the title, it stops before it has named any other mistake.
 """
 
+import re
 from collections.abc import Iterator, Sequence
+from pathlib import Path
+from urllib.parse import unquote
 
 from nbformat import NotebookNode
 
@@ -31,10 +35,30 @@ TAGS = (
 # The options of a cell by its type; nothing else would notice a wrong option or tag.
 OPTIONS = {"code": ("tags", "mystnb", "prints", "expects"), "markdown": ("tags",)}
 
-DETAILS = (
-    "a site without solutions would show this <details>. Use a {dropdown} with "
-    f"`:class-container: {SOLUTION}` or `explanation`."
-)
+MOST_IN_PICTURE = 2_000_000  # Bytes of a picture in a page
+
+# What no text contains, and the cure. A picture is no problem if the first group of its
+# rule is a good file.
+TEXTS = {
+    r"(?im)<img|(?:!\[[^\]]*\](?:\[|\(\s*<?)|[`:]{3}\{(?:figure|image)\} +)([^)>\s]*)": (
+        "a picture is a file beside the page of at most "
+        f"{MOST_IN_PICTURE:,} bytes, as in `![words](picture.svg)`."
+    ),
+    # front matter, targets, comments and breaks between cells may precede the title
+    r"\A(?!(---\n(?s:.*?)\n---\n)?(?:\s|\(.+\)=\n|%.*\n|\+\+\+.*\n)*# ).*": (
+        "a page begins with its title: `# Words`."
+    ),
+    r"(?im)<!--|<details|^##+ +(?:\d+\. +)?(?:answers?|solutions?|worked examples?)\b|"
+    r"\{tab-set-code\}|"
+    r"\{tab-item\}.*\n(?!( *:.*\n)*? *:class-container:.*\b(?:solution|explanation)\b)": (
+        "a site without solutions would show this. A solution belongs in a {dropdown} or "
+        "{tab-item} with `:class-container: solution`, and a tab without one has the class "
+        "`explanation`. A comment begins with `% `, and another section has another heading."
+    ),
+    r"(?m)[\u200b-\u200f\u202a-\u202e\u2060-\u2069\ufeff]|^(<{7}|>{7}) ": (
+        "no reader should get this, an unseen character or a mark of a merge. Remove it."
+    ),
+}
 
 # A line, counted from 1, and what is wrong there, with its cure.
 Problem = tuple[int, str]
@@ -48,8 +72,17 @@ def page_problems(notebook: NotebookNode) -> Iterator[Problem]:
         yield 1, f"`{PACKAGE}: {given!r}` is not valid. Write {valid}."
     for cell, begin in zip(notebook.cells, notebook.metadata.source_map, strict=True):
         yield from ((max(begin, 1), problem) for problem in _of_metadata(cell))
-        if cell.cell_type == "markdown" and "<details" in cell.source:
-            yield begin, DETAILS
+
+
+def text_problems(path: Path) -> Iterator[Problem]:
+    """Yield what the text of a page may not contain."""
+    text = path.read_text("utf8")
+    for rule, cure in TEXTS.items():
+        for found in re.finditer(rule, text):
+            file = path.parent / unquote(found[1] or "")
+            if not file.is_file() or file.stat().st_size > MOST_IN_PICTURE:
+                line = text.count("\n", 0, found.start()) + 1
+                yield line, f"{found[0]!r}: {cure}"
 
 
 def first_line(lines: Sequence[str], notebook: NotebookNode, index: int) -> int:

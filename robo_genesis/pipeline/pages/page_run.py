@@ -61,14 +61,6 @@ class PageRun:
     kernel: kernels.CleanKernelManager | None = None
 
     @property
-    def start_line(self) -> str:
-        """What the line at the start of the run says."""
-        cells = len(self.page.code.sources)
-        return (
-            f"started: {cells} cells, about {self.expected:.0f} s; its log: {self.log}"
-        )
-
-    @property
     def state(self) -> str:
         """Cell and elapsed time of the run."""
         number = f"cell {self.cell} of {len(self.page.code.sources)}"

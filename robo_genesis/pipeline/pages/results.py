@@ -9,13 +9,12 @@ from nbformat import NotebookNode
 
 from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.palette import VALID_COLOURS, outside_the_palette
-from robo_genesis.core.text import printable
 from robo_genesis.pipeline.command import ANSI
 
 from .book import Page, code_cells
 from .guards import contradicted
 from .page_folder import OUTPUTS, find_bundle
-from .page_rules import first_line
+from .page_rules import MOST_IN_PICTURE, first_line
 
 LOG_LINES = 15
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
@@ -30,7 +29,7 @@ INSTEAD = (
 TAG_IT = (
     "Tag it figure, and describe the picture in the option `mystnb: {image: {alt: …}}`."
 )
-MOST_LETTERS, MOST_IN_PICTURE = 100_000, 2_000_000
+MOST_LETTERS = 100_000
 ANEW = (
     "It differs in each run, or is a command for a terminal. Print names and values; a semicolon "
     "at the end of the last line hides the value of a call."
@@ -83,16 +82,6 @@ class PageResult:
     def bundle(self) -> Path | None:
         """The evidence bundle that the page left, None if it declares none."""
         return find_bundle(self.folder / OUTPUTS)
-
-    @property
-    def ended(self) -> str:
-        """What the line at its end says; a failure in one line."""
-        why = (
-            f": {printable(' '.join(str(self.failure).split()))}"
-            if self.failure
-            else ""
-        )
-        return f"{self.status} in {self.seconds:.0f} s{why}"
 
 
 def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:

@@ -165,8 +165,7 @@ def _record_lab(
     place = recording.evidence / lesson / actual
     assert result.bundle is not None  # a lab without a bundle has failed
     put(result.bundle, place)
-    passed = sum(check.passed for check in manifest.checks)
-    checks = f"{passed} of {len(manifest.checks)} checks"
-    words = printable(f"recorded: {place}, {checks}, {manifest.backend.device_name}")
+    facts = f"{manifest.passed} checks, {manifest.backend.device_name}"
+    words = printable(f"recorded: {place}, {facts}")
     unclean = manifest.git is None or manifest.git.dirty
     return words + NO_COMMIT.format(lesson) * unclean

@@ -10,7 +10,7 @@ from robo_genesis.core.scene import FloatArray
 
 from .franka import FRANKA
 from .joints import JointMap, require_whole, to_numpy
-from .kinematics import Pose, accepted, distances, hand_pose, rotate
+from .kinematics import accepted, distances, fingertip, hand_pose
 from .model import RobotModel
 
 END_EFFECTOR = FRANKA.hand
@@ -113,14 +113,7 @@ def solve_ik(
 
 def tip_height(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:
     """Return the height (…) of the ends of a robot's fingers at joint positions (…, d) [m]."""
-    if of == FRANKA:
-        pose = hand_pose(q)
-    else:
-        from robo_genesis.sim.mujoco.kinematics import link_poses
-
-        rows = link_poses(np.reshape(q, (-1, np.shape(q)[-1])), [of.hand], of)
-        pose = Pose(*(part.reshape(*np.shape(q)[:-1], -1) for part in rows))
-    return (pose.position + rotate(pose.quat, np.array([0.0, 0.0, of.tip])))[..., 2]
+    return fingertip(hand_pose(q, of), of.tip)[..., 2]
 
 
 def accepted_command(

@@ -102,9 +102,8 @@ def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
     """
     require_built(scene, case)
     validate(case, joints)
-    dofs = joints.dofs
     scene.reset()
-    set_up(robot, dofs, case)
+    set_up(robot, joints.dofs, case)
 
 
 def set_up(robot: Any, dofs: list[int], case: ControlCase) -> None:

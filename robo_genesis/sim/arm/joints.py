@@ -166,12 +166,12 @@ def require_model(robot: Any, joints: JointMap, of: RobotModel) -> None:
         return
     from robo_genesis.sim.mujoco.kinematics import bare_robot
 
-    (model, _, _, dof_at), dofs = bare_robot(of=of), joints.dofs
+    (model, _, entries), dofs = bare_robot(of=of), joints.dofs
     for name in ("armature", "damping"):
         found = to_numpy(getattr(robot, f"get_dofs_{name}")(dofs)).reshape(
             -1, len(dofs)
         )[0]
-        valid = getattr(model, f"dof_{name}")[dof_at]
+        valid = getattr(model, f"dof_{name}")[entries]
         if not np.allclose(found, valid, rtol=1e-5):
             raise ModelError(
                 f"The {name} of {', '.join(of.joints)} is {found} in the engine and {valid} in "

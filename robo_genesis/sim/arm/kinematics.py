@@ -1,5 +1,8 @@
 """Kinematics of the Franka's arm in NumPy: rotations, poses, Jacobian and damped least squares.
 
+`hand_pose` takes other robots as well. For their links and Jacobian there is
+`sim/mujoco/kinematics.py`.
+
 Quaternions are (w, x, y, z) of unit length. All functions take leading dimensions `…`,
 so one call handles one posture or many. Positions are in metres, angles in radians. The
 frame is that of the world, and the base of the arm is at its origin.
@@ -13,6 +16,7 @@ from robo_genesis.core.scene import FloatArray, read_only
 from robo_genesis.core.trace import Trace
 
 from .franka import FRANKA, LINK_PARENTS
+from .model import RobotModel
 
 HALF = np.sqrt(0.5)
 
@@ -116,10 +120,19 @@ def link_poses(q: FloatArray) -> Pose:
     return Pose(np.stack(positions, axis=-2), np.stack(quats, axis=-2))
 
 
-def hand_pose(q: FloatArray) -> Pose:
-    """Return the pose of the hand, (…, 3) and (…, 4), at joint positions (…, 7 or more) [rad]."""
-    poses = link_poses(q)
-    return Pose(poses.position[..., -1, :], poses.quat[..., -1, :])
+def hand_pose(q: FloatArray, of: RobotModel = FRANKA) -> Pose:
+    """Return the pose of a robot's hand, (…, 3) and (…, 4), at joint positions (…, d) [rad or m].
+
+    Of the Franka the first seven are enough. The poses of others come from MuJoCo.
+    """
+    if of == FRANKA:
+        poses = link_poses(q)
+        return Pose(poses.position[..., -1, :], poses.quat[..., -1, :])
+    from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+    rows = np.reshape(q, (-1, np.shape(q)[-1]))
+    poses = mujoco_kinematics.link_poses(rows, [of.hand], of)
+    return Pose(*(part.reshape(*np.shape(q)[:-1], -1) for part in poses))
 
 
 def jacobian(q: FloatArray) -> FloatArray:
@@ -193,9 +206,9 @@ def accepted(
     return finite & (apart <= position_tolerance) & (angle <= rotation_tolerance)
 
 
-def fingertip(pose: Pose) -> FloatArray:
+def fingertip(pose: Pose, tip: float = TIP) -> FloatArray:
     """Return the point (…, 3) between the fingertips for a pose of the hand [m]."""
-    return pose.position + rotate(pose.quat, np.array([0.0, 0.0, TIP]))
+    return pose.position + rotate(pose.quat, np.array([0.0, 0.0, tip]))
 
 
 def overshoot_along_line(path: FloatArray, target: FloatArray) -> float:

@@ -27,8 +27,9 @@ joint whose
 4. `pages.py` has `joints=spec.ARM.joints`, and the authors of a shape that is not yours
    as `credit`; `structure` has the counts of this robot (links with the base, joints and
    DOFs without fixed ones) and prints what it found. `driven_run` takes the robot from
-   the case; `solve_ik` and `sim/mujoco/` take it as `of`. `sim/arm/kinematics.py` knows
-   the Franka alone. Tests need a `JointMap` of the robot in the lesson's `conftest.py`.
+   the case; `solve_ik`, `hand_pose` and `sim/mujoco/` take it as `of`; the rest of
+   `sim/arm/kinematics.py` knows the Franka alone. Tests need a `JointMap` of the robot in
+   the lesson's `conftest.py`.
 5. A free base, as that of a quadruped, is `free_base=True`: `run_case` drives the legs.
    What needs a fixed base says so.
 6. For feedback, a force F on a joint is the target q + F/KP with a small KP (1 N/m) and

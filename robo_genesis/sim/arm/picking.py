@@ -37,10 +37,7 @@ PHASES = (
     "done",
 )
 
-DESCEND, CLOSE, LIFT, MOVE, LOWER, OPEN, DONE = (
-    PHASES.index(name)
-    for name in ("descend", "close", "lift", "move", "lower", "open", "done")
-)
+_, DESCEND, CLOSE, LIFT, MOVE, LOWER, OPEN, _, DONE = range(len(PHASES))
 
 # By phase, the number of its goal among `waypoints`.
 OF_GOAL = (0, 1, 1, 2, 3, 4, 4, 3, 3)
@@ -96,17 +93,17 @@ class PickCase(SceneCase):
     def waypoints(self) -> list[FloatArray]:
         """Positions (e, 3) of the hand [m]: pregrasp, grasp, lifted, above the bowl, at release."""
         grasp = self.size[2] - self.pad + HAND_TO_PAD
-        places = self.beliefs, np.broadcast_to(self.bowl_at, np.shape(self.beliefs))
-        heights = [
-            (0, self.above),
-            (0, 0.0),
-            (0, self.rise),
-            (1, self.rise),
-            (1, self.drop),
+        goal = np.broadcast_to(self.bowl_at, np.shape(self.beliefs))
+        ends = [
+            (self.beliefs, self.above),
+            (self.beliefs, 0.0),
+            (self.beliefs, self.rise),
+            (goal, self.rise),
+            (goal, self.drop),
         ]
         return [
-            np.column_stack([places[at], np.full(len(self.beliefs), grasp + more)])
-            for at, more in heights
+            np.column_stack([place, np.full(len(place), grasp + more)])
+            for place, more in ends
         ]
 
 
@@ -201,7 +198,7 @@ def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
     """
     contacts = world.body.get_contacts(with_entity=world.robot)
     a, b, valid, force, normal = (
-        np.asarray(to_numpy(contacts[of]))
+        to_numpy(contacts[of])
         for of in ("geom_a", "geom_b", "valid_mask", "force_a", "normal")
     )
     along = np.abs((force * normal).sum(axis=-1))
@@ -210,7 +207,7 @@ def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
         link = world.robot.get_link(name)
         of_link = np.isin([a, b], range(link.geom_start, link.geom_end)).any(axis=0)
         forces.append((along * valid * of_link).sum(axis=1))
-    return np.stack(forces, axis=1), np.asarray(valid.any(axis=1))
+    return np.stack(forces, axis=1), valid.any(axis=1)
 
 
 def pose(

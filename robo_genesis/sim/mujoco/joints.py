@@ -31,17 +31,17 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
     import mujoco
 
     spec = bare_spec(case.model)
-    for k, name in enumerate(case.model.joints):
-        # MuJoCo takes no actuator with an empty range
-        motor = bool(case.effort_limit[k] > 0)
+    settings = zip(case.model.joints, case.effort_limit, case.kp, case.kv, strict=True)
+    for name, limit, kp, kv in settings:
+        motor = bool(limit > 0)  # MuJoCo takes no actuator with an empty range
         actuator = spec.add_actuator(
             name=name,
             target=name,
             trntype=mujoco.mjtTrn.mjTRN_JOINT,
             forcelimited=motor,
-            forcerange=[-case.effort_limit[k], case.effort_limit[k]],
+            forcerange=[-limit, limit],
         )
-        actuator.set_to_position(kp=motor * case.kp[k], kv=motor * case.kv[k])
+        actuator.set_to_position(kp=motor * kp, kv=motor * kv)
     spec.option.timestep = timestep
     spec.option.integrator = getattr(
         mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"
@@ -70,15 +70,15 @@ def run_case(
     """
     import mujoco
 
-    model, data, q_at, dof_at = with_data(load(case, timestep, integrator), case.model)
+    model, data, joints = with_data(load(case, timestep, integrator), case.model)
     bodies = [model.body(name).id for name in links]
-    data.qpos[q_at], data.ctrl[:] = case.q_start, case.q_target
+    data.qpos[joints], data.ctrl[:] = case.q_start, case.q_target
 
     def read() -> tuple[FloatArray, ...]:
         mujoco.mj_forward(model, data)  # poses and forces of the state as it is now
-        net = (data.qfrc_smooth + data.qfrc_constraint)[dof_at]
-        state = (data.qpos[q_at], data.xpos[bodies], data.xquat[bodies])
-        return tuple(map(_kept, (*state, data.qvel[dof_at], data.actuator_force, net)))
+        net = (data.qfrc_smooth + data.qfrc_constraint)[joints]
+        state = (data.qpos[joints], data.xpos[bodies], data.xquat[bodies])
+        return tuple(map(_kept, (*state, data.qvel[joints], data.actuator_force, net)))
 
     substeps = round(case.dt / timestep)
     readings = record_states(

@@ -22,8 +22,8 @@ GRAVITY = 0.0, 0.0, -9.81
 @cache
 def bare_robot(
     load: float = 0.0, of: RobotModel = FRANKA
-) -> tuple[Any, Any, list[int], list[int]]:
-    """Return the model without shapes and actuators, its data, and the joints in qpos and qvel.
+) -> tuple[Any, Any, list[int]]:
+    """Return the model without shapes and actuators, and the rest of `with_data`.
 
     `load` is added to the mass of the hand [kg]; its centre of mass and inertia remain.
     The data are made once, because that takes as long as a hundred states. Every use
@@ -59,10 +59,16 @@ def bare_spec(of: RobotModel) -> Any:
         spec.compiler.inertiafromgeom
         == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
     )
-    light = [g for g in spec.geoms if g.parent.explicitinertial and not from_shapes]
+    # tendons may lead round shapes without a mesh, which stay
+    light = [
+        g
+        for g in spec.geoms
+        if g.meshname and g.parent.explicitinertial and not from_shapes
+    ]
     kept = {g.meshname for g in spec.geoms if g not in light}
     shapes = [*light, *(mesh for mesh in spec.meshes if mesh.name not in kept)]
-    for part in (*spec.actuators, *spec.keys, *shapes):
+    # sensors and pairs refer to actuators and shapes
+    for part in (*spec.sensors, *spec.pairs, *spec.actuators, *spec.keys, *shapes):
         spec.delete(part)
     spec.compiler.fusestatic = False  # fused links would lose their names
     spec.option.gravity = GRAVITY
@@ -79,15 +85,17 @@ def compiled(spec: Any, of: RobotModel) -> Any:
 
 
 def _unreadable(of: RobotModel, error: Exception) -> ModelError:
-    cure = (
-        "Each link that a joint moves needs mass and inertia, in a URDF as <inertial>."
+    return ModelError(
+        f"MuJoCo cannot read {of.file}: {error}. Valid is an MJCF or a URDF; a xacro file has to "
+        "become a URDF first. Each link that a joint moves needs mass and inertia, in a URDF as "
+        "<inertial>."
     )
-    advice = f" {cure}" if "inertia" in str(error) else ""
-    return ModelError(f"MuJoCo cannot read {of.file}: {error}.{advice}")
 
 
-def with_data(model: Any, of: RobotModel) -> tuple[Any, Any, list[int], list[int]]:
-    """Return a compiled model, its data, and the indices of the robot's joints in qpos and qvel.
+def with_data(model: Any, of: RobotModel) -> tuple[Any, Any, list[int]]:
+    """Return a compiled model, its data, and the numbers of the robot's joints.
+
+    Each joint has one DOF, so its number is also its index in qpos and qvel.
 
     Raises:
         ModelError: the robot's joints are not those of the file, or not all have one
@@ -96,29 +104,31 @@ def with_data(model: Any, of: RobotModel) -> tuple[Any, Any, list[int], list[int
     import mujoco
 
     names = [model.joint(k).name for k in range(model.njnt)]
-    if sorted(names) != sorted(of.joints) or not model.nq == model.nv == model.njnt:
+    links = [model.body(k).name for k in range(model.nbody)]
+    if (
+        sorted(names) != sorted(of.joints)
+        or not model.nq == model.nv == model.njnt
+        or of.hand not in ("", *links)
+    ):
         raise ModelError(
-            f"{of.file} has the joints {', '.join(names)}; its RobotModel names "
-            f"{', '.join(of.joints)}. Name each joint in the file and in `joints`. Valid kinds "
-            "are hinge and slide."
+            f"{of.file} has the joints {', '.join(names) or '(none)'}, and the links "
+            f"{', '.join(links)}; its RobotModel names {', '.join(of.joints)}, and the hand "
+            f"{of.hand!r}. Name each joint in the file and in `joints`. Valid kinds are hinge and "
+            "slide. A xacro file has to become a URDF first."
         )
-    joints = [model.joint(name) for name in of.joints]
-    q_at, dof_at = (
-        [int(j.qposadr[0]) for j in joints],
-        [int(j.dofadr[0]) for j in joints],
-    )
-    return model, mujoco.MjData(model), q_at, dof_at
+    joints = [model.joint(name).id for name in of.joints]
+    return model, mujoco.MjData(model), joints
 
 
 def link_poses(q: FloatArray, links: Sequence[str], of: RobotModel = FRANKA) -> Pose:
     """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
     import mujoco
 
-    model, data, q_at, _ = bare_robot(of=of)
+    model, data, joints = bare_robot(of=of)
     bodies = [model.body(name).id for name in links]
     poses = []
     for positions in q:
-        data.qpos[q_at] = positions
+        data.qpos[joints] = positions
         mujoco.mj_kinematics(model, data)
         poses.append((data.xpos[bodies], data.xquat[bodies]))
     return Pose(*map(np.array, zip(*poses, strict=True)))
@@ -128,13 +138,13 @@ def jacobian(q: FloatArray, of: RobotModel = FRANKA) -> FloatArray:
     """Return the Jacobian (6, d) of the hand's origin at `q` (d,), as `kinematics.jacobian`."""
     import mujoco
 
-    model, data, q_at, dof_at = bare_robot(of=of)
-    data.qpos[q_at] = q
+    model, data, joints = bare_robot(of=of)
+    data.qpos[joints] = q
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     rows = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body(of.hand).id)
-    return rows[:, dof_at]
+    return rows[:, joints]
 
 
 def at_rest(
@@ -154,11 +164,11 @@ def at_rest(
     """
     import mujoco
 
-    model, data, q_at, dof_at = bare_robot(load, of)
-    data.qpos[q_at], data.qvel[:] = q, 0.0
+    model, data, joints = bare_robot(load, of)
+    data.qpos[joints], data.qvel[:] = q, 0.0
     mujoco.mj_forward(model, data)
     diagonal = data.M[model.M_rowadr + model.M_rownnz - 1]
-    return diagonal[dof_at], data.qfrc_bias[dof_at], model.dof_damping[dof_at]
+    return diagonal[joints], data.qfrc_bias[joints], model.dof_damping[joints]
 
 
 def gravity_effort(

@@ -34,7 +34,6 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
     (notebook(raising("1", None)), 9, "the tag raises-exception needs"),
     (notebook(cell("1", ':expects: "KeyError: a"\n')), 9, "the tag raises-exception"),
     (notebook() + '+++ {"tags": ["solution"]}\n\nText.\n', 8, "'solution' is unknown"),
-    (notebook() + "+++\n<details>\nIt.\n</details>\n", 8, "Use a {dropdown} with"),
 )
 
 

@@ -9,6 +9,7 @@ from robo_genesis.pipeline.pages.page_index import (
     LAST_OUTPUTS,
     PageIndex,
     executed_notebook,
+    measuring_page,
 )
 
 
@@ -36,3 +37,15 @@ def test_a_cell_gets_the_outputs_of_the_cell_with_its_source(
     found = executed_notebook("page", page).cells
     assert [cell.source for cell in found] == list(now)
     assert [cell.execution_count for cell in found] == counts
+
+
+def test_a_page_without_a_bundle_guards_nothing_by_itself(tmp_path, monkeypatch):
+    pages = PageIndex(
+        folders={"lab": tmp_path / "lab", "text": tmp_path / "text"},
+        outputs={"l04/lab": tmp_path / "lab/outputs"},
+    )
+    monkeypatch.setenv(*pages.write(tmp_path / "told").popitem())
+    assert measuring_page("lab") == "l04/lab"
+    for name in ("text", "gone"):
+        with pytest.raises(LookupError, match=f"{name} measures nothing"):
+            measuring_page(name)

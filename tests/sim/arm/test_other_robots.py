@@ -54,8 +54,39 @@ URDF = """<robot name="arm">
   <joint name="weld" type="fixed"><parent link="rod"/><child link="plate"/></joint>
   <link name="plate"/>
 </robot>"""
+# An actuator, shapes with and without a mesh, and whatever can refer to them.
+WIRED = """<mujoco>
+  <asset><mesh name="tool" file="parts/tool.obj"/></asset>
+  <worldbody>
+    <site name="wall" pos="0 0 1"/>
+    <body name="boom">
+      <joint name="swing"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <geom name="drum" type="cylinder" size="0.1 0.1"/>
+      <geom name="cover" type="mesh" mesh="tool"/>
+      <site name="end" pos="1 0 0"/>
+    </body>
+  </worldbody>
+  <tendon><spatial>
+    <site site="wall"/><geom geom="drum"/><site site="end"/>
+  </spatial></tendon>
+  <actuator><motor name="motor" joint="swing"/></actuator>
+  <contact><pair geom1="drum" geom2="cover"/></contact>
+  <sensor>
+    <actuatorfrc actuator="motor"/><framepos objtype="geom" objname="cover"/>
+  </sensor>
+  <custom><tuple name="all">
+    <element objtype="geom" objname="cover" prm="0"/>
+  </tuple></custom>
+</mujoco>"""
+XACRO = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="arm"><joint name="swing"/></xacro:macro>
+  <link name="base"/>
+</robot>"""
 FILES = {
     "arm.xml": MJCF,
+    "wired.xml": WIRED,
+    "xacro.urdf": XACRO,
+    "arm.xacro": XACRO,
     "arm.urdf": URDF,
     "parts/tool.xml": TOOL,
     "parts/tool.obj": MESH,
@@ -138,13 +169,13 @@ def test_a_run_of_any_arm_obeys_the_laws_of_its_own_model(folder, case):
             "arm.xml",
             'name="push"',
             "",
-            "arm.xml has the joints turn, lift, ;",
+            "arm.xml has the joints turn, lift, , and",
         ),
         (
             "arm.xml",
             '"lift"',
             '"elbow"',
-            "elbow, push; its RobotModel names turn, lift, push. Name each",
+            "elbow, push, and .* its RobotModel names turn, lift, push, and",
         ),
         ("arm.urdf", '<mass value="1"/>', "", "MuJoCo cannot read .*arm.urdf"),
     ],
@@ -158,6 +189,29 @@ def test_a_model_that_is_not_as_it_is_declared_is_named(
     (folder / name).write_text(FILES[file].replace(old, new))
     with pytest.raises(ModelError, match=message):
         mujoco_kinematics.bare_robot(of=replace(model, file=name))
+
+
+def test_what_is_left_out_leaves_no_reference():
+    model, *_ = mujoco_kinematics.bare_robot(
+        of=RobotModel("wired.xml", ("swing",), hand="boom")
+    )
+    assert (model.ntendon, model.nu, model.nsensor, model.nmesh) == (1, 0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        (
+            {"file": "xacro.urdf"},
+            r"has the joints \(none\), .* xacro file has to become",
+        ),
+        ({"file": "arm.xacro"}, "cannot read .*xacro file has to become a URDF first"),
+        ({"hand": "tol"}, "links world, base, upper, fore, tool; .*the hand 'tol'"),
+    ],
+)
+def test_a_xacro_file_and_a_misspelt_hand_are_named(changed, message):
+    with pytest.raises(ModelError, match=message):
+        mujoco_kinematics.bare_robot(of=replace(SLIDER.model, **changed))
 
 
 @pytest.fixture(scope="module")

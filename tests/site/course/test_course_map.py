@@ -31,7 +31,8 @@ def test_a_published_lesson_is_in_each_list_that_is_kept_by_hand(document, form)
     missing = []
     for lesson in read_map(BOOK):
         if lesson.page:
-            text = (ROOT / document.format(page=lesson.page)).read_text()
+            file = document.format(page=lesson.page)
+            text = (ROOT / file).read_text()
             words = {
                 "id": lesson.id,
                 "title": lesson.title,
@@ -39,8 +40,9 @@ def test_a_published_lesson_is_in_each_list_that_is_kept_by_hand(document, form)
             }
             titles = {lesson.title, re.split(r"(?<=[?.]) ", lesson.title)[0]}
             if not any(form.format(heading=title, **words) in text for title in titles):
-                missing.append(lesson.id)
-    assert missing == []
+                line = form.format(heading=lesson.title, **words).strip()
+                missing.append(f"{file} lacks {line!r}")
+    assert not missing
 
 
 def test_the_list_of_decision_records_has_each_of_them():
