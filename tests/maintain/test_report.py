@@ -17,7 +17,7 @@ from robo_genesis.maintain.report import (
 )
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.page_folder import write_page
-from robo_genesis.site.evidence.ledger_data import LEDGER
+from robo_genesis.site.evidence.provenance import LEDGER
 
 
 @pytest.fixture

@@ -1,12 +1,9 @@
-"""The ledger: every run, figure, measured table and printed text, with digests and downloads.
+"""The ledger: every run with its facts and its bundle. A page writes ```` ```{ledger} ````.
 
-A page writes ```` ```{ledger} runs ```` and ```` ```{ledger} items ````. Both are
-filled in after all pages are read; the files to download are written then.
+It is filled in after all pages are read; the bundles to download are written then.
 """
 
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -14,26 +11,22 @@ from sphinx.application import Sphinx
 from robo_genesis.core.files import bytes_digest, write_whole
 from robo_genesis.core.markup import filled
 from robo_genesis.pipeline.html.archive import contents, zipped
-from robo_genesis.pipeline.pages.book import page_files
 from robo_genesis.site.pages import PageDirective
 
 from .plain_nodes import late
-from .provenance import ITEMS
-from .runs import all_runs, badge, measured_pages
+from .runs import all_runs, badge
 
 DOWNLOADS = "_downloads/evidence"
+TEMPLATE = Path(__file__).with_suffix(".html")
 
 
 class Ledger(PageDirective):
-    """List all runs, or all figures, tables and printed texts of the site."""
-
-    required_arguments = 1
+    """List all runs of the site."""
 
     def shown(self) -> list[nodes.Node]:
         """Return the place of the list."""
         self.env.note_reread()
-        parts = {"runs": run_list, "items": item_list}
-        return [late(make=parts[self.arguments[0]])]
+        return [late(make=run_list)]
 
 
 def run_list(app: Sphinx, docname: str) -> str:
@@ -45,33 +38,10 @@ def run_list(app: Sphinx, docname: str) -> str:
             content = zipped(contents(run.folder))
             archives[run.key] = name, bytes_digest(content)
             write_whole(Path(app.outdir) / DOWNLOADS / name, content)
-    return _filled("ledger_runs.html", docname, runs=runs, archives=archives)
-
-
-def item_list(app: Sphinx, docname: str) -> str:
-    """Return the table of all items on the pages, in the order of the pages."""
-    book, env = Path(app.srcdir), app.env
-    runs, rows = all_runs(book), []
-    for name in page_files(book):
-        for item in env.metadata[name][ITEMS]:
-            rows.append((item, [runs[key] for key in item.runs]))
-            if item.data is not None:
-                write_whole(Path(app.outdir) / DOWNLOADS / item.file, item.data)
-    return _filled(
-        "ledger_items.html",
-        docname,
-        items=rows,
-        pages=measured_pages(book),
-        images=env.images,
-        link=partial(app.builder.get_relative_uri, docname),
+    downloads = f"{'../' * docname.count('/')}{DOWNLOADS}"
+    return filled(
+        TEMPLATE, runs=runs, archives=archives, badge=badge, downloads=downloads
     )
-
-
-def _filled(template: str, docname: str, **values: Any) -> str:
-    up = "../" * docname.count("/")
-    downloads = f"{up}{DOWNLOADS}"
-    place = Path(__file__).with_name(template)
-    return filled(place, badge=badge, up=up, downloads=downloads, **values)
 
 
 def setup(app: Sphinx) -> None:

@@ -3,36 +3,27 @@
 A picture or table is measured if `page.show` displayed it, or if it was read from a
 bundle. Other outputs of cells are printed, also texts: the build compares them with the
 bundle, but does not compute them again. The outputs of a cell that is tagged `inputs`
-were chosen. A picture that no run made is an illustration. A table typed in prose is
-not listed.
+were chosen. A picture that no run made is an illustration. A table typed in prose has
+no line.
 """
 
-import re
-import textwrap
 from collections.abc import Sequence, Set
-from dataclasses import replace
 from itertools import chain, count
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
-from robo_genesis.core.files import bytes_digest
 from robo_genesis.core.markup import filled
 from robo_genesis.site.frame.executed import RECOMPUTED
 
-from . import ledger_data
-from .ledger_data import LEDGER, MEASURED, PRINTED, Item
 from .origin import INPUTS, above, origin
 from .plain_nodes import html
-from .runs import all_runs, measured_pages
+from .runs import PageRun, all_runs, measured_pages
 
 LINE = Path(__file__).with_suffix(".html")  # The template of the line
-LOG = "the engine's log"
-TITLE = 80  # Longest title in the ledger, in characters
-ITEMS = "robo_genesis_items"  # The name of a page's items in its metadata
+LEDGER = "evidence/ledger"  # The page that lists the runs
 
 UNBOUND = (
     "a cell shows an output, but the page declares no bundle. Give its front matter "
@@ -41,19 +32,22 @@ UNBOUND = (
 
 logger = logging.getLogger(__name__)
 
-# The kind of an item that belongs to no run, by the keys of its origin.
-WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {None: "illustration", (): "settings"}
+# How the line below an item begins whose runs are all accepted.
+MEASURED, PRINTED = "Measured", "Printed by this run"
+
+# The line below an item that belongs to no run, by the keys of its origin.
+WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
+    None: "Illustration, not measured.",
+    (): "Chosen, not measured.",
+}
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:
-    """List the outputs and pictures of a page, and write its origin below each of them."""
+    """Write below each output and picture of a page where it is from."""
     env = app.env
-    book, items = Path(env.srcdir), []
+    book = Path(env.srcdir)
     known, page = all_runs(book), measured_pages(book).get(env.docname)
     recomputed = RECOMPUTED.get(env.docname, set())
-    ledger = ""  # of a small book
-    if LEDGER in env.found_docs:
-        ledger = app.builder.get_relative_uri(env.docname, LEDGER)
     for node in list(doctree.findall(nodes.Element)):
         texts = printed_texts(node, recomputed)
         last = texts[-1] if texts else node
@@ -67,14 +61,35 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
                 logger.warning(UNBOUND, location=env.docname)
             continue
         holder = next(above(node, nodes.figure), node) if is_picture else node
-        item = describe(holder, node, env, texts)
+        kind = "picture" if is_picture else "printed" if texts else "table"
+        give_anchor(holder, kind)
+        if texts:
+            holder["classes"].append("printed")
         printed = cell is not None and cell.get("cell_index") not in recomputed
-        kind = WITHOUT_RUN.get(keys, "printed" if printed else item.kind)
-        item = replace(item, kind=kind, runs=keys or ())
-        items.append(item)
-        line = ledger_data.provenance(kind, [known[key] for key in item.runs])
-        add_line(last if texts else holder, line, f"{ledger}#{item.row}" * bool(ledger))
-    env.metadata[env.docname][ITEMS] = items
+        runs, address = [known[key] for key in keys or ()], ""
+        if runs and LEDGER in env.found_docs:  # a small book has none
+            ledger = app.builder.get_relative_uri(env.docname, LEDGER)
+            address = f"{ledger}#{runs[0].anchor}"
+        line = WITHOUT_RUN[keys] if not keys else of_runs(printed, runs)
+        add_line(last if texts else holder, line, address)
+
+
+def of_runs(printed: bool, runs: Sequence[PageRun]) -> str:
+    """Return the line below an item that runs made, without its link.
+
+    Args:
+        printed: whether it was compared with the bundle and not computed again.
+        runs: the runs.
+    """
+    lacking = [run.status.badge for run in runs if run.manifest is None]
+    if lacking:
+        return f"No accepted evidence: {', '.join(lacking)}."
+    origins = (
+        f"on {run.status.backend} · Genesis {accepted.engine.version} · run {accepted.run_id[:8]}"
+        for run in runs
+        if (accepted := run.manifest)
+    )
+    return f"{PRINTED if printed else MEASURED} {' and '.join(origins)}"
 
 
 def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Element]:
@@ -89,69 +104,22 @@ def printed_texts(box: nodes.Element, recomputed: Set[int]) -> list[nodes.Elemen
     ]
 
 
-def describe(
-    holder: nodes.Element, node: nodes.Element, env: Any, texts: Sequence[nodes.Element]
-) -> Item:
-    """Return the item of a table, picture or texts as of no run, and give `holder` an anchor."""
-    section = next(above(holder, nodes.section))
-    heading = section.next_node(nodes.title).astext()
-    if isinstance(node, nodes.image):
-        caption, file = holder.next_node(nodes.caption), node["uri"]
-        path, data = Path(env.srcdir, file), None
-        anchor = _anchor(holder, f"picture-{section['ids'][0]}")
-        kind, content = (
-            node.get("kind") or ledger_data.picture_kind(path),
-            path.read_bytes(),
-        )
-        title = node.get("alt", "") if caption is None else caption.astext()
-    else:
-        if texts:
-            kind, suffix = "printed", ".txt"
-            title, content = _text(texts)
-            holder["classes"].append("printed")
-        else:
-            kind, suffix = "table", ".csv"
-            rows = [[cell.astext() for cell in row] for row in node.findall(nodes.row)]
-            title, content = (
-                ", ".join(filter(None, rows[0])),
-                ledger_data.csv_bytes(rows),
-            )
-        anchor, data = _anchor(holder, f"{kind}-{section['ids'][0]}"), content
-        title = f"{heading}: {title}"
-        file = f"{env.docname}-{anchor}{suffix}".replace("/", "-")
-    title = re.sub(r"^\d+\. ", "", title).split(". ")[0].removesuffix(".")
-    title = textwrap.shorten(title, TITLE, placeholder=" …")
-    digest = bytes_digest(content)
-    return Item(kind, title, env.docname, anchor, (), digest, file, data)
-
-
-def _text(texts: Sequence[nodes.Element]) -> tuple[str, bytes]:
-    """Return the last line that is not of a log, and the content of printed texts."""
-    # Of a result in several forms, the first is Markdown.
-    parts = (
-        part[0] if part.get("nb_element") == "mime_bundle" else part for part in texts
-    )
-    text = "\n".join(part.astext() for part in parts)
-    lines = (line for line in text.splitlines() if line[:1] not in "[ ")
-    return [LOG, *lines][-1], text.encode()
-
-
-def _anchor(holder: nodes.Element, base: str) -> str:
-    """Return an anchor, by default from the section's: other sections do not change it."""
+def give_anchor(holder: nodes.Element, kind: str) -> None:
+    """Give an item an anchor, by default from its section's: other sections do not change it."""
     if not holder["ids"]:
+        base = f"{kind}-{next(above(holder, nodes.section))['ids'][0]}"
         used = holder.document.ids
         names = chain([base], (f"{base}-{n}" for n in count(2)))
         name = next(name for name in names if name not in used)
         used[name] = holder
         holder["ids"].append(name)
-    return holder["ids"][0]
 
 
 def add_line(holder: nodes.Element, text: str, address: str) -> None:
     """Insert the line of provenance at the end of the caption, or below an item without one.
 
     What a run measured or printed has an icon, and the words appear under the mouse or
-    the focus. Anything else says so in words. `address` is that of its row in the
+    the focus. Anything else says so in words. `address` is that of its run in the
     ledger, empty without one.
     """
     line = html(filled(LINE, text=text, address=address))
