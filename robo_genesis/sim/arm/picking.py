@@ -207,7 +207,8 @@ def pressing(world: World) -> tuple[FloatArray, np.ndarray]:
         link = world.robot.get_link(name)
         of_link = np.isin([a, b], range(link.geom_start, link.geom_end)).any(axis=0)
         forces.append((along * valid * of_link).sum(axis=1))
-    return np.stack(forces, axis=1), valid.any(axis=1)
+    # NumPy declares that `any` may also return a single value.
+    return np.stack(forces, axis=1), valid.any(axis=1)  # type: ignore[return-value]
 
 
 def pose(

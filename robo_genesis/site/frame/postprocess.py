@@ -180,7 +180,8 @@ def drop_unused_rules(html: Path) -> None:
     """Remove from the theme's style sheet, 400 kB, the rules that no page or script names."""
     tool = npm.packages() / "purgecss/bin/purgecss.js"
     styles = html / "_static/styles"
-    command = [npm.node(), tool, "--css", styles / "pydata-sphinx-theme.css"]
+    command: list[Path | str] = [npm.node(), tool]
+    command += ["--css", styles / "pydata-sphinx-theme.css"]
     command += ["--content", html / "**/*.html", html / "_static/**/*.js"]
     subprocess.run([*command, "--output", styles], check=True)
 
