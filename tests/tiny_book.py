@@ -49,6 +49,7 @@ facts = dict(
     engine=dict(version="1.2.3", quadrants_version="0.9"),
     render=dict(mode="camera" if camera else "skip", renderer="llvmpipe", software=True),
     checks=[dict(passed=True), dict(passed=True)],
+    passed="2 of 2",
     warnings=["Approximating tendon."],
     git=dict(commit="0123456789abcdef", dirty=True),
 )
