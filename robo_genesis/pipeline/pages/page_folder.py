@@ -14,7 +14,12 @@ from nbformat import NotebookNode
 from pydantic import ValidationError
 
 from robo_genesis.core.files import replaced
-from robo_genesis.core.project import ENGINE, ProjectError, installed_version
+from robo_genesis.core.project import (
+    ENGINE,
+    ProjectError,
+    installed_version,
+    without_folders,
+)
 from robo_genesis.evidence.bundle import MANIFEST, Sha256, Strict, list_files
 
 from .book import Page, code_cells, code_digest
@@ -113,8 +118,9 @@ def read_page(place: Path) -> NotebookNode:
 
 
 def executed_cells(place: Path) -> NotebookNode:
-    """Return the code cells of a page in its folder, with their outputs."""
-    return nbformat.read(place / NOTEBOOK, as_version=4)
+    """Return the code cells of a page in its folder, with outputs that name no private folder."""
+    text = (place / NOTEBOOK).read_text("utf8")
+    return nbformat.reads(without_folders(text), as_version=4)
 
 
 def find_bundle(left: Path) -> Path | None:
