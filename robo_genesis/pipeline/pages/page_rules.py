@@ -37,8 +37,8 @@ OPTIONS = {"code": ("tags", "mystnb", "prints", "expects"), "markdown": ("tags",
 
 MOST_IN_PICTURE = 2_000_000  # Bytes of a picture in a page
 
-# What no text contains, and the cure. A picture is no problem if the first group of its
-# rule is a good file.
+# What no text contains, and the cure. A picture may stay if the first group of its rule
+# names a good file.
 TEXTS = {
     r"(?im)<img|(?:!\[[^\]]*\](?:\[|\(\s*<?)|[`:]{3}\{(?:figure|image)\} +)([^)>\s]*)": (
         "a picture is a file beside the page of at most "
