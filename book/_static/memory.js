@@ -1,9 +1,8 @@
 /* What this browser remembers of a reader: answers, what was shown, finished pages, and the last page.
-   Nothing leaves the browser. Some browsers keep nothing for pages that were opened from disk. */
+   Each of several sites on one server has its own. Nothing leaves the browser. Some browsers keep nothing for pages that were opened from disk. */
 "use strict";
 
 globalThis.memory = (() => {
-  // A school may have several of these sites on one server. Each has a memory of its own.
   const root = new URL(document.documentElement.dataset.content_root ?? ".", location.href);
   const STORE = `robo-genesis ${root.pathname}`;
   const nameOf = (address) => new URL(address).pathname.slice(root.pathname.length);
