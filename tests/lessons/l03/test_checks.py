@@ -110,6 +110,7 @@ SPOILERS = {
     "hop_follows_step": [
         moved("hop_2500us_low", 0.02, first=1),
         moved("hop_100us_high", 0.02, first=1),
+        moved("hop_100us_low", -2.0, "link_vel", 0, end=1),
     ],
     "hop_follows_speed": [moved("hop_200mm_s", 0.002, first=1)],
     "default_cone_hops": [on_corners("high_on_050")],
