@@ -59,12 +59,13 @@ WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt
 # codespell reads a hidden folder only if the names that it gets are inside.
 PROSE := book robo_genesis build_scripts *.md LICENSE pyproject.toml .ci/* .github/* .rocm/*
 SCHEMA = @"$(PYTHON)" -m check_jsonschema --builtin-schema vendor
-lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes and typed numbers of pages, schemas of .github
+lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, marks of merges, sizes and typed numbers of pages, schemas of .github
 	@"$(PYTHON)" -m ruff check .
 	@"$(PYTHON)" -m ruff format --check .
 	@"$(PYTHON)" -m mypy
 	@"$(PYTHON)" -c 'from importlinter.cli import lint_imports_command; lint_imports_command()' --no-logo --no-cache
 	@"$(PYTHON)" -m codespell_lib
+	@! git grep --line-number --extended-regexp '^(<{7}|>{7}) '
 	@"$(PYTHON)" -m codespell_lib --dictionary .words.txt --regex "$(WORDS)" $(PROSE)
 	@$(COURSE) sizes
 	@"$(PYTHON)" -m pytest -q -p no:cacheprovider tests/lessons/test_prose.py

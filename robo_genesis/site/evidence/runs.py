@@ -31,6 +31,7 @@ from robo_genesis.pipeline.bundles.status import (
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.site.course.course_map import MapDirective
+from robo_genesis.site.pages import PageDirective
 
 from .plain_nodes import html
 
@@ -131,7 +132,7 @@ def lesson_statuses(book: Path, lesson: str) -> list[Status]:
     ]
 
 
-class LessonStatus(SphinxDirective):
+class LessonStatus(PageDirective):
     """Show the states of a lesson's runs in one line, and a sentence on each behind it.
 
     The line leaves out missing runs unless all are missing.
@@ -139,7 +140,7 @@ class LessonStatus(SphinxDirective):
 
     required_arguments = 1
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
         known = [status for status in statuses if status.state != "missing"]

@@ -79,7 +79,10 @@ def to_mathml(latex: str, display: str) -> str:
             that the site's math font lacks.
     """
     latex = latex.replace("{aligned}", "{split}")  # which latex2mathml knows
+    braces = re.findall(r"(?<!\\)[{}]", latex)
     try:
+        if braces.count("{") != braces.count("}"):
+            raise ValueError("its braces are not balanced")
         tree = ElementTree.fromstring(
             convert(latex, display=display).replace(NAMESPACE, "")
         )

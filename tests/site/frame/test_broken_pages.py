@@ -17,6 +17,9 @@ TEXT = {
     "{py:func}`module`": "reference target not found: module",
     "{term}`gain`": "term not in glossary: 'gain'",
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
+    "Two. {guard}`l2/lab sag`": "guard: Lesson 'l2' does not exist. Choices: l01, ",
+    "Three. {guard}`sag`": "guard: text measures nothing",
+    "```{lesson-status} l2\n```": "lesson-status l2: Lesson 'l2' does not exist",
     "```{course-map}\n```": "the book has no page gone",
     "```{replay} l02/lecture\n:blind:\n```": "`:blind:` needs a question above it",
 }

@@ -14,6 +14,7 @@ from robo_genesis.site.text.formulas import to_mathml
     ("latex", "said"),
     [
         (r"\frac{a}{", "not valid"),
+        (r"\frac{a}{b", "braces are not balanced"),
         (r"a & b", "not valid"),
         (r"\oiint x", "shows ∯, which the site's font for formulas does not have"),
     ],
