@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -43,8 +42,6 @@ Step 1 of 3: the scene, and the first run. This is the compilation: minutes; lat
 Step 2 of 3: the other runs, of {count} in all.
 Step 3 of 3: checks, figures and the bundle."""
 
-_opened: list[str] = []
-
 
 def backend() -> Any:
     """Return the argument `backend` of the `gs.init` that follows, and start to keep its log.
@@ -65,19 +62,13 @@ def open_page(lesson: str, name: str) -> "LessonPage":
         LookupError: the lesson or the page does not exist; the message lists the
             choices.
         ContractError: a variable of the contract is not valid.
-        EngineError: a page is open already, Genesis is not initialised, or it was
-            initialised with another backend, seed or precision.
+        EngineError: Genesis is not initialised, or it was initialised with another
+            backend, seed or precision.
     """
     declared = find_page(lesson, name)
-    if _opened:
-        raise session.EngineError(
-            f"The page {_opened[0]} is open in this process, and a process has one page. Restart "
-            "the kernel and run all cells from the top."
-        )
     contract = session.read_contract()
     contract = replace(contract, render=contract.render and declared.camera)
     page = LessonPage(lesson, name, contract, session.started(contract))
-    _opened.append(f"{lesson}/{name}")
     plotting.use_course_style()
     if RUN_ID not in os.environ:
         if shell := get_ipython():
@@ -105,9 +96,7 @@ class LessonPage:
     | `joints` | the `JointMap` of the arrays' DOFs, None for free bodies |
     | `links` | names of the links, in the order of the arrays |
     | `render` | whether the environment requests a camera and the page declares one |
-    | `folder` | of the page's outputs |
     | `log` | the engine's log |
-    | `backend` | the backend as it was found |
     """
 
     def __init__(
@@ -117,9 +106,8 @@ class LessonPage:
         self._recorder = Recorder(
             lesson, name, contract, engine, sources.running_modules(lesson)
         )
-        self._lesson, self.log, self.backend = lesson, engine.log, engine.backend
+        self._lesson, self.log = lesson, engine.log
         self.render = contract.render
-        self.folder: Path = contract.outputs / lesson / name
         self.traces: dict[str, Any] = {}
         self.readings: dict[str, Mapping[str, float]] = {}
         self.frames: dict[str, np.ndarray] = {}
@@ -269,10 +257,7 @@ class LessonPage:
                 print(f"{folder.name}-passed keeps the earlier bundle, which passed.")
         renderer = cameras.read_renderer(scene) if self.render else None
         self._recorder.write(experiment, renderer, self._shape)
-        files = sum(path.is_file() for path in folder.rglob("*"))
-        print(
-            f"{files} files in {self._recorder.lesson}/{self._recorder.page}/{folder.name}"
-        )
+        print(f"The bundle is in {self._lesson}/{self._recorder.page}/{folder.name}.")
         if self._errors:
             print("Cells with an error:", *self._errors.values())
         missing = self._missing

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .checks import Check, CheckFailed, Finding, Findings, equal, within
+from .checks import Check, CheckFailed, Finding, Findings, equal
 from .experiment import Experiment, MeasuringPage, counts
 from .scene import FloatArray
 
@@ -121,7 +121,6 @@ class Brief(Repr):
 brief = Brief().repr
 
 Written = Callable[..., Any]  # A function that a student wrote
-Examples = dict[str, Any]  # What a test gives the function and expects, by name
 
 
 def as_test(findings: Callable[..., Iterable[Finding]]) -> Callable[..., Check]:
@@ -133,10 +132,10 @@ def as_test(findings: Callable[..., Iterable[Finding]]) -> Callable[..., Check]:
     """
 
     @wraps(findings)
-    def judge(function: Written, /, *given: Any, **named: Any) -> Check:
+    def judge(function: Written, /, *given: Any) -> Check:
         watched, judged, problem = Watched(function), 0, ""
         try:
-            for judged, finding in enumerate(findings(watched, *given, **named), 1):  # noqa: B007
+            for judged, finding in enumerate(findings(watched, *given), 1):  # noqa: B007
                 if not finding.passed:
                     problem = f"{watched.call}\n  {finding.problem}"
                     break
@@ -152,65 +151,35 @@ def as_test(findings: Callable[..., Iterable[Finding]]) -> Callable[..., Check]:
 FLOAT32 = 1e-6
 
 
-def is_numeric(values: np.ndarray) -> bool:
-    """Return whether an array has numbers: neither text, truth values nor None."""
-    return values.dtype.kind in "iuf"
-
-
-def rounding(values: np.ndarray, expected: Any, tiny: float) -> float:
-    """Return the largest difference that rounding explains: `tiny`, or more in float32."""
-    if values.dtype != np.float32:
-        return tiny
-    return max(tiny, FLOAT32 * float(np.max(np.abs(expected), initial=1.0)))
-
-
-def same_number(label: str, found: Any, expected: float, tiny: float) -> Finding:
-    """Require a number that differs from the expected one by rounding.
-
-    Args:
-        label: of the finding.
-        found: what the student's function returned.
-        expected: the right result.
-        tiny: largest difference that rounding explains in float64.
-    """
-    values = np.asarray(found)
-    if values.size != 1 or not is_numeric(values):
-        return Finding(label, brief(found), False, f"the number {expected:g}")
-    room = rounding(values, expected, tiny)
-    return within(label, float(values.item()), expected, room)
-
-
-def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Findings:
-    """Require an array of the shape of the expected one, which differs from it by rounding.
+def same_array(label: str, found: Any, expected: Any, tiny: float) -> Findings:
+    """Require numbers of the shape of the expected ones, which differ from them by rounding.
 
     If some differ, the first such number, or the first row of them along the last axis,
-    is named.
+    is named. Text and truth values are no numbers.
 
     Args:
         label: the beginning of the labels.
         found: what the student's function returned.
-        expected: the right result.
+        expected: the right result, a number or an array.
         tiny: largest difference that rounding explains in float64.
     """
-    values = np.asarray(found)
-    if not is_numeric(values):
+    values, right = np.asarray(found), np.asarray(expected)
+    if values.dtype.kind not in "iuf":
         yield Finding(label, brief(found), False, "numbers")
-        return
-    yield equal(f"{label}.shape", str(values.shape), str(expected.shape))
-    room = rounding(values, expected, tiny)
-    good = np.abs(values - expected) <= room
+    yield equal(f"{label}.shape", str(values.shape), str(right.shape))
+    if values.dtype == np.float32:
+        tiny = max(tiny, FLOAT32 * np.abs(right).max(initial=1.0))
+    good = np.abs(values - right) <= tiny
     if not good.all():
         row = tuple(np.argwhere(~good)[0].tolist())[: max(1, values.ndim - 1)]
-        texts = [row_text(of[row]) for of in (values, expected)]
-        if texts[0] == texts[1]:
-            texts = [row_text(of[row], 15) for of in (values, expected)]
-        place = f"{label}{list(row)}, the first that differs,"
-        yield Finding(place, texts[0], False, f"{texts[1]} ± {room:g}")
+        place = f"{label}{list(row)}, the first that differs," if row else label
+        required = f"{row_text(right[row])} ± {tiny:g}"
+        yield Finding(place, row_text(values[row]), False, required)
 
 
-def row_text(values: FloatArray, digits: int = 6) -> str:
-    """Return a number, or an array (n,), with significant digits."""
-    text = ", ".join(f"{value:.{digits}g}" for value in np.ravel(values))
+def row_text(values: FloatArray) -> str:
+    """Return a number, or an array (n,), with ten significant digits."""
+    text = ", ".join(f"{value:.10g}" for value in np.ravel(values))
     return f"[{text}]" if np.ndim(values) else text
 
 
@@ -237,4 +206,4 @@ def compared(
         if right is None:
             yield equal(label, value, None)
         else:
-            yield same_number(label, value, right, tiny)
+            yield from same_array(label, value, right, tiny)

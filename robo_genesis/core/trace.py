@@ -1,6 +1,6 @@
 """The arrays of one measured run of joints or of free bodies, validated and read-only."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -202,6 +202,11 @@ class Episodes(TimeSeries):
     touches: np.ndarray = array(
         "touches", "state env", "1", "whether the robot touches the object", "int8"
     )
+
+    def of(self, rows: slice) -> "Episodes":
+        """Return the runs of some environments."""
+        names = [field.name for field in fields(self) if field.name != "t"]
+        return replace(self, **{name: getattr(self, name)[:, rows] for name in names})
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 import ctypes
 import importlib
+import inspect
 import logging
 import os
 import re
@@ -209,6 +210,10 @@ def import_engine() -> Any:
     """Import Genesis, or raise EngineError: what is missing, and the command that installs it."""
     if sys.platform == "linux":
         require_libraries()
+    # Quadrants asks `inspect` for the module of the frame below each of its decorated
+    # functions. It is frozen and without a file, so Python would search all modules each
+    # time: 5 s in the first scene of a process.
+    inspect.modulesbyfile["<frozen importlib._bootstrap>"] = "importlib._bootstrap"
     try:
         return importlib.import_module("genesis")
     except ImportError as error:

@@ -3,7 +3,7 @@
 from typing import Any
 
 from robo_genesis.core.checks import Findings
-from robo_genesis.core.exercises import Written, as_test, same_number
+from robo_genesis.core.exercises import Written, as_test, same_array
 from robo_genesis.sim.bodies.free_fall import summed_drop
 
 from . import spec
@@ -23,7 +23,7 @@ def height_after(height: Written) -> Findings:
         ("below_the_floor", 0.5, case.gravity, 0.01, 100),
     ):
         expected = z0 - summed_drop(h, n, g)
-        yield same_number(f"{name}_m", height(z0, g, h, n), expected, TINY)
+        yield from same_array(f"{name}_m", height(z0, g, h, n), expected, TINY)
 
 
 @as_test
@@ -35,4 +35,6 @@ def fall(run: Written, scene: Any, sphere: Any) -> Findings:
             case.h, steps * case.substeps, case.gravity
         )
         found = run(scene, sphere, steps)
-        yield same_number(f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE)
+        yield from same_array(
+            f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE
+        )

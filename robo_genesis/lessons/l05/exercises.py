@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Findings, equal
-from robo_genesis.core.exercises import Examples, Written, as_test, same_array
+from robo_genesis.core.exercises import Written, as_test, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.kinematics import ARM, CHAIN, Pose, measured_hand
@@ -73,7 +73,7 @@ def step(damped: Written) -> Findings:
     """
     start = np.array(spec.BASELINE.q_start[:ARM])
     target = Pose(spec.TARGET, spec.DOWN)
-    given: Examples = {
+    given: Any = {
         f"{rows}_rows": (
             kinematics.jacobian(start)[:rows, : rows - 1],
             np.linspace(-0.01, 0.02, rows),

@@ -9,11 +9,10 @@ import numpy as np
 
 from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.exercises import (
-    Examples,
     Written,
     as_test,
     refused,
-    same_number,
+    same_array,
 )
 from robo_genesis.sim.arm.reaching import ANSWERS
 
@@ -137,7 +136,7 @@ class Machine:
 
 # Durations of the steps of the warm-up, steps of a repeat, and their duration in each
 # repeat.
-TRIALS: Examples = {
+TRIALS: Any = {
     "steady": ([1, 1, 1], 10, [1] * 5),
     "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),
     "one_disturbed_repeat": ([1, 1], 10, [1, 1, 30, 1, 1]),
@@ -158,5 +157,5 @@ def throughput(measure: Written) -> Findings:
         calls = machine.step, machine.finish, machine.clock
         found = measure(*calls, len(first), steps, len(repeats))
         expected = STEP * np.median(repeats) + WAIT / steps
-        yield same_number(f"{name}.step_s", found, expected, TINY)
+        yield from same_array(f"{name}.step_s", found, expected, TINY)
         yield equal(f"{name}.number_of_steps", machine.started, len(machine.durations))

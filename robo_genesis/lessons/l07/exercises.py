@@ -1,23 +1,23 @@
 """Checks of the functions that a student writes in L07's lab; see `core/exercises.py`."""
 
 from math import inf, nan
+from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.exercises import (
-    Examples,
     Written,
     as_test,
     compared,
-    same_number,
+    same_array,
 )
 from robo_genesis.sim.arm.reaching import ONE_START, RESIDUALS
 from robo_genesis.sim.bodies.table import gap
 
 MEASURES = False
 
-PAIRS: Examples = {
+PAIRS: Any = {
     "apart_along_x": ((0.0, 0.0, 0.2, 0.4), (0.5, 0.1, 0.1, 0.3)),
     "only_corners_near": ((0.1, 0.1, 0.1, 0.1), (0.21, 0.24, 0.1, 0.1)),
     "overlap_of_corners": ((0.0, 0.0, 0.2, 0.4), (0.18, -0.15, 0.2, 0.4)),
@@ -31,11 +31,11 @@ def footprints(margin: Written) -> Findings:
     for name, pair in PAIRS.items():
         for label, given in (("margin_m", pair), ("swapped_m", pair[::-1])):
             found = margin(*given)
-            yield same_number(f"{name}.{label}", found, gap(*given), 1e-9)
+            yield from same_array(f"{name}.{label}", found, gap(*given), 1e-9)
 
 
 # Positions of one coordinate [m], window, bound [m], and whether the object is at rest
-MOTIONS: Examples = {
+MOTIONS: Any = {
     "exactly_the_bound": ([0, 0, 0, 0.25, 0, 0.25], 4, 0.25, True),
     "both_ways": ([0, 0, 0, 0.1875, -0.1875, 0, 0], 4, 0.25, False),
     "creeps": ([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], 4, 0.25, False),
@@ -66,7 +66,7 @@ def rest(at_rest: Written) -> Findings:
 
 
 # Segmentations, number of the object, area of its outline [pixel]
-PICTURES: Examples = {
+PICTURES: Any = {
     "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0),
     "absent": ([[0, 1], [2, 0]], 4, 12.5),
     "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 3.0),
@@ -88,7 +88,7 @@ def pixels(visible: Written) -> Findings:
 
 # Heights of the fingertips at two answers [m], contacts, and whether the object is
 # reachable
-TIPS: Examples = {
+TIPS: Any = {
     "all_good": ((0.136, 0.036), (0, 0, 0, 0), True),
     "at_limits": ((0.03, 0.02), (0, 0), True),
     "first_too_low": ((0.025, 0.025), (0,), False),
@@ -126,7 +126,7 @@ def reach(reachable: Written) -> Findings:
 GOOD = {"margin": (0.171, 0.005, inf), "mass": (0.0, 0.0, 0.01)}
 
 # Results by rung, and the first rung that fails
-RESULTS: Examples = {
+RESULTS: Any = {
     "at_limits": (
         {"b": {"x": (2, 2, 5)}, "a": {"y": (5, 2, 5), "z": (-1, -1, -1)}},
         None,

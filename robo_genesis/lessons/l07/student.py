@@ -1,9 +1,9 @@
 """What L07's lab says about its scenes: the good one and the student's own."""
 
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from typing import Any
 
-from robo_genesis.core.exercises import refused
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import bullets, listed, scaled_value
 
@@ -25,13 +25,9 @@ def given(facts: Facts, *names: str) -> Results:
     return {name: (found[name], *spec.LIMITS[name]) for name in names}
 
 
-def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results | None:
-    """Return what a rung measures and print it, or print which function is not written yet."""
-    try:
-        found = rung(facts)
-    except NotImplementedError as missing:
-        print(missing)
-        return None
+def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results:
+    """Return what a rung measures, and print it."""
+    found = rung(facts)
     for name, (value, least, most) in found.items():
         verdict = "passes" if least <= value <= most else "FAILS"
         print(f"{name:10} {number(name, value):>10}   {verdict}")
@@ -48,31 +44,23 @@ def number(name: str, value: Any) -> str:
 
 
 def compared(
-    ladder: Callable[..., Any], results: Mapping[str, Results | None], facts: Facts
+    ladder: Callable[..., Any], results: Mapping[str, Results], facts: Facts
 ) -> str:
     """Return the verdicts of the student's functions and of the course, and what they mean.
 
     Args:
         ladder: the student's.
-        results: by rung what the student's functions found, None where one is missing.
+        results: by rung what the student's functions found.
         facts: of the same scene.
     """
-    written = not isinstance(refused(lambda: ladder({})), NotImplementedError)
     lines, failed = [f"{'rung':10} {'yours':8} course"], []
-    mine = {n: dict(of) for n, of in results.items() if written and of is not None}
     for rung, values in facts.values.items():
-        own = "-"
-        if rung in mine:
-            own = "FAILS" if ladder({rung: dict(mine[rung])}) else "passes"
+        mine = "FAILS" if ladder({rung: dict(results[rung])}) else "passes"
         if not rungs.passed(values):
             failed.append(rung)
-        lines.append(f"{rung:10} {own:8} {'FAILS' if rung in failed else 'passes'}")
-    if len(mine) < len(facts.values):
-        lines.append("Your functions do not judge all rungs yet.")
-    else:
-        lines.append(
-            f"The first rung that fails by your ladder: {ladder(mine) or 'none'}."
-        )
+        lines.append(f"{rung:10} {mine:8} {'FAILS' if rung in failed else 'passes'}")
+    first = ladder(deepcopy(results)) or "none"
+    lines.append(f"The first rung that fails by your ladder: {first}.")
     lines.append(f"The scene {outcome(failed)}")
     return "\n".join(lines)
 

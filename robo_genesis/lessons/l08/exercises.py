@@ -9,13 +9,11 @@ import numpy as np
 
 from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.exercises import (
-    Examples,
     Written,
     as_test,
     compared,
     refused,
     same_array,
-    same_number,
 )
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
@@ -45,7 +43,7 @@ AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
 
 # Whether a phase of the arm ends and one of the fingers, and by array and joint what is
 # added to an arm at its goal with still fingers
-STATES: Examples = {
+STATES: Any = {
     "at_its_goal": (True, True, {}),
     "nan": (False, True, {("q", 2): nan}),
     "nan_of_a_finger": (True, False, {("qd", 8): nan}),
@@ -93,7 +91,7 @@ END, RIM = slice(9, None), (0.55, 0.22, 0.05)
 
 # Array, index and value of each fault of an episode, and how many rungs the episode
 # passes
-EPISODES: Examples = {
+EPISODES: Any = {
     "success": (7,),
     "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
     "done_at_first": ("phase", 0, 8, 0),
@@ -191,4 +189,4 @@ def sliding(creep: Written) -> Findings:
         right = float(np.polyfit(t - t.mean(), down, 1)[0])
         for moves, hand in (("at_rest", 0 * t + 0.3), ("moving", 0.3 + 0.2 * t**2)):
             found = creep(hand, hand - 0.1 - down, t)
-            yield same_number(f"{name}.hand_{moves}_m_s", found, right, 1e-9)
+            yield from same_array(f"{name}.hand_{moves}_m_s", found, right, 1e-9)

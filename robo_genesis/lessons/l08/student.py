@@ -10,7 +10,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed, scaled_value
 from robo_genesis.core.trace import Episodes
 from robo_genesis.sim.arm import picking
-from robo_genesis.sim.arm.kinematics import ARM, hand_pose
+from robo_genesis.sim.arm.kinematics import hand_pose
 from robo_genesis.sim.arm.picking import CLOSE, DONE, OPEN, PickCase
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.table import World
@@ -18,17 +18,6 @@ from robo_genesis.sim.bodies.table import World
 from . import metrics, spec, statistics
 
 MEASURES = False
-
-
-def missing(function: Written, *given: Any) -> bool:
-    """Return whether a function is not written or returns None, and print which one."""
-    try:
-        absent = function(*given) is None
-    except NotImplementedError:
-        absent = True
-    if absent:
-        print(f"{function.__name__} returns nothing yet.")
-    return absent
 
 
 def waypoints(grasp_pose: Written, case: PickCase) -> list[FloatArray]:
@@ -62,27 +51,19 @@ def run(
     world: World, joints: Any, case: PickCase, grasp_pose: Written, ended: Written
 ) -> Episodes:
     """Let a student's expert work in all environments of a scene, and return its episodes."""
-    points = (
-        None if missing(grasp_pose, np.zeros(3), 0.1) else waypoints(grasp_pose, case)
-    )
-    q = np.zeros(ARM + 2)
-    of = picking.Expert if missing(ended, q, q, q[:ARM], False, 1) else machine(ended)
-    return picking.run(world, joints, case, of, points)[0]
+    points = waypoints(grasp_pose, case)
+    return picking.run(world, joints, case, machine(ended), points)[0]
 
 
-def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray | None:
-    """Return by a student's ladder how many rungs each episode passes, None if it is missing."""
+def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray:
+    """Return by a student's ladder how many rungs each episode passes."""
     lowest, rim = (
         metrics.lowest(trace, case)[-1],
         np.array([*case.bowl_at, bowl.HEIGHT]),
     )
     arrays = (trace.phase, trace.force, trace.object_pos, trace.touches)
     given = [(*(of[:, k] for of in arrays), lowest[k], rim) for k in range(len(lowest))]
-    return (
-        None
-        if missing(rungs, *given[0])
-        else np.array([rungs(*each) for each in given])
-    )
+    return np.array([rungs(*each) for each in given])
 
 
 def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
@@ -90,9 +71,8 @@ def counted(rungs: Written, trace: Episodes, case: PickCase) -> str:
     mine, course = levels(rungs, trace, case), metrics.reached(trace, case)
     lines = [f"{'rung':10} {'yours':>6} {'course':>7}"]
     for k, name in enumerate(metrics.RUNGS):
-        own = "-" if mine is None else (mine > k).sum()
-        lines.append(f"{name:10} {own:>6} {(course > k).sum():>7}")
-    if mine is not None and (mine != course).any():
+        lines.append(f"{name:10} {(mine > k).sum():>6} {(course > k).sum():>7}")
+    if (mine != course).any():
         lines.append(
             f"The ladders differ in the episodes {np.flatnonzero(mine != course)}."
         )
@@ -109,8 +89,7 @@ def rate(rungs: Written, wilson: Written, trace: Episodes, case: PickCase) -> st
         (course, statistics.wilson),
     ):
         k, n = int(np.sum(level == len(metrics.RUNGS))), len(course)
-        absent = level is None or missing(interval, k, n)
-        lines.append("-" if absent else f"{k} of {n}: {percent(interval(k, n))}")
+        lines.append(f"{k} of {n}: {percent(interval(k, n))}")
     return "yours   {}\ncourse  {}".format(*lines)
 
 
@@ -125,13 +104,11 @@ def slide(creep: Written, trace: Episodes, case: PickCase) -> str:
     inner, hand = metrics.inside_move(trace) & held, hand_pose(trace.q).position[..., 2]
     if not inner.any():
         return "No episode is carried, so there is no slide to measure."
-    rows, of = [(inner[:, k], k) for k in np.flatnonzero(inner.sum(axis=0) > 1)], "-"
-    if not missing(creep, *np.eye(3)):
-        found = [
-            creep(hand[at, k], trace.object_pos[at, k, 2], trace.t[at])
-            for at, k in rows
-        ]
-        of = scaled_value(float(np.median(found)), "mm/s")
+    rows = [(inner[:, k], k) for k in np.flatnonzero(inner.sum(axis=0) > 1)]
+    found = [
+        creep(hand[at, k], trace.object_pos[at, k, 2], trace.t[at]) for at, k in rows
+    ]
+    of = scaled_value(float(np.median(found)), "mm/s")
     return f"yours   {of}\ncourse  {scaled_value(metrics.grip(trace, held)[1], 'mm/s')}"
 
 

@@ -16,26 +16,35 @@ from . import spec
 
 
 def episodes(
-    page: Any, gs: Any, *names: str, **cameras: dict[str, Any]
+    page: Any, gs: Any, *names: str | tuple[str, ...], **cameras: dict[str, Any]
 ) -> tuple[World, Batch]:
     """Record batches of a page that differ in starts and beliefs alone, one after the other.
 
     Args:
         page: an open page.
         gs: the engine after `gs.init`.
-        names: of the page's cases.
+        names: of the page's cases. Those of a tuple run at the same time, each in its
+            own environments, with all settings but starts and beliefs of the first.
         cameras: arguments of each; see `table.build`.
 
     Returns:
-        The scene, and the batch of the first case.
+        The scene, and the batch of the first run.
     """
     cases = page.experiment.cases
-    world = picking.build(gs, cases[names[0]], **cameras)
+    groups = [(of,) if isinstance(of, str) else of for of in names]
+    runs = [picking.together([cases[name] for name in group]) for group in groups]
+    world = picking.build(gs, runs[0], **cameras)
     joints = describe(page, world.robot)
     page.links = [*page.links, "object"]
-    runs = {name: picking.run(world, joints, cases[name]) for name in names}
-    page.traces |= {name: trace for name, (trace, _) in runs.items()}
-    return world, runs[names[0]][1]
+    batches = []
+    for group, case in zip(groups, runs, strict=True):
+        trace, batch = picking.run(world, joints, case)
+        batches.append(batch)
+        first = 0
+        for name in group:
+            first, begin = first + len(cases[name].starts), first
+            page.traces[name] = trace.of(slice(begin, first))
+    return world, batches[0]
 
 
 def keep(page: Any, batch: Batch) -> None:

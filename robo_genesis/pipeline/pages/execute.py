@@ -37,11 +37,12 @@ def execute_pages(
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
 
-    The longest start first. From its first cell tagged `alone`, a page runs when no
-    other does: it starts after the others, and waits there until all have ended or
-    wait. If no kernel is compiled yet, one page starts before the others, which would
-    compile the same kernels: the engine saves them when a process ends. It is the page
-    with cells tagged `compiles-first`, until their end, or else the first lab.
+    The longest start first, those of one lesson one after the other. From its first
+    cell tagged `alone`, a page runs when no other does: it starts after the others, and
+    waits there until all have ended or wait. If no kernel is compiled yet, one page
+    starts before the others, which would compile the same kernels: the engine saves
+    them when a process ends. It is the page with cells tagged `compiles-first`, until
+    their end, or else the first lab.
 
     Args:
         pages: the pages of the book.
@@ -121,11 +122,28 @@ class Schedule:
             and sum(not run.waits for run in self.running) < self.jobs
             and not any(run.alone and not run.waits for run in self.running)
         ):
-            run = self.waiting.pop(0)
+            run = self.next_page()
+            self.waiting.remove(run)
             cells = f"started: {len(run.page.code.sources)} cells, about {run.expected:.0f} s"
             self.say(run.page.docname, f"{cells}; its log: {run.log}")
             self.running[run] = Thread(target=self._work, args=(run,), daemon=True)
             self.running[run].start()
+
+    def next_page(self) -> PageRun:
+        """Return the first page that waits, if possible of a lesson of which none runs.
+
+        Pages of one lesson compile the same kernels, which the engine saves when a process
+        ends.
+        """
+        busy = {run.page.lesson for run in self.running if not run.waits} - {None}
+        first = self.waiting[0]
+        others = (
+            run
+            for run in self.waiting
+            if run.page.lesson not in busy
+            and bool(run.page.alone) == bool(first.page.alone)
+        )
+        return next(others, first)
 
     def ended_pages(self) -> list[PageResult]:
         """Wait for the next event or report; return the result of a page that has ended."""

@@ -4,7 +4,7 @@ The table is at z = 0, the height of the robot's base. The fingers close along y
 world.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -105,6 +105,17 @@ class PickCase(SceneCase):
             np.column_stack([place, np.full(len(place), grasp + more)])
             for place, more in ends
         ]
+
+
+def together(cases: Sequence[PickCase]) -> PickCase:
+    """Return one batch of the environments of all cases; all else is as in the first case."""
+    of_rows: dict[str, Any] = {}
+    for name in ("starts", "beliefs", "yaws", "timed", "stride"):
+        values = [(getattr(case, name), len(case.starts)) for case in cases]
+        of_rows[name] = np.concatenate(
+            [np.broadcast_to(of, (n, *np.shape(of)[1:])) for of, n in values]
+        )
+    return replace(cases[0], **of_rows)
 
 
 def build(

@@ -10,14 +10,6 @@ from robo_genesis.lessons.l08 import spec, student
 SOLVED, EXACT, ALL = solutions("l08"), spec.EXACT, slice(None)
 
 
-def not_written(*given, **named):
-    raise NotImplementedError("write it")
-
-
-def nothing(*given):
-    pass
-
-
 def test_the_lab_passes_its_checks(lab):
     assert [one for one in lab.outcomes() if not one.passed] == []
 
@@ -65,17 +57,6 @@ def test_the_student_s_numbers_stand_beside_the_course_s(lab):
     assert "differ in the episodes" in student.counted(lambda *arrays: 3, *given)
     none = trace("exact", force=put(ALL, 0))(lab).traces["exact"]
     assert "No episode is carried" in student.slide(SOLVED["creep"], none, EXACT)
-
-
-def test_what_is_missing_is_named(lab, capsys):
-    given = lab.traces["exact"], EXACT
-    assert "held            -      64" in student.counted(nothing, *given)
-    assert "yours   -" in student.rate(not_written, SOLVED["wilson"], *given)
-    assert "yours   -" in student.rate(SOLVED["rungs"], not_written, *given)
-    assert "yours   -" in student.slide(not_written, *given)
-    said = capsys.readouterr().out
-    assert said.count("nothing returns nothing") == 1
-    assert said.count("not_written returns nothing") == 3
 
 
 def test_the_student_s_expert_is_the_course_s():

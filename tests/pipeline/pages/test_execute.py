@@ -302,6 +302,27 @@ def test_the_longest_pages_start_first_those_that_measure_time_last(tmp_path):
     assert schedule.left == "1 of 5 pages, about 3 min left"
 
 
+def test_a_page_of_another_lesson_starts_beside_a_running_one(tmp_path):
+    """They compile the same kernels, and a process saves its own when it ends."""
+    fronts = {
+        name: f"robo_genesis: {{lesson: {lesson}, page: {name}}}\n"
+        for name, lesson in (("a", "l04"), ("b", "l04"), ("c", "l05"))
+    }
+    books = {name: notebook(cell("1"), front=of) for name, of in fronts.items()}
+    make_book(tmp_path, **books)
+    runs = [
+        PageRun(page, *[tmp_path] * 3, 1, {}, 1.0)
+        for page in find_pages(tmp_path / "book")
+    ]
+    first, second, other = runs
+    schedule = Schedule([second, other], None, 2, Mock())
+    assert schedule.next_page() is second
+    schedule.running[first] = Mock()
+    assert schedule.next_page() is other
+    first.waits = True
+    assert schedule.next_page() is second
+
+
 def test_how_far_the_running_pages_are_is_said_now_and_then(tmp_path, monkeypatch):
     monkeypatch.setattr(execution, "EVERY", 0.5)
     make_book(tmp_path, page=notebook(cell("1"), cell("import time\ntime.sleep(2)")))
