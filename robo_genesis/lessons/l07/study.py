@@ -14,6 +14,7 @@ from robo_genesis.sim.arm.franka import MODEL_COUNTS
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.arm.joints import JointMap, describe, to_numpy
 from robo_genesis.sim.bodies import bowl, table
+from robo_genesis.sim.bodies.contacts import friction
 from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.camera import record
 from robo_genesis.sim.camera.views import look, segment_number
@@ -142,12 +143,12 @@ class Facts:
         self.carried = to_numpy(own.get_links_net_contact_force())[..., 2].item()
         self.positions = self.rest.link_pos[:, OBJECT].astype(float)
         apart = [np.abs(case.boxes[name] - of).max() for name, of in self.boxes.items()]
-        acts = max(geom.friction for geom in (*own.geoms, *below.geoms))
+        acts = max(friction(self.world.scene, body) for body in (own, below))
         return {
             "margin": min(table.gap(*pair) for pair in self.pairs),
             "shape": max(apart),
             "open": not all(one.get_trimesh().is_watertight for one in basin.vgeoms),
-            "friction": abs(acts - case.friction),
+            "friction": abs(round(acts, 6) - case.friction),
             "mass": abs(own.get_mass() / (case.density * case.volume) - 1),
             "depth": depths[0],
             "ball": scene_metrics(self.rest, case).ball,

@@ -215,10 +215,9 @@ def time_constant(world: World) -> float:
 
 
 def friction(scene: Any, body: Any) -> float:
-    """Return the friction coefficient of the first geom of a body."""
-    return float(
-        to_numpy(scene.rigid_solver.get_geoms_friction([body.geoms[0].idx]))[0]
-    )
+    """Return the largest friction coefficient of the geoms of a body."""
+    geoms = [geom.idx for geom in body.geoms]
+    return float(to_numpy(scene.rigid_solver.get_geoms_friction(geoms)).max())
 
 
 def record_world(
