@@ -39,7 +39,7 @@ def one_rung(run: Experiment) -> Findings:
 
 
 def hovering_is_at_rest(run: Experiment) -> Findings:
-    """The hovering object is 5 mm above the table, keeps its place to 1 µm, and is
+    """The object of scene B is 5 mm above the table, keeps its place to 1 µm, and is
     lifted with the hand.
     """
     rest, lift = run.metrics["hovering_at_rest"], run.metrics["hovering"]

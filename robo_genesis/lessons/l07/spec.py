@@ -71,8 +71,8 @@ CASE_MARKS |= {"forced": "second", "forced_fine": "third"}
 SHOWN_LIFTS = {
     "baseline": "50 mm",
     "wide": "82 mm",
-    "forced": "80.5 mm, µ 0.1",
-    "forced_fine": "80.5 mm, µ 0.1, half the step",
+    "forced": "80.5 mm",
+    "forced_fine": "80.5 mm, half the step",
 }
 
 # The one rung that each scene fails; not fitted to a run.

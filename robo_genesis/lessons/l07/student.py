@@ -37,10 +37,10 @@ def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results:
 def number(name: str, value: Any) -> str:
     """Return the value of a quantity with its unit."""
     if name in SHARES:
-        return f"{100 * value:.1f} %"
+        return f"{100 * value:z.1f} %"
     if spec.UNITS.get(name) != "m":
         return f"{value:g}"
-    return scaled_value(value, "mm" if abs(value) >= 1e-4 else "µm")
+    return scaled_value(value, "mm" if abs(value) >= 1e-4 else "µm").replace("-", "−")
 
 
 def compared(

@@ -39,9 +39,9 @@ CATCHES = {
     None: "–",
     "carried": "carried share of the weight",
     "margin": "smallest margin",
-    "accepted": "accepted answers, of 3,",
+    "accepted": "accepted answers (of 3):",
     "friction": "friction differs by",
-    "touches": "touching postures, of 33,",
+    "touches": "touching postures (of 33):",
     "pushed": "moved by a push",
     "grasp": "fingertips above the shelf",
 }
@@ -72,7 +72,7 @@ def grip_table(run: Experiment) -> tables.Rows:
         yield {
             "object": label,
             "steps in contact before closing": f"{read[f'{name}_descending']:g}",
-            "pushed [mm]": decimal(1000 * m.pushed, 1),
+            "moved before closing [mm]": decimal(1000 * m.pushed, 1),
             "rise [mm]": decimal(1000 * m.rise, 1),
             "hand's rise [mm]": decimal(1000 * m.hand_rise, 1),
             "tilt [mrad]": decimal(1000 * m.tilt, 0),

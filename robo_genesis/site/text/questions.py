@@ -190,6 +190,8 @@ def asked_number(
     value, own_unit, _ = value_of(page_bundle(lesson_page), name)
     if value is None:
         raise LookupError(f"{lesson_page} did not observe {name}. Ask with {{choice}}.")
+    if own_unit == "1" and not unit:
+        text = f"{value:g}"
     verdicts = JUDGED | {key: "No." for key in causes if key not in JUDGED}
     if unit and unit not in COUNTED:
         value *= 1000
