@@ -42,6 +42,8 @@ Step 1 of 3: the scene, and the first run. This is the compilation: minutes; lat
 Step 2 of 3: the other runs, of {count} in all.
 Step 3 of 3: checks, figures and the bundle."""
 
+_opened: list[str] = []
+
 
 def backend() -> Any:
     """Return the argument `backend` of the `gs.init` that follows, and start to keep its log.
@@ -62,13 +64,19 @@ def open_page(lesson: str, name: str) -> "LessonPage":
         LookupError: the lesson or the page does not exist; the message lists the
             choices.
         ContractError: a variable of the contract is not valid.
-        EngineError: Genesis is not initialised, or it was initialised with another
-            backend, seed or precision.
+        EngineError: a page is open already, Genesis is not initialised, or it was
+            initialised with another backend, seed or precision.
     """
     declared = find_page(lesson, name)
+    if _opened:
+        raise session.EngineError(
+            f"The page {_opened[0]} is open in this process, and a process has one page. Restart "
+            "the kernel and run all cells from the top."
+        )
     contract = session.read_contract()
     contract = replace(contract, render=contract.render and declared.camera)
     page = LessonPage(lesson, name, contract, session.started(contract))
+    _opened.append(f"{lesson}/{name}")
     plotting.use_course_style()
     if RUN_ID not in os.environ:
         if shell := get_ipython():
@@ -257,7 +265,7 @@ class LessonPage:
                 print(f"{folder.name}-passed keeps the earlier bundle, which passed.")
         renderer = cameras.read_renderer(scene) if self.render else None
         self._recorder.write(experiment, renderer, self._shape)
-        print(f"The bundle is in {self._lesson}/{self._recorder.page}/{folder.name}.")
+        print(f"The bundle is in {'/'.join(folder.parts[-4:])}.")
         if self._errors:
             print("Cells with an error:", *self._errors.values())
         missing = self._missing

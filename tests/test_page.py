@@ -44,6 +44,7 @@ def page(quiet, tmp_path, monkeypatch, engine, displayed):
     monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(tmp_path / "outputs"))
     monkeypatch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
     monkeypatch.setattr(session, "started", lambda contract: engine)
+    monkeypatch.setattr(pages, "_opened", [])
     monkeypatch.setattr(pages.cameras, "read_renderer", lambda scene: RENDERER)
     return rg.open_page("l02", "lab")
 
@@ -68,6 +69,7 @@ def measure(page):
 def test_a_reader_s_first_start_says_what_the_next_minutes_do(
     page, tmp_path, monkeypatch, capsys, run_id, compiled, lines
 ):
+    monkeypatch.setattr(pages, "_opened", [])
     monkeypatch.setenv(project.KERNELS, str(tmp_path))
     monkeypatch.delenv(project.RUN_ID)
     if run_id:
@@ -94,8 +96,12 @@ def test_the_names_are_loaded_without_the_engine_and_only_when_used():
         rg.openpage  # noqa: B018
 
 
-def test_a_page_is_opened_by_a_known_name_alone(page):
+def test_a_page_is_opened_once_and_only_by_a_known_name(page):
     assert (page.render, list(page.links)) == (True, [spec.LINK])
+    with pytest.raises(
+        session.EngineError, match=r"l02/lab is open .*Restart the kernel"
+    ):
+        rg.open_page("l02", "lecture")
     with pytest.raises(LookupError, match=r"l02/extra .*Choices: l02/lab, l02/lecture"):
         rg.open_page("l02", "extra")
 
@@ -105,8 +111,10 @@ def test_a_page_without_an_engine_is_refused(monkeypatch, tmp_path):
     monkeypatch.setattr(
         session, "import_engine", lambda: SimpleNamespace(_initialized=False)
     )
+    monkeypatch.setattr(pages, "_opened", [])
     with pytest.raises(session.EngineError, match="not initialised"):
         rg.open_page("l02", "lab")
+    assert pages._opened == []
 
 
 def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
@@ -168,7 +176,7 @@ def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(
     lines = capsys.readouterr().out.splitlines()
     assert lines[-1] == "L02 CHECK: PASSED"
     assert lines[-2] == "functions 4 of 4"
-    assert lines[-3] == "The bundle is in l02/lab/cpu."
+    assert lines[-3] == "The bundle is in outputs/l02/lab/cpu."
     manifest = json.loads((page._recorder.folder / "manifest.json").read_text())
     assert manifest["run_id"] == RUN_ID
     page.readings["body"] = {"mass": 2 * spec.BASELINE.mass}
@@ -242,6 +250,7 @@ def test_without_a_camera_no_frame_is_taken(page, monkeypatch):
     page.capture(None, "initial")
     assert page.frames == {}
     assert not page.experiment.rendered
+    monkeypatch.setattr(pages, "_opened", [])
     assert not rg.open_page("l04", "formula").render  # the page declares none
 
 

@@ -166,6 +166,9 @@ def same_array(label: str, found: Any, expected: Any, tiny: float) -> Findings:
     values, right = np.asarray(found), np.asarray(expected)
     if values.dtype.kind not in "iuf":
         yield Finding(label, brief(found), False, "numbers")
+        return
+    if right.ndim == 0 and values.size == 1:
+        values = values.reshape(())
     yield equal(f"{label}.shape", str(values.shape), str(right.shape))
     if values.dtype == np.float32:
         tiny = max(tiny, FLOAT32 * np.abs(right).max(initial=1.0))
@@ -173,13 +176,16 @@ def same_array(label: str, found: Any, expected: Any, tiny: float) -> Findings:
     if not good.all():
         row = tuple(np.argwhere(~good)[0].tolist())[: max(1, values.ndim - 1)]
         place = f"{label}{list(row)}, the first that differs," if row else label
-        required = f"{row_text(right[row])} ± {tiny:g}"
-        yield Finding(place, row_text(values[row]), False, required)
+        texts = [row_text(of[row]) for of in (values, right)]
+        if texts[0] == texts[1]:
+            texts = [row_text(of[row], 17) for of in (values, right)]
+        one = texts[0] if values[row].ndim else values[row].item()
+        yield Finding(place, one, False, f"{texts[1]} ± {tiny:g}")
 
 
-def row_text(values: FloatArray) -> str:
-    """Return a number, or an array (n,), with ten significant digits."""
-    text = ", ".join(f"{value:.10g}" for value in np.ravel(values))
+def row_text(values: FloatArray, digits: int = 10) -> str:
+    """Return a number, or an array (n,), with significant digits."""
+    text = ", ".join(f"{value:.{digits}g}" for value in np.ravel(values))
     return f"[{text}]" if np.ndim(values) else text
 
 

@@ -1,5 +1,6 @@
 """The environment contract, the start of the engine, its backend and its log."""
 
+import inspect
 import logging
 import os
 import subprocess
@@ -173,3 +174,15 @@ def test_a_disagreement_names_the_remedy(change):
     session.require_agreement(CUDA)
     with pytest.raises(EngineError, match=r"disagree about .*Unset QD_ARCH"):
         session.require_agreement(replace(CUDA, **change))
+
+
+def test_python_knows_the_module_of_its_frozen_importer(monkeypatch):
+    """Without an entry it searches all modules, for each function that Quadrants decorates."""
+    name = "<frozen importlib._bootstrap>"
+    monkeypatch.delitem(inspect.modulesbyfile, name, raising=False)
+    with monkeypatch.context() as patch:
+        patch.setattr(session.importlib, "import_module", Mock())
+        session.import_engine()
+    assert inspect.getmodule(inspect.currentframe(), name).__name__.endswith(
+        "importlib._bootstrap"
+    )

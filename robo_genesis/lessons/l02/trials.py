@@ -57,8 +57,9 @@ def shape_rows(entities: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def two_geometries(run: Experiment) -> Findings:
-    """The box collides with what is drawn; the duck collides with fewer triangles than
-    are drawn, the tray with several pieces for one drawn mesh. The hammer has two.
+    """The box is one geom and collides with what is drawn; the hammer has two geoms. The
+    duck collides with fewer triangles than are drawn, the tray with several pieces for
+    one drawn mesh.
     """
     found = run.readings[SHAPES]
     for name, geoms in (("box", 1), ("hammer", 2)):

@@ -248,7 +248,7 @@ FINEST = 6
 UNSETTLED = 0.05
 
 SAME_HOP = 1e-4  # Of a hop between two engines with equal settings [m]
-ENGINES_APART = 5e-5  # Of landings between them [m]
+ENGINES_APART = 5e-5  # Of landings between them [m], and of quaternions [1]
 
 
 def parameters(page: str) -> dict[str, Any]:

@@ -73,7 +73,7 @@ def step(damped: Written) -> Findings:
     """
     start = np.array(spec.BASELINE.q_start[:ARM])
     target = Pose(spec.TARGET, spec.DOWN)
-    given: Any = {
+    given: dict[str, Any] = {
         f"{rows}_rows": (
             kinematics.jacobian(start)[:rows, : rows - 1],
             np.linspace(-0.01, 0.02, rows),

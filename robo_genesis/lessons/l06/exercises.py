@@ -136,7 +136,7 @@ class Machine:
 
 # Durations of the steps of the warm-up, steps of a repeat, and their duration in each
 # repeat.
-TRIALS: Any = {
+TRIALS: dict[str, Any] = {
     "steady": ([1, 1, 1], 10, [1] * 5),
     "slow_first_steps": ([800, 50, 1, 1], 10, [1] * 3),
     "one_disturbed_repeat": ([1, 1], 10, [1, 1, 30, 1, 1]),

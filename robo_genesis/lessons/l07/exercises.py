@@ -17,7 +17,7 @@ from robo_genesis.sim.bodies.table import gap
 
 MEASURES = False
 
-PAIRS: Any = {
+PAIRS: dict[str, Any] = {
     "apart_along_x": ((0.0, 0.0, 0.2, 0.4), (0.5, 0.1, 0.1, 0.3)),
     "only_corners_near": ((0.1, 0.1, 0.1, 0.1), (0.21, 0.24, 0.1, 0.1)),
     "overlap_of_corners": ((0.0, 0.0, 0.2, 0.4), (0.18, -0.15, 0.2, 0.4)),
@@ -35,7 +35,7 @@ def footprints(margin: Written) -> Findings:
 
 
 # Positions of one coordinate [m], window, bound [m], and whether the object is at rest
-MOTIONS: Any = {
+MOTIONS: dict[str, Any] = {
     "exactly_the_bound": ([0, 0, 0, 0.25, 0, 0.25], 4, 0.25, True),
     "both_ways": ([0, 0, 0, 0.1875, -0.1875, 0, 0], 4, 0.25, False),
     "creeps": ([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], 4, 0.25, False),
@@ -66,7 +66,7 @@ def rest(at_rest: Written) -> Findings:
 
 
 # Segmentations, number of the object, area of its outline [pixel]
-PICTURES: Any = {
+PICTURES: dict[str, Any] = {
     "half_hidden": ([[0, 0, 7], [7, 3, 3]], 7, 4.0),
     "absent": ([[0, 1], [2, 0]], 4, 12.5),
     "not_square": ([[5, 5, 5, 5], [1, 1, 5, 0]], 1, 3.0),
@@ -88,7 +88,7 @@ def pixels(visible: Written) -> Findings:
 
 # Heights of the fingertips at two answers [m], contacts, and whether the object is
 # reachable
-TIPS: Any = {
+TIPS: dict[str, Any] = {
     "all_good": ((0.136, 0.036), (0, 0, 0, 0), True),
     "at_limits": ((0.03, 0.02), (0, 0), True),
     "first_too_low": ((0.025, 0.025), (0,), False),
@@ -126,7 +126,7 @@ def reach(reachable: Written) -> Findings:
 GOOD = {"margin": (0.171, 0.005, inf), "mass": (0.0, 0.0, 0.01)}
 
 # Results by rung, and the first rung that fails
-RESULTS: Any = {
+RESULTS: dict[str, Any] = {
     "at_limits": (
         {"b": {"x": (2, 2, 5)}, "a": {"y": (5, 2, 5), "z": (-1, -1, -1)}},
         None,

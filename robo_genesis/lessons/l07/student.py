@@ -37,10 +37,12 @@ def attempt(rung: Callable[[Facts], Results], facts: Facts) -> Results:
 def number(name: str, value: Any) -> str:
     """Return the value of a quantity with its unit."""
     if name in SHARES:
-        return f"{100 * value:z.1f} %"
-    if spec.UNITS.get(name) != "m":
-        return f"{value:g}"
-    return scaled_value(value, "mm" if abs(value) >= 1e-4 else "µm").replace("-", "−")
+        text = f"{100 * value:z.1f} %"
+    elif spec.UNITS.get(name) == "m":
+        text = scaled_value(value, "mm" if abs(value) >= 1e-4 else "µm")
+    else:
+        text = f"{value:g}"
+    return text.replace("-", "−")
 
 
 def compared(
@@ -53,6 +55,11 @@ def compared(
         results: by rung what the student's functions found.
         facts: of the same scene.
     """
+    if lacking := [rung for rung in facts.values if rung not in results]:
+        raise NotImplementedError(
+            f"There are no results of {listed(lacking)}. Run the cells above that measure them, "
+            "and write the functions that they need."
+        )
     lines, failed = [f"{'rung':10} {'yours':8} course"], []
     for rung, values in facts.values.items():
         mine = "FAILS" if ladder({rung: dict(results[rung])}) else "passes"

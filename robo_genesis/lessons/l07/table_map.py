@@ -170,7 +170,8 @@ def totals(found: Experiment) -> dict[str, int]:
 def map_follows(found: Experiment) -> Findings:
     """Where the map says that the hand reaches a place, both recorded poses of the hand
     are within the solver's tolerances, up to 2 µm and 2 µrad. The object's outline is
-    inside the picture of the camera beside the table in each cell that the hand reaches.
+    inside the picture of the camera beside the table, with at least 200 pixels, in each
+    cell that the hand reaches.
     """
     counted = totals(found)
     for name, count in counted.items():

@@ -43,7 +43,7 @@ AT, SLOW, STILL = picking.ARRIVED, picking.SLOW, picking.STILL
 
 # Whether a phase of the arm ends and one of the fingers, and by array and joint what is
 # added to an arm at its goal with still fingers
-STATES: Any = {
+STATES: dict[str, Any] = {
     "at_its_goal": (True, True, {}),
     "nan": (False, True, {("q", 2): nan}),
     "nan_of_a_finger": (True, False, {("qd", 8): nan}),
@@ -91,7 +91,7 @@ END, RIM = slice(9, None), (0.55, 0.22, 0.05)
 
 # Array, index and value of each fault of an episode, and how many rungs the episode
 # passes
-EPISODES: Any = {
+EPISODES: dict[str, Any] = {
     "success": (7,),
     "bowl_elsewhere": ("rim", 0, 0.3, "pos", (END, 0), 0.3, 7),
     "done_at_first": ("phase", 0, 8, 0),

@@ -25,8 +25,8 @@ NOISE, PAIRS = 0.005, 128
 # [m].
 SAG = read_only((0.0048, -0.0009))
 
-# Samples of the runs with clocks and strides, whose slowest takes 6 s.
-SLOW = 70
+# Samples of the runs with clocks and strides, of which the slowest needs 60.
+LONGER = 70
 
 CLOCKS = (
     10,
@@ -74,12 +74,12 @@ def cases() -> dict[str, PickCase]:
         "timed": batch(
             np.tile(timed, (len(CLOCKS), 1)),
             timed=np.repeat(CLOCKS, TIMED),
-            steps=SLOW,
+            steps=LONGER,
         ),
         "paced": batch(
             np.tile(timed, (len(STRIDES), 1)),
             stride=np.repeat(STRIDES, TIMED),
-            steps=SLOW,
+            steps=LONGER,
         ),
         "boxes": batch(starts, shape="box", size=OBLONG, yaws=yaws),
     }

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.exercises import Written
+from robo_genesis.core.exercises import Written, brief
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed, scaled_value
@@ -42,7 +42,13 @@ def machine(ended: Written) -> type[picking.Expert]:
                 self.goals[self.phase, self.rows],
                 np.isin(self.phase, (CLOSE, OPEN)),
             )
-            return np.asarray(ended(q, qd, goal, of_fingers, self.since), bool)
+            found = np.asarray(ended(q, qd, goal, of_fingers, self.since))
+            if found.dtype != bool or found.shape != self.phase.shape:
+                raise TypeError(
+                    f"{ended.__name__} returned {brief(found)}, valid are {len(self.phase)} truth "
+                    "values, one for each environment. Its own test has to pass first."
+                )
+            return found
 
     return Own
 

@@ -24,7 +24,7 @@ def episodes(
         page: an open page.
         gs: the engine after `gs.init`.
         names: of the page's cases. Those of a tuple run at the same time, each in its
-            own environments, with all settings but starts and beliefs of the first.
+            own environments.
         cameras: arguments of each; see `table.build`.
 
     Returns:

@@ -37,7 +37,7 @@ def execute_pages(
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them.
 
-    The longest start first, those of one lesson one after the other. From its first
+    The longest start first, if possible beside pages of other lessons. From its first
     cell tagged `alone`, a page runs when no other does: it starts after the others, and
     waits there until all have ended or wait. If no kernel is compiled yet, one page
     starts before the others, which would compile the same kernels: the engine saves
@@ -96,7 +96,7 @@ def execute_pages(
 class Schedule:
     """The pages that wait and those that run, each in a thread of its own.
 
-    `waiting` has them in the order in which they start, `first` the one that starts
+    `waiting` has them, the preferred ones first; `first` is the one that starts
     before the others, if there is one. `jobs` run at once. `say` prints each event.
     """
 

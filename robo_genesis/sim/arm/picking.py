@@ -5,11 +5,12 @@ world.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.experiment import json_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Episodes
 from robo_genesis.sim.bodies import bowl, table
@@ -50,6 +51,10 @@ ARRIVED, SLOW, STILL = 0.015, 0.05, 0.002
 CLOSING, LIMIT = 5, 120
 
 
+# Settings that each environment has for itself.
+OF_ENVIRONMENTS = ("starts", "beliefs", "yaws", "timed", "stride")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PickCase(SceneCase):
     """Episodes of a scripted expert, one in each environment of a scene.
@@ -75,6 +80,19 @@ class PickCase(SceneCase):
     yaws: FloatArray | float = 0.0
     timed: FloatArray | float = 0.0
     stride: FloatArray | float = 0.012
+
+    def __post_init__(self) -> None:
+        """Raise CaseError if an object begins over the bowl: its episode would be solved."""
+        solved = (
+            np.hypot(*(self.starts - self.bowl_at).T)
+            < bowl.RIM + max(self.size[:2]) / 2
+        )
+        if solved.any():
+            raise CaseError(
+                f"The object of environment {int(solved.argmax())} begins over the bowl at "
+                f"{self.bowl_at}. Choose starts beside it: an episode that begins solved shows "
+                "nothing."
+            )
 
     @property
     def turns(self) -> FloatArray:
@@ -108,33 +126,32 @@ class PickCase(SceneCase):
 
 
 def together(cases: Sequence[PickCase]) -> PickCase:
-    """Return one batch of the environments of all cases; all else is as in the first case."""
+    """Return one batch of the environments of all cases, which have the same settings.
+
+    Raises:
+        CaseError: another setting than those of environments differs.
+    """
+    first = cases[0]
     of_rows: dict[str, Any] = {}
-    for name in ("starts", "beliefs", "yaws", "timed", "stride"):
+    own = {name: getattr(first, name) for name in OF_ENVIRONMENTS}
+    for case in cases:
+        if json_value(asdict(replace(case, **own))) != json_value(asdict(first)):
+            raise CaseError(
+                f"{case} and {first} cannot run in one scene: they differ in more than "
+                f"{', '.join(OF_ENVIRONMENTS)}. Run them one after the other."
+            )
+    for name in OF_ENVIRONMENTS:
         values = [(getattr(case, name), len(case.starts)) for case in cases]
         of_rows[name] = np.concatenate(
             [np.broadcast_to(of, (n, *np.shape(of)[1:])) for of, n in values]
         )
-    return replace(cases[0], **of_rows)
+    return replace(first, **of_rows)
 
 
 def build(
     gs: Any, case: PickCase, view: dict[str, Any] | None = None, **options: Any
 ) -> World:
-    """Build the scene of episodes, with the outer step of a command; see `table.build`.
-
-    Raises:
-        CaseError: an object begins over the bowl, where its episode would be solved
-            already.
-    """
-    solved = (
-        np.hypot(*(case.starts - case.bowl_at).T) < bowl.RIM + max(case.size[:2]) / 2
-    )
-    if solved.any():
-        raise CaseError(
-            f"The object of environment {int(solved.argmax())} begins over the bowl at "
-            f"{case.bowl_at}. Choose starts beside it: an episode that begins solved shows nothing."
-        )
+    """Build the scene of episodes, with the outer step of a command; see `table.build`."""
     scene = replace(
         case, dt=case.control.dt, substeps=case.control.substeps, ball_radius=0.0
     )

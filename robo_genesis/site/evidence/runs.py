@@ -135,7 +135,7 @@ def lesson_statuses(book: Path, lesson: str) -> list[Status]:
 class LessonStatus(PageDirective):
     """Show the states of a lesson's runs in one line, and a sentence on each behind it.
 
-    The line leaves out missing runs unless all are missing.
+    Missing runs are left out unless all are missing.
     """
 
     required_arguments = 1
@@ -143,8 +143,8 @@ class LessonStatus(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
-        known = [status for status in statuses if status.state != "missing"]
-        return [status_list(statuses, line=known or statuses)]
+        known = [status for status in statuses if status.state != "missing"] or statuses
+        return [status_list(known, line=known)]
 
 
 class CourseStatus(MapDirective):

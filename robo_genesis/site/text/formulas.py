@@ -79,7 +79,7 @@ def to_mathml(latex: str, display: str) -> str:
             that the site's math font lacks.
     """
     latex = latex.replace("{aligned}", "{split}")  # which latex2mathml knows
-    braces = re.findall(r"(?<!\\)[{}]", latex)
+    braces = re.sub(r"\\.", "", latex)
     try:
         if braces.count("{") != braces.count("}"):
             raise ValueError("its braces are not balanced")

@@ -55,3 +55,9 @@ def test_the_generated_text_names_a_failed_rung(scenes, monkeypatch):
     assert "passes all five rungs" in student.conclusions(scenes)
     monkeypatch.setattr(rungs, "failed", lambda run, scene: ["seen"])
     assert "The scene fails seen." in student.conclusions(scenes)
+
+
+def test_a_rung_without_results_is_named():
+    facts = SimpleNamespace(values=dict.fromkeys(spec.RUNGS))
+    with pytest.raises(NotImplementedError, match=f"no results of {spec.RUNGS[-1]}"):
+        student.compared(by_margin, dict.fromkeys(spec.RUNGS[:-1]), facts)

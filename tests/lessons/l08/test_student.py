@@ -68,3 +68,14 @@ def test_the_student_s_expert_is_the_course_s():
     q, expert.since[:2] = np.zeros((64, 9)), 9
     expert.phase[:] = np.arange(64) % 8
     assert expert.ends(q, q).tolist() == super(type(expert), expert).ends(q, q).tolist()
+
+
+@pytest.mark.parametrize("returned", [None, "yes", True])
+def test_an_end_that_is_no_truth_value_for_each_environment_is_named(returned):
+    def ended(*given):
+        return returned
+
+    goals = np.zeros((9, 2, 7))
+    expert = student.machine(ended)(EXACT, goals, np.ones(2, bool))
+    with pytest.raises(TypeError, match=r"ended returned .*, valid are 2 truth values"):
+        expert.act(np.zeros((2, 9)), np.zeros((2, 9)))

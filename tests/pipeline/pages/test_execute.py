@@ -319,7 +319,9 @@ def test_a_page_of_another_lesson_starts_beside_a_running_one(tmp_path):
     assert schedule.next_page() is second
     schedule.running[first] = Mock()
     assert schedule.next_page() is other
-    first.waits = True
+    schedule.waiting = [second]
+    assert schedule.next_page() is second
+    first.waits, schedule.waiting = True, [second, other]
     assert schedule.next_page() is second
 
 

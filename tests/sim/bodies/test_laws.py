@@ -30,20 +30,29 @@ def test_runs_keep_their_laws_and_no_others_do(case):
 
 
 @pytest.mark.parametrize(
-    ("depth", "times", "broken"), [(3e-5, 1, False), (5e-5, 1, True), (3e-5, 2, True)]
+    ("depth", "times", "reported", "broken"),
+    [
+        (3e-5, 1, 0, False),
+        (3e-5, 1, 1e-5, False),
+        (3e-5, 2, 0, True),
+        (5e-5, 1, 0, True),
+        (3e-5, 1, 5e-5, True),
+    ],
 )
-def test_a_corner_that_is_hardly_deep_may_be_missed_now_and_then(depth, times, broken):
+def test_a_corner_that_is_hardly_deep_may_be_missed_now_and_then(
+    depth, times, reported, broken
+):
     trace = mujoco_contacts.run_case(LANDED)
     turned = np.float32([np.cos(0.1), 0, np.sin(0.1), 0])
     still = np.zeros_like(trace.link_vel)
-    reported = np.full_like(trace.penetration, depth)
-    reported[1 : 1 + times] = 0
+    depths = np.full_like(trace.penetration, depth)
+    depths[1 : 1 + times] = reported
     tilted = replace(
         trace,
         link_quat=np.broadcast_to(turned, trace.link_quat.shape),
         link_vel=still,
         link_ang=still,
-        penetration=reported,
+        penetration=depths,
     )
     lowest = laws.depth_before_last_step(tilted, LANDED)[:, None, None]
     lifted = replace(tilted, link_pos=tilted.link_pos + [0, 0, 1] * (lowest - depth))

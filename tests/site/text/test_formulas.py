@@ -35,6 +35,7 @@ ACCENT, BOLD = '<mover accent="true">', 'style="font-weight: bold"'
             for n in ("dot", "ddot", "hat", "tilde", "vec", "bar")
         ),
         (r"\overset{!}{=}", "<mover>", "accent"),
+        (r"\begin{aligned} a \\{} [b] \end{aligned}", "<mtr>", "\\"),
         (r"\boldsymbol{q}", BOLD, "mathvariant"),
         (
             r"\begin{aligned} a &= b \end{aligned}",
