@@ -25,7 +25,7 @@ def settings(run: Experiment) -> Findings:
 def laws_of_motion(run: Experiment) -> Findings:
     """Each reported depth is that of the body's shape, and MuJoCo repeats most steps of Genesis.
 
-    In at most a tenth of a run's contacts a depth is up to 40 µm less.
+    In at most a fifth of the contacts of a run, a depth is up to 40 µm less.
     """
     for name, case in run.cases.items():
         trace, in_mujoco = run.traces[name], run.page.runs[name].note

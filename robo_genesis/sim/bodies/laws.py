@@ -40,9 +40,9 @@ FALLEN, FALLING, DEPTH, GRAZE = 5e-6, 1e-4, 5e-7, 4e-5
 
 NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
 
-# Largest share of a run's steps in contact that miss the lowest corner: 0.04 in a newer
+# Largest share of a run's steps in contact that miss the lowest corner: 0.06 in a newer
 # version.
-MISSED = 0.1
+MISSED = 0.2
 
 # Largest share of the steps of a run that may end otherwise in MuJoCo, because a cube
 # that lands on an edge has other contact points there: 0.15 and 0.39 in two versions.

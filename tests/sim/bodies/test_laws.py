@@ -34,7 +34,7 @@ def test_runs_keep_their_laws_and_no_others_do(case):
     [
         (3e-5, 1, 0, False),
         (3e-5, 1, 1e-5, False),
-        (3e-5, 2, 0, True),
+        (3e-5, 3, 0, True),
         (5e-5, 1, 0, True),
         (3e-5, 1, 5e-5, True),
     ],
