@@ -135,15 +135,10 @@ class Schedule:
         Pages of one lesson compile the same kernels, which the engine saves when a process
         ends.
         """
-        busy = {run.page.lesson for run in self.running if not run.waits} - {None}
         first = self.waiting[0]
-        others = (
-            run
-            for run in self.waiting
-            if run.page.lesson not in busy
-            and bool(run.page.alone) == bool(first.page.alone)
-        )
-        return next(others, first)
+        busy = {run.page.lesson for run in self.running if not run.waits} - {None}
+        others = (run for run in self.waiting if run.page.lesson not in busy)
+        return first if first.page.alone else next(others, first)
 
     def ended_pages(self) -> list[PageResult]:
         """Wait for the next event or report; return the result of a page that has ended."""
