@@ -46,7 +46,7 @@ compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder
 
 # The site is built first, because the tests of the engine hold the lock of builds.
 TESTS = $(COURSE) book $(call options,JOBS) && \
-  "$(PYTHON)" -m pytest --numprocesses 2 --dist loadscope --no-loadscope-reorder
+  "$(PYTHON)" -m pytest --numprocesses 3 --dist loadscope --no-loadscope-reorder
 test: $(ENVIRONMENT) ## build the site, and run the tests (needs Debian's chromium)
 	@$(TESTS)
 

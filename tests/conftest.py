@@ -49,9 +49,10 @@ def pytest_collection_modifyitems(
 ) -> None:
     """Leave slow tests out unless `--slow` asks for them, and put long ones first.
 
-    What runs the engine comes first, because it is the longest scope of one process.
-    The tests that use the engine of this process precede those that start one elsewhere
-    or build. Small tests come last, so that two processes end at about the same time.
+    What runs the engine and the visits of all pages come first, because they are the
+    longest scopes of one process. The tests that use the engine of this process precede
+    those that start one elsewhere or build. Small tests come last, so that all
+    processes end at about the same time.
     """
     for item in items:
         if uses_engine(item) and not item.get_closest_marker("engine"):
@@ -64,18 +65,20 @@ def pytest_collection_modifyitems(
     config.hook.pytest_deselected(items=left_out)
 
     def turn(item: pytest.Item) -> tuple[int, bool]:
-        order = [ENGINE, BUILDS, BROWSER, SMALL]
+        order = [ENGINE, SWEEP, BUILDS, BROWSER, SMALL]
         return order.index(kind(item.path)), not uses_engine(item)
 
     items[:] = sorted((item for item in items if item not in left_out), key=turn)
 
 
-ENGINE, BUILDS, BROWSER, SMALL = "engine", "builds", "browser", "small"
+ENGINE, SWEEP, BUILDS, BROWSER, SMALL = "engine", "sweep", "builds", "browser", "small"
 
 
 @cache
 def kind(path: Path) -> str:
     """Return what most tests of a file need."""
+    if path.name == "test_sweep.py":
+        return SWEEP
     text = path.read_text()
     if "mark.browser" in text:
         return BROWSER
@@ -107,7 +110,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> LoadScopeSch
     class ByModule(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
-            if file.endswith("test_sweep.py"):
+            if kind(config.rootpath / file) == SWEEP:
                 return nodeid.partition("[")[2].partition("-")[
                     0
                 ]  # each way to visit all pages

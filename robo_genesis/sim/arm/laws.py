@@ -52,7 +52,8 @@ def driven_run(trace: Trace, case: ControlCase, links: Sequence[str]) -> Finding
     law = control_law(of_states, trace.q, qd)
     yield from apart("control_force [N·m or N]", force, law, room)
     limits = trace.effort_limit, case.effort_limit
-    yield from apart("effort_limit [N·m or N]", *limits, LIMIT_TOLERANCE)
+    room = LIMIT_TOLERANCE * case.effort_limit
+    yield from apart("effort_limit [N·m or N]", *limits, room)
     if not case.model.free_base:
         yield from poses(trace, links, case.model)
 

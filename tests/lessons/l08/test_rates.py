@@ -33,7 +33,7 @@ def outcomes(name, case):
 @pytest.fixture(scope="module")
 def run(joints):
     lengths = {
-        "paced": np.repeat([9, 10, 11], rates.TIMED),
+        "paced": np.repeat([6, 6.5, 7], rates.TIMED),
         "timed": np.repeat([6, 6.4, 6.8, 7.2], rates.TIMED),
     }
     made = {}
@@ -84,6 +84,6 @@ def test_a_clock_ends_the_descent_whatever_is_measured():
 def test_tables_and_figure_show_the_batches(run):
     assert "| 128 |" in text.pair_table(run)
     assert "below −8" in text.side_table(run)
-    assert "| 0.6 | 3.2 | 4.80 | 1.50 |" in text.pace_table(run)
+    assert "| 0.6 | 2.0 | 3.00 | 1.50 |" in text.pace_table(run)
     assert "100 of 128" in text.rate_table(run, "counted")
     assert plots.errors(run, "grid").axes

@@ -53,7 +53,7 @@ def test_no_front_matter_or_bundle_s_word_can_set_a_badge(html, name):
     badges = [
         badge.get_text() for badge in parsed(html, name).select(".evidence-badge")
     ]
-    assert badges == ["cpu-stale", "amdgpu-missing"]
+    assert badges == ["cpu-stale"]
 
 
 def test_without_an_address_nothing_claims_one(html):

@@ -1,7 +1,5 @@
 """Batches of several cases in one scene."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -26,12 +24,6 @@ def test_cases_that_differ_in_more_than_rows_are_refused():
         CaseError, match=r"cannot run in one scene: .* more than starts"
     ):
         picking.together([CASES["plain"], CASES["elliptic"]])
-
-
-def test_an_episode_that_begins_solved_is_refused():
-    over_the_bowl = np.array([CASES["timed"].bowl_at] * 64)
-    with pytest.raises(CaseError, match="environment 0 begins over the bowl"):
-        replace(CASES["timed"], starts=over_the_bowl)
 
 
 def test_runs_of_some_environments_keep_the_times():
