@@ -155,7 +155,7 @@ def same_array(label: str, found: Any, expected: Any, tiny: float) -> Findings:
     """Require numbers of the shape of the expected ones, which differ from them by rounding.
 
     If some differ, the first such number, or the first row of them along the last axis,
-    is named. Text and truth values are no numbers.
+    is named. Neither text nor truth values are numbers.
 
     Args:
         label: the beginning of the labels.
