@@ -18,7 +18,7 @@ from . import spec
 def episodes(
     page: Any, gs: Any, *names: str | tuple[str, ...], **cameras: dict[str, Any]
 ) -> tuple[World, Batch]:
-    """Record batches of a page that differ in starts and beliefs alone, one after the other.
+    """Record batches of a page that one scene can run, one after the other.
 
     Args:
         page: an open page.

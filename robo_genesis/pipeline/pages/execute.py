@@ -133,12 +133,15 @@ class Schedule:
         """Return the first page that waits, if possible of a lesson of which none runs.
 
         Pages of one lesson compile the same kernels, which the engine saves when a process
-        ends.
+        ends. A page with `alone` overtakes none.
         """
-        first = self.waiting[0]
         busy = {run.page.lesson for run in self.running if not run.waits} - {None}
-        others = (run for run in self.waiting if run.page.lesson not in busy)
-        return first if first.page.alone else next(others, first)
+        others = (
+            run
+            for run in self.waiting
+            if run.page.lesson not in busy and not run.page.alone
+        )
+        return next(others, self.waiting[0])
 
     def ended_pages(self) -> list[PageResult]:
         """Wait for the next event or report; return the result of a page that has ended."""

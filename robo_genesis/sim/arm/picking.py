@@ -131,21 +131,21 @@ def together(cases: Sequence[PickCase]) -> PickCase:
     Raises:
         CaseError: another setting than those of environments differs.
     """
-    first = cases[0]
+    first, *others = (json_value(asdict(case)) for case in cases)
+    shared = first.keys() - OF_ENVIRONMENTS
+    differ = sorted(n for n in shared if any(of[n] != first[n] for of in others))
+    if differ:
+        raise CaseError(
+            f"The cases differ in {', '.join(differ)}, which a scene has once. "
+            f"Run them one after the other: only {', '.join(OF_ENVIRONMENTS)} may differ."
+        )
     of_rows: dict[str, Any] = {}
-    own = {name: getattr(first, name) for name in OF_ENVIRONMENTS}
-    for case in cases:
-        if json_value(asdict(replace(case, **own))) != json_value(asdict(first)):
-            raise CaseError(
-                f"{case} and {first} cannot run in one scene: they differ in more than "
-                f"{', '.join(OF_ENVIRONMENTS)}. Run them one after the other."
-            )
     for name in OF_ENVIRONMENTS:
         values = [(getattr(case, name), len(case.starts)) for case in cases]
         of_rows[name] = np.concatenate(
             [np.broadcast_to(of, (n, *np.shape(of)[1:])) for of, n in values]
         )
-    return replace(first, **of_rows)
+    return replace(cases[0], **of_rows)
 
 
 def build(

@@ -306,21 +306,24 @@ def test_a_page_of_another_lesson_starts_beside_a_running_one(tmp_path):
     """They compile the same kernels, and a process saves its own when it ends."""
     fronts = {
         name: f"robo_genesis: {{lesson: {lesson}, page: {name}}}\n"
-        for name, lesson in (("a", "l04"), ("b", "l04"), ("c", "l05"))
+        for name, lesson in (("a", "l04"), ("b", "l04"), ("c", "l05"), ("d", "l06"))
     }
     books = {name: notebook(cell("1"), front=of) for name, of in fronts.items()}
+    books["d"] = notebook(cell("1", ":tags: [alone]\n"), front=fronts["d"])
     make_book(tmp_path, **books)
     runs = [
         PageRun(page, *[tmp_path] * 3, 1, {}, 1.0)
         for page in find_pages(tmp_path / "book")
     ]
-    first, second, other = runs
+    first, second, other, alone = runs
     schedule = Schedule([second, other], None, 2, Mock())
     assert schedule.next_page() is second
     schedule.running[first] = Mock()
     assert schedule.next_page() is other
-    schedule.waiting = [second]
+    schedule.waiting = [second, alone]
     assert schedule.next_page() is second
+    schedule.waiting = [alone]
+    assert schedule.next_page() is alone
     first.waits, schedule.waiting = True, [second, other]
     assert schedule.next_page() is second
 

@@ -21,7 +21,7 @@ def test_cases_together_keep_their_rows():
 
 def test_cases_that_differ_in_more_than_rows_are_refused():
     with pytest.raises(
-        CaseError, match=r"cannot run in one scene: .* more than starts"
+        CaseError, match=r"differ in cone, which .* only starts, .* may"
     ):
         picking.together([CASES["plain"], CASES["elliptic"]])
 

@@ -116,6 +116,9 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
         assert found["tolerance"] == pytest.approx(scale * value / 5)
         assert found["unit"] == (unit or "rad")
         assert found["answer"].startswith(text)
+    count = experiment.metrics["G2"].saturation_samples
+    found_count = questions.asked_number("l04/lab", "G2.saturation_samples", 0, {}, "")
+    assert found_count["answer"].startswith(f"{count};")
     assert found["feedback"][1] == ("low", "Too low. The motor saturates.")
     assert found["feedback"][3] == ("x57.3", "No. In degrees.")
     with pytest.raises(
