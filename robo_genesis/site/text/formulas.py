@@ -42,8 +42,7 @@ NAMESPACE = ' xmlns="http://www.w3.org/1998/Math/MathML"'
 
 PACKAGE = "@fontsource/stix-two-math"
 FILE = f"{PACKAGE}/files/stix-two-math-latin-400-normal.woff"
-# A page is shown before its font for formulas is there.
-LATER = """this.media="all"; document.fonts.load('1em "Course Math"')"""
+LOAD = """document.fonts.load('1em "Course Math"')"""
 STYLE, LICENCE = "math.css", "math-font-LICENSE.txt"
 SHEET = Path(__file__).with_name(STYLE)  # Its template
 
@@ -183,7 +182,8 @@ def add_css(
 ) -> None:
     """Load the style sheet and its font on a page with a formula."""
     if app.env.domaindata["math"]["has_equations"].get(page):
-        app.add_css_file(STYLE, media="print", onload=LATER)
+        app.add_css_file(STYLE)
+        app.add_js_file(None, body=LOAD)
 
 
 def setup(app: Sphinx) -> None:

@@ -4,14 +4,15 @@ The spoiled home page in `test_sweep_notices.py` proves that each rule can fail.
 """
 
 import functools
+import time
 from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 from browsers import answered
 from built_site import CompressingHandler, served
-from sweep import EVERY_STATE, IN_EVERY_COLOUR, KINDS, Kind, Visit
-from watching import SERVED_ONLY, page_names
+from sweep import EVERY_STATE, IN_EVERY_COLOUR, KINDS, STILL, Kind, Visit
+from watching import SCRIPTS, SERVED_ONLY, call, page_names
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -54,3 +55,22 @@ WAYS = [(name, rule) for name, kind in KINDS.items() for rule in kind.rules]
 def test_every_page_obeys(visits: Callable[[str], dict[str, Visit]], way, rule):
     wrong = {name: visit.wrong.get(rule, []) for name, visit in visits(way).items()}
     assert {name: complaints for name, complaints in wrong.items() if complaints} == {}
+
+
+# Each has formulas, a replay or a part that a script adds on the first screen.
+EARLY = ("l03-rigid-bodies/deeper-energy", "l05-kinematics-and-cameras/lecture")
+
+
+@pytest.mark.parametrize("name", EARLY)
+def test_nothing_moves_when_the_site_s_own_files_arrive_late(browser, site, name):
+    def late(route):
+        time.sleep(0.2)
+        route.continue_()
+
+    with served(site) as address, browser.new_page() as page:
+        page.route("**/_static/**", late)
+        page.add_init_script(path=SCRIPTS / "watch_shifts.js")
+        page.goto(f"{address}/lessons/{name}.html")
+        call(page, "read")
+        shifts = page.evaluate("allShifts()")
+        assert sum(value for value, _ in shifts) < STILL, shifts
