@@ -30,14 +30,17 @@ def shown(cell, *others: str) -> bool:
     return cell.cell_type == "code" and not tags & {*HIDDEN, *others}
 
 
-def script(lesson: str, *left_out: str) -> list[str]:
-    cells = page_of(lesson, "lecture").notebook.cells
+def script(lesson: str, name: str, *left_out: str) -> list[str]:
+    cells = page_of(lesson, name).notebook.cells
     return [cell.source for cell in cells if shown(cell, *left_out)]
 
 
-@pytest.mark.parametrize("lesson", LESSONS)
-def test_it_needs_nothing_of_the_course(lesson):
-    code = ast.parse("\n".join(script(lesson)))
+PARTS = [*((lesson, "lecture") for lesson in LESSONS), ("l04", "motion")]
+
+
+@pytest.mark.parametrize(("lesson", "name"), PARTS)
+def test_it_needs_nothing_of_the_course(lesson, name):
+    code = ast.parse("\n".join(script(lesson, name)))
     nodes = [*ast.walk(code)]
     imported = {
         name.name for n in nodes if isinstance(n, ast.Import) for name in n.names
@@ -53,17 +56,19 @@ def test_it_needs_nothing_of_the_course(lesson):
     assert {name for name in found if name.startswith("rg.")} <= OF_COURSE
 
 
-# All lessons; each takes a quarter of a minute, so one of them runs by default.
+# All lectures; each takes a quarter of a minute, so those of one lesson run by default.
 RUN = [
-    pytest.param(name, marks=[pytest.mark.slow] * (name != "l04")) for name in LESSONS
+    pytest.param(*part, marks=[pytest.mark.slow] * (part[0] != "l04")) for part in PARTS
 ]
 
 
 @pytest.mark.engine
-@pytest.mark.parametrize("lesson", RUN)
-def test_pasted_into_an_empty_file_it_prints_what_the_page_shows(lesson, tmp_path):
+@pytest.mark.parametrize(("lesson", "name"), RUN)
+def test_pasted_into_an_empty_file_it_prints_what_the_page_shows(
+    lesson, name, tmp_path
+):
     between = f"\nprint({json.dumps(NEXT)}, flush=True)\n"
-    (tmp_path / "script.py").write_text(between.join(script(lesson, FAILS)))
+    (tmp_path / "script.py").write_text(between.join(script(lesson, name, FAILS)))
     done = subprocess.run(
         [sys.executable, "script.py"],
         cwd=tmp_path,
@@ -75,7 +80,7 @@ def test_pasted_into_an_empty_file_it_prints_what_the_page_shows(lesson, tmp_pat
         | {"PYTHONPATH": str(project.ROOT)},
     )
     assert done.returncode == 0, done.stderr[-3000:]
-    page = page_of(lesson, "lecture")
+    page = page_of(lesson, name)
     executed = nbformat.read(
         executed_pages().folders[page.docname] / NOTEBOOK, as_version=4
     )

@@ -102,7 +102,10 @@ def readout(page: Page, block: str, values: str = "dd") -> dict[str, str]:
 
 
 def show_all(page: Page, replay: str = ".replay") -> None:
-    """Show a blind replay without an answer, and the whole runs."""
+    """Show a blind replay without an answer, also one that a question hides, and the whole runs."""
+    hiding = f".choice:has(+ .after-answer):has(~ * {replay}) summary"
+    for answer in page.locator(hiding).all():
+        answer.click()
     for button in (f"{replay} .veil button", f"{replay} .rest"):
         for found in page.locator(button).all():
             if found.is_visible():

@@ -1,4 +1,4 @@
-"""Named checks of a step experiment, in the lab and in the lecture."""
+"""Named checks of the lab and of both parts of the lecture."""
 
 import numpy as np
 
@@ -152,6 +152,23 @@ def same_metrics(run: Experiment) -> Findings:
         yield equal(name, found, format_value(value, unit), recorded=False)
 
 
+def which_joint(run: Experiment) -> Findings:
+    """P1 turns joint4 and P2 joint5; no other joint moves a tenth as far."""
+    for name, joint in (("P1", 4), ("P2", 5)):
+        q = run.traces[name].q
+        moved = np.abs(q[-1] - q[0])
+        second, most = np.sort(moved)[-2:]
+        yield equal(f"{name}.joint", moved.argmax() + 1, joint)
+        yield below(f"{name}.share_of_others", second / most, study_spec.ALONE)
+
+
+def assigned_only(run: Experiment) -> Findings:
+    """In the assigned run the engine reports no velocity and no control force."""
+    trace = run.traces[study_spec.ASSIGNED]
+    yield equal("largest_velocity", np.abs(trace.qd).max(), 0.0)
+    yield equal("largest_force", np.abs(trace.control_force).max(), 0.0)
+
+
 def laws_of_motion(run: Experiment) -> Findings:
     """At each sample links and control forces are those of the driven or assigned robot: a
     control force is clip(KP (q_target − q) − KV q̇) with the gains of its own case.
@@ -175,8 +192,9 @@ WITHOUT_CAMERA = (
 )
 CHECKS = (*WITHOUT_CAMERA, posture)
 
-# Those that the lecture has besides.
-LECTURE = (
+# Those of part 1 of the lecture, and those that part 2 has besides.
+LECTURE = (mapping, stamps, which_joint, assigned_only, laws_of_motion, posture)
+MOTION = (
     claimed_orders,
     clipped_start,
     gravity_support,

@@ -30,16 +30,21 @@ MISTAKES = replace(STEPS, checks=checks.WITHOUT_CAMERA, camera=False)
 
 
 ASSIGNED = Run(
-    spec.BASELINE,
+    study_spec.INDEX_CASES["P1"],
     measured=False,
     note="state overwritten at each sample, no step taken; its time is nominal",
 )
-LECTURE = STEPS.with_more(
-    partial(study_spec.parameters, "lecture"),
-    runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES)
+LECTURE = replace(
+    STEPS,
+    runs=runs_of(study_spec.INDEX_CASES, measured=False)
     | {study_spec.ASSIGNED: ASSIGNED},
+    checks=checks.LECTURE,
+).with_more(partial(study_spec.parameters, "lecture"))
+MOTION = MISTAKES.with_more(
+    partial(study_spec.parameters, "motion"),
+    runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES),
     {study.GROUP: Readings(study.GRAVITY)},
-    (study_checks.study_factors, study_checks.same_model, *checks.LECTURE),
+    (study_checks.study_factors, study_checks.same_model, *checks.MOTION),
 )
 FORMULA = MISTAKES.with_more(
     partial(study_spec.parameters, "formula"),
@@ -82,6 +87,8 @@ GAINS = Replay(
     "limit: {saturation_samples}.",
     filmed="the Franka",
 )
+# The question is about P2.
+NAMES = replace(GAINS, cases=("P2", "P1"), band=0, quality="")
 
 LESSON = Lesson(
     spec=spec,
@@ -89,6 +96,7 @@ LESSON = Lesson(
     pages={
         "lab": LAB,
         "lecture": LECTURE,
+        "motion": MOTION,
         "formula": FORMULA,
         "integrator": INTEGRATOR,
         "batch": BATCH,
@@ -98,5 +106,9 @@ LESSON = Lesson(
         "gains": GAINS,
         "steps": replace(GAINS, cases=("G1", "G2")),
         "baseline": replace(GAINS, cases=("baseline",)),
+        "names": NAMES,
+        "assigned": replace(
+            NAMES, cases=(study_spec.ASSIGNED, "P1"), follows="hand", until=None
+        ),
     },
 )

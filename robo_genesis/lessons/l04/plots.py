@@ -53,7 +53,7 @@ def posture(run: Experiment) -> Figure:
 def assigned(run: Experiment) -> Figure:
     """Draw the stepped joint with assigned states and with a commanded target, over time."""
     figure, ax = plotting.axes(3.4)
-    written, commanded = run.traces[ASSIGNED], run.traces["baseline"]
+    written, commanded = run.traces[ASSIGNED], run.traces["P1"]
     ax.axhline(commanded.target[0, ENTRY], label="target", **LINE)
     crosses = look("other", linestyle="", marker="x", markersize=4)
     ax.plot(written.t[::4], written.q[::4, ENTRY], label="set_dofs_position", **crosses)

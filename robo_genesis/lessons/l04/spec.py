@@ -36,11 +36,11 @@ EXPECTED_MODEL, EXPECTED_TYPES = franka.MODEL_COUNTS, franka.JOINT_TYPES
 RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
 
 
-def changed(case: ControlCase, **entries: float) -> ControlCase:
-    """Return a case in which only the stepped joint's entry of some fields differs."""
+def changed(case: ControlCase, entry: int = ENTRY, **entries: float) -> ControlCase:
+    """Return a case that differs in one entry of some fields, by default the stepped joint's."""
     fields: dict[str, Any] = {name: np.array(getattr(case, name)) for name in entries}
     for name, value in entries.items():
-        fields[name][ENTRY] = value
+        fields[name][entry] = value
         fields[name].setflags(write=False)
     return replace(case, **fields)
 

@@ -8,7 +8,7 @@ from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
 
 from .metrics import SETTLING_BAND
-from .spec import ENTRY, G1, G2, G3, START_OF_STEP, STEP, changed
+from .spec import AT_START, ENTRY, G1, G2, G3, START_OF_STEP, STEP, changed
 
 MEASURES = False
 
@@ -52,6 +52,14 @@ LONGER = "G2_longer"
 
 # The length of the window is the one factor.
 LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
+
+# Target of a program for the stepped joint [rad]. P1 sends it to the joint's own index,
+# P2 to the number in its name.
+WANTED = -1.5
+INDEX_CASES = {
+    "P1": changed(AT_START, q_target=WANTED),
+    "P2": changed(AT_START, 4, q_target=WANTED),
+}
 
 # Name of the run whose states are assigned, without control and steps
 ASSIGNED = "assigned"
@@ -129,6 +137,9 @@ CASE_POINTS = {
 
 # What only judges
 
+# Largest motion of another joint, as a share of that of the joint that turns
+ALONE = 0.1
+
 # Distance at which a position has left the ideal one [rad]
 PARTING_THRESHOLD = SETTLING_BAND
 
@@ -157,7 +168,8 @@ AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
     own = {
-        "lecture": {"cases": case_inputs(EXAMPLE_CASES | LONGER_CASES)},
+        "lecture": {"cases": case_inputs(INDEX_CASES)},
+        "motion": {"cases": case_inputs(EXAMPLE_CASES | LONGER_CASES)},
         "formula": {"cases": case_inputs(STEP_CASES)},
         "integrator": {
             "cases": case_inputs(SUBSTEP_CASES),

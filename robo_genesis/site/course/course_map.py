@@ -30,6 +30,9 @@ from .sizes import Minutes
 
 FILE = "course_map.yml"
 
+# The pages with a line of their own, besides the lecture.
+LINES = {"motion": "Lecture, part 2", LAB: "Lab"}
+
 
 @dataclass(frozen=True, slots=True, config={"extra": "forbid"})
 class Lesson:
@@ -140,11 +143,12 @@ def cards(app: Sphinx, docname: str) -> str:
 def times(
     env: BuildEnvironment, lesson: str, lecture: str
 ) -> Iterator[tuple[str, list[str], Minutes]]:
-    """Yield (name, pages, minutes) of the lecture, the lab, and without a name the other pages."""
-    groups: dict[str, list[str]] = {"Lecture": [lecture], "Lab": [], "": []}
+    """Yield (name, pages, minutes) of the lecture, each of `LINES`, and without a name the rest."""
+    groups: dict[str, list[str]] = {"Lecture": [lecture]}
+    groups |= {words: [] for words in (*LINES.values(), "")}
     for name, page in lesson_pages(env.found_docs, lesson.lower()).items():
         if page != lecture:
-            groups["Lab" if name == LAB else ""].append(page)
+            groups[LINES.get(name, "")].append(page)
     for name, pages in groups.items():
         if pages:
             found: list[Minutes] = [env.metadata[page][MINUTES] for page in pages]

@@ -1,4 +1,4 @@
-"""The lecture and the deeper pages of L04 without Genesis."""
+"""Both parts of the lecture and the deeper pages of L04 without Genesis."""
 
 import pytest
 from lessons.experiments import experiment_of
@@ -27,7 +27,9 @@ def experiments(joints, frames) -> dict[str, Experiment]:
         traces[name] = mujoco_joints.run_case(
             cases[name], LINKS, of.timestep, of.integrator
         )
-    traces[study_spec.ASSIGNED] = assigned(spec.BASELINE, LINKS, traces["baseline"])
+    traces[study_spec.ASSIGNED] = assigned(
+        study_spec.INDEX_CASES["P1"], LINKS, traces["P1"]
+    )
     known = {"model": spec.EXPECTED_MODEL, study.GROUP: study.by_model(traces)}
     given = (traces, known, LINKS, frames, joints)
     return {name: experiment_of(page, *given) for name, page in PAGES.items()}

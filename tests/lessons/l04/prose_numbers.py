@@ -9,6 +9,7 @@ CONFIGURED = {
     "small step of joint4 [rad]": study_spec.SMALL_STEP,
     "demand of the small step of G1 [N·m]": float(spec.G1.kp[spec.ENTRY])
     * study_spec.SMALL_STEP,
+    "target of a program [rad]": -study_spec.WANTED,
     "open finger [m]": Q_START[-1],
     "rise fraction": metrics.RISE_FRACTION,
     "settling band [rad]": metrics.SETTLING_BAND,

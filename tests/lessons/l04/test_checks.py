@@ -13,6 +13,7 @@ from lessons.changed_runs import (
     metric,
     put,
     reading,
+    shift,
     trace,
 )
 from lessons.experiments import checks_of, each, run_with
@@ -58,12 +59,17 @@ SPOILERS = {
         joints(dofs_idx_local=np.arange(9) // 2),
     ],
     "baseline_approaches": [metric("baseline", final_error=0.25)],
-    "stamps": [case("baseline", steps=119)],
+    "stamps": [case("P1", steps=119)],
     "same_start": [
         trace("G2", start_qd=put(1, 1e-6)),
         trace("G3", link_pos=put((0, 1, 2), 0.6)),
     ],
     "one_factor": [case("G3", kp=put(0, 4501.0)), case("G2", seed=1)],
+    "which_joint": [copied("P2", "P1"), trace("P1", q=shift((-1, 0), 0.1))],
+    "assigned_only": [
+        trace("assigned", qd=put((3, K), 1e-3)),
+        copied("assigned", "P1"),
+    ],
     "posture": [frames()],
     "claimed_orders": [overshoot("G3", 0.1)],
     "clipped_start": [
@@ -98,7 +104,8 @@ SPOILERS = {
 @pytest.mark.parametrize(("check", "spoil"), each(SPOILERS))
 def test_a_spoiled_run_fails_its_check(experiments, monkeypatch, check, spoil):
     run = spoil(run_with(experiments, check))
-    monkeypatch.setattr(spec, "CASES", {case: run.cases[case] for case in spec.CASES})
+    cases = {name: run.cases.get(name, of) for name, of in spec.CASES.items()}
+    monkeypatch.setattr(spec, "CASES", cases)
     assert failed(run) == {check}
 
 

@@ -12,7 +12,7 @@ from robo_genesis.core.comparison import order
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-LECTURE = "lessons/l04-joint-control/lecture"
+LECTURE = "lessons/l04-joint-control/motion"
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.pages import LESSON
 
-PAGES = ("lecture", "formula", "integrator", "batch")
+PAGES = ("lecture", "motion", "formula", "integrator", "batch")
 MODEL = spec.EXPECTED_MODEL
 
 
@@ -17,7 +17,8 @@ MODEL = spec.EXPECTED_MODEL
         (spec, "RISE_FRACTION", 0.8, PAGES),
         (spec, "RELATIONS", (), ()),
         (study_spec, "KP", (3500.0, 7000.0), ("batch",)),
-        (study_spec, "EXAMPLE_CASES", {}, ("lecture",)),
+        (study_spec, "INDEX_CASES", {}, ("lecture",)),
+        (study_spec, "EXAMPLE_CASES", {}, ("motion",)),
     ],
 )
 def test_inputs_are_parameters_and_judgements_are_none(

@@ -8,8 +8,10 @@ from watching import call
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l02-life-cycle/lecture.html"
-MEASURED = "lessons/l04-joint-control/lecture.html"
-REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
+PART_1, MEASURED = (
+    f"lessons/l04-joint-control/{n}.html" for n in ("lecture", "motion")
+)
+REPLAY = ".replay[data-name=replay-l04-motion-cpu]"
 BLOCK = f".replay-block:has({REPLAY})"
 
 
@@ -81,11 +83,12 @@ def test_without_scripts_all_but_replay_and_explorer_remains(browser, address):
     assert not bare.locator(f"{REPLAY} button:visible").count()
     assert not bare.locator(f"{REPLAY} .panel").is_visible()
     assert bare.locator("#fig-l04-gains svg").is_visible()
-    assert bare.locator("#fig-l04-posture img").is_visible()
     bare.locator(f"{BLOCK} summary").click()
     assert bare.get_by_text("gets the target").first.is_visible()
     assert bare.locator(f"{BLOCK} tbody tr").count() == 121
     assert bare.locator(f"{BLOCK} table").is_visible()
     assert not bare.locator(".explorer .panel").is_visible()
     assert bare.locator(".explorer noscript p").is_visible()  # its text is not found
+    bare.goto(f"{address}/{PART_1}")
+    assert bare.locator("#fig-l04-posture img").is_visible()
     bare.close()

@@ -32,7 +32,7 @@ NUMBERED = re.compile(r"id\d+$")
     [
         (le, name)
         for (le, page), name in LESSON_PAGES.items()
-        if page in ("lecture", "lab")
+        if page in ("lecture", "motion", "lab")
     ],
 )
 def test_status_is_computed_and_leaves_missing_runs_out(parsed_pages, lesson, name):

@@ -5,7 +5,7 @@ from watching import watch
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-LECTURE = "lessons/l04-joint-control/lecture.html"
+LECTURE = "lessons/l04-joint-control/motion.html"
 LAB = "lessons/l04-joint-control/lab.html"
 
 

@@ -12,15 +12,17 @@ from robo_genesis.core.project import BOOK
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_replay
-from robo_genesis.lessons.l04.study_spec import ASSIGNED
+from robo_genesis.lessons.l04 import spec
+from robo_genesis.sim.mujoco.kinematics import link_poses
 from robo_genesis.site.replay.model import rotations
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-LECTURE = "lessons/l04-joint-control/lecture"
-REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
+LECTURE = "lessons/l04-joint-control/motion"
+REPLAY = ".replay[data-name=replay-l04-motion-cpu]"
 FIRST_SCREEN = (
     LECTURE,
+    "lessons/l04-joint-control/lecture",
     "lessons/l01-ready/lecture",
 )  # Pages that begin with their replay
 
@@ -50,8 +52,8 @@ def lecture(browser_3d, site) -> Iterator[Page]:
 
 
 def test_links_and_their_copies_are_where_the_record_says(lecture, site):
-    """In each case at several samples. The lecture also assigns the states up to the target."""
-    folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
+    """In each case at several samples. MuJoCo tells where the target is."""
+    folder = site.parent / "pages" / "l04" / "motion" / "cpu"
     arrays = bundle.read_arrays(folder)
     links = arrays.coords["link"]
     for case in find_replay("l04").cases:
@@ -79,17 +81,15 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
             )
             assert turns == pytest.approx(recorded, abs=1e-6), (case, sample)
         assert np.abs(trace.link_pos[9] - trace.link_pos[0]).max() > 1e-3
-    assigned = read_any_trace(folder, arrays, ASSIGNED)
+    places, turns = (of[0] for of in link_poses(spec.BASELINE.q_target[None], links))
     for link in BELOW:
         copy, k = found[f"target_{link}"], links.index(link)
-        assert copy["position"] == pytest.approx(assigned.link_pos[-1, k], abs=2e-6), (
-            link
-        )
-        turned = abs(np.dot(copy["rotation"], rotations(assigned.link_quat[-1:, k])[0]))
+        assert copy["position"] == pytest.approx(places[k], abs=5e-6), link
+        turned = abs(np.dot(copy["rotation"], rotations(turns[k : k + 1])[0]))
         assert turned == pytest.approx(1, abs=1e-6), link
 
 
-STEPS = ".replay[data-name=replay-l04-lecture-cpu-steps]"
+STEPS = ".replay[data-name=replay-l04-motion-cpu-steps]"
 CURVES = f"{STEPS} polyline"
 
 
@@ -118,7 +118,7 @@ def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(
         assert {*page.locator(CURVES).evaluate_all(lengths)} == {seen}
         assert table.is_visible() == (key == "End")
     assert page.locator("fieldset .wrong").nth(1).is_visible()
-    assert not page.locator(hidden[-1]).is_visible()  # before the second question
+    assert not page.locator("#fig-l04-gains").is_visible()  # before the second question
     page.get_by_role("button", name="Show the rest, to 1.2 s").first.click()
     assert {*page.locator(CURVES).evaluate_all(lengths)} == {121}
     page.reload()
