@@ -38,6 +38,10 @@ CONFIGURED = {
         float(np.e), 1
     ),
     "largest impedance": mujoco_contacts.IMPEDANCE[1],
-    "1 + μ² in the third calculation": 1 + HIGH**2,
-    "T / 10 in the second calculation [ms], speed in the third [m/s]": 0.4,
+    "1 + μ² of the hop by hand": 1 + HIGH**2,
+    "its upward speed [m/s]": 0.4,
+    "T / 10 in the first calculation [ms]": 0.27,
+    "an outer step of 2 ms, divided by it": round(2 / 0.27, 1),
+    "the same with 5 ms": round(5 / 0.27, 1),
+    "fall in the third calculation [m]": 0.11,
 }

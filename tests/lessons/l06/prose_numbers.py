@@ -14,7 +14,4 @@ CONFIGURED = {
     "distance of neighbouring float32 numbers between 2 and 4, by hand": 0.24,
     "the same between 16 and 32 [1e-6], by hand": 1.9,
     "fixed part of a step, by hand [ms]": 0.6,
-    "lever of a load, by hand [m]": 0.42,
-    "torque of a load, by hand [N·m]": 4.1,
-    "sag of a joint by it, by hand [mrad]": 0.9,
 }

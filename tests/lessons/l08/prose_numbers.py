@@ -8,6 +8,9 @@ from robo_genesis.sim.bodies.grippers import ARMATURE, PAD_MASS
 
 CONFIGURED = {
     "z of the interval": statistics.Z,
+    "its square": round(statistics.Z**2, 2),
+    "72 of 96": 72 / 96,
+    "the same for 24 episodes, divided by their number": 0.16,
     "hand above the pads [m]": HAND_TO_PAD,
     "the same [mm]": 1e3 * HAND_TO_PAD,
     "width of a wide box [m]": 0.078,
