@@ -47,10 +47,12 @@ def lifts(run: Experiment) -> Figure:
         height = 1000 * trace.link_pos[:, OBJECT, 2]
         rise = height - height[ENDS["close"]]
         ax.plot(trace.t, rise, label=label, **look(spec.CASE_MARKS.get(name, "other")))
-    for phase in ("settle", "close", "lift"):
-        ax.axvline(trace.t[ENDS[phase]], **LINE)
-    ax.set_xlabel("time [s]")
-    plotting.label_ends(ax, "Height relative to the end of closing", "rise [mm]")
+    for phase, begins in (("settle", "close"), ("close", "lift"), ("lift", "hold")):
+        at = trace.t[ENDS[phase]]
+        ax.axvline(at, **LINE)
+        ax.annotate(f" {begins}", (at, 25))
+    ax.set_xlim(trace.t[ENDS["descend"]], trace.t[-1])
+    plotting.finish(ax, "Height relative to the end of closing", "rise [mm]")
     return figure
 
 

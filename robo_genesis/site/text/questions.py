@@ -21,12 +21,20 @@ may be left out:
     ```
 
 The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is
-in percent; it may be below one. With the option `:hides:` the rest of its section,
-which has the results and the text about them, shows after an answer. With `:absent:` a
-choice asks for a second case that the bundle lacks, so that unknown is right; its cause
-says which measurement would tell. `:unit: mm` asks for a length in millimetres, other
-units for their thousandths, and `:unit: episodes` for a count.
+in percent; it may be below one. `:unit: mm` asks for a length in millimetres, other units
+for their thousandths, and `:unit: episodes` for a count.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
+
+No reader should find the answer beside the question, so a question is one of these, and
+the build refuses any other:
+
+- blind: `{replay}` with `:blind:` follows directly, and shows the run after an answer;
+- `:hides:`: whatever follows in its section, with subsections, figures and outputs,
+  shows after an answer. The section's end is the marked place: a heading ends it earlier;
+- `:calculation:`: it follows from inputs that are given, and no result of it is in sight;
+- `:recall:`: it asks about an earlier lesson;
+- `:absent:`: a choice for a second case that no page of the lesson records, so that
+  unknown is right; its cause says which measurement would tell.
 """
 
 import re
@@ -37,6 +45,8 @@ from typing import Any
 from docutils import nodes
 from docutils.parsers.rst.directives import flag, unchanged
 from sphinx.application import Sphinx
+from sphinx.transforms import SphinxTransform
+from sphinx.util import logging
 
 from robo_genesis.core.comparison import Comparison
 from robo_genesis.core.markup import filled
@@ -65,9 +75,17 @@ CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 # The key of a typical wrong number: the value times this factor.
 FACTOR = re.compile(r"x\d+(\.\d+)?")
 # Below a question; `course.css` hides what follows it.
-HIDES = (
-    '<p class="after-answer">The rest of this section shows when you have answered.</p>'
+HIDES = '<p class="after-answer">The text goes on here when you have answered.</p>'
+
+# The options of a question that say why its answer is not in sight; see above.
+KINDS = ("hides", "calculation", "recall")
+IN_SIGHT = (
+    "the answer of this question may be in sight. Add `:hides:` if results follow in its "
+    "section, let a `{replay}` with `:blind:` follow directly, or add `:calculation:` if it "
+    "follows from given inputs, or `:recall:` if it is about an earlier lesson."
 )
+
+logger = logging.getLogger(__name__)
 
 
 class question(between):  # noqa: N801 - docutils names nodes in lower case
@@ -121,11 +139,14 @@ class Question(PageDirective):
     """Ask for something that was measured."""
 
     has_content = True
+    option_spec = dict.fromkeys(KINDS, flag)  # noqa: RUF012 - as docutils declares it
 
     def shown(self) -> list[nodes.Node]:
         """Return the question with a number that no other has."""
         text, facts = self.ask()
         node = asked(name=f"choice-{self.env.new_serialno('choice')}", **facts)
+        node["kinds"] = [kind for kind in (*KINDS, "absent") if kind in self.options]
+        self.set_source_info(node)
         words, messages = self.parse_inline(text, lineno=self.lineno)
         node += words
         return [node, *messages, *([html(HIDES)] if "hides" in self.options else [])]
@@ -139,7 +160,7 @@ class Choice(Question):
     """Ask how the second of two cases compares with the first in one metric."""
 
     required_arguments = 4
-    option_spec = {"absent": flag, "hides": flag}  # noqa: RUF012 - as docutils declares it
+    option_spec = Question.option_spec | {"absent": flag}
 
     def ask(self) -> tuple[str, dict[str, Any]]:
         """See `Question.ask`."""
@@ -156,7 +177,7 @@ class Number(Question):
     """Ask for the value of one metric."""
 
     required_arguments = 2
-    option_spec = {"tolerance": float, "unit": unchanged, "hides": flag}  # noqa: RUF012 - as above
+    option_spec = Question.option_spec | {"tolerance": float, "unit": unchanged}
 
     def ask(self) -> tuple[str, dict[str, Any]]:
         """See `Question.ask`."""
@@ -304,8 +325,23 @@ def options(
     return [(text, key == right, causes.get(key, "")) for key, text in words.items()]
 
 
+class RequireKinds(SphinxTransform):
+    """Warn of each question whose answer may be in sight."""
+
+    default_priority = 199
+
+    def apply(self, **kwargs: object) -> None:
+        """Look at questions and at what follows them directly."""
+        for node in self.document.findall(question):
+            after = node.next_node(descend=False, siblings=True)
+            blind = isinstance(after, nodes.container) and "growing" in after["classes"]
+            if not (node["kinds"] or blind):
+                logger.warning(IN_SIGHT, location=node)
+
+
 def setup(app: Sphinx) -> None:
-    """Register the directives."""
+    """Register the directives, and what requires that no answer is in sight."""
+    app.add_transform(RequireKinds)
     app.add_directive("choice", Choice)
     app.add_directive("number", Number)
     app.add_node(question, html=WRITERS)

@@ -3,6 +3,8 @@
 import numpy as np
 
 from robo_genesis.lessons.l07 import spec, table_map
+from robo_genesis.sim.arm.kinematics import TIP
+from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 
 GOOD, OUTSIDE = spec.SCENES["baseline"], spec.SCENES["outside"]
 
@@ -16,6 +18,9 @@ CONFIGURED = {
     "width of the slippery box [mm]": 1000 * spec.FORCED.size[1],
     "support error of a ball, by hand [mm]": 1.1,
     "the same with iteration [mm]": 0.64,
+    "hand above the grip [mm]": 1e3 * HAND_TO_PAD,
+    "hand above the table at the grasp, by hand [mm]": 148.4,
+    "hand above the fingertips [mm]": 1e3 * TIP,
     "place of the bowl, x [m]": GOOD.bowl_at[0],
     "place of the bowl, y [m]": GOOD.bowl_at[1],
     "place of scene D, x [m]": OUTSIDE.place[0],

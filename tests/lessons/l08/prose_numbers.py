@@ -13,6 +13,7 @@ CONFIGURED = {
     "the same for 24 episodes, divided by their number": 0.16,
     "hand above the pads [m]": HAND_TO_PAD,
     "the same [mm]": 1e3 * HAND_TO_PAD,
+    "hand above the table at the grasp [mm]": 148.4,
     "width of a wide box [m]": 0.078,
     "w of a pad, by hand [1/kg]": round(1 / (3 * (PAD_MASS + ARMATURE)), 3),
     "1 + m w, by hand": 1.03,
