@@ -21,7 +21,7 @@ STUBS = [
 
 @pytest.mark.parametrize("stub", STUBS, ids=lambda stub: " ".join(stub))
 def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(stub):
-    """Only the site shows the solution, and a cell tests what the student wrote."""
+    """Only the site shows two hints, with a link, and the solution; a cell tests the function."""
     lesson, name, page = stub
     all_cells = page_of(lesson, page).notebook.cells
     empty, solution = [c for c in all_cells if f"def {name}(" in c.source]
@@ -29,6 +29,11 @@ def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(stub):
     assert "solution" not in empty.metadata.get("tags", [])
     assert "solution" in solution.metadata["tags"]
     assert len(solution.source.splitlines()) - 1 <= 15
+    if page == "lab":
+        hints = all_cells[all_cells.index(solution) - 1]
+        assert hints.metadata.get("tags") == ["site-only"]
+        assert hints.source.count("{dropdown} Hint") == 2
+        assert re.search(r"\{(ref|eq|numref)\}", hints.source)
     assert re.search(
         rf"page\.test\([\w.]+, {name}[,)]", "\n".join(c.source for c in all_cells)
     )

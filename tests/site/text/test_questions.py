@@ -1,10 +1,18 @@
-"""The right option of a question is the one that the bundle shows, whatever it shows."""
+"""The right option of a question is the one that the bundle shows, and it is not in sight."""
+
+import re
 
 import pytest
+from bundles import RENDERER
+from docutils import nodes
+from docutils.utils import new_document
+from tiny_book import make_book, paragraphs
 
 from robo_genesis.core.comparison import Comparison
-from robo_genesis.core.project import BOOK
+from robo_genesis.core.project import BOOK, ProjectError
 from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.pages.page_index import PageIndex
 from robo_genesis.site.text import questions
 
 
@@ -125,6 +133,54 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
         LookupError, match=r"cannot be shown in 'mm'\. Valid for a number is mrad"
     ):
         questions.asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
+
+
+ASKED = "```{{choice}} l04/lab overshoot G1 {}\nMore?\n```"
+PAGE = [
+    (ASKED.format("G2"), True),
+    ("```{number} l04/lab G2.overshoot\n:tolerance: 5\nHow far?\n```", True),
+    (ASKED.format("G2\n:recall:"), False),
+    (ASKED.format("G2\n:calculation:"), False),
+    (ASKED.format("unseen\n:absent:"), False),
+    (ASKED.format("G2\n:hides:"), False),
+]
+
+
+def test_an_answer_that_may_be_in_sight_stops_the_build_with_page_and_line(
+    recorder, experiment, tmp_path
+):
+    recorder.write(experiment, RENDERER)
+    outputs = {"l04/lab": recorder.contract.outputs / "l04" / "lab"}
+    book = make_book(tmp_path, text="# Text\n\n" + paragraphs(*dict(PAGE)))
+    with pytest.raises(ProjectError) as caught:
+        render(book, tmp_path, PageIndex(outputs=outputs), tmp_path / "render.log")
+    lines, line = [], 3
+    for text, refused in PAGE:
+        lines += [str(line)] * refused
+        line += 2 + text.count("\n")
+    said = r"text\.md:(\d+): .*may be in sight. Add `:hides:`"
+    assert re.findall(said, str(caught.value)) == lines
+
+
+@pytest.mark.parametrize(
+    ("after", "refused"),
+    [
+        ([nodes.container(classes=["replay-block", "growing"])], False),
+        ([nodes.container(classes=["replay-block"])], True),
+        ([nodes.paragraph(), nodes.container(classes=["growing"])], True),
+        ([], True),
+    ],
+    ids=["blind", "not blind", "a text before it", "no replay"],
+)
+def test_a_question_is_blind_with_the_replay_that_follows_directly(
+    monkeypatch, after, refused
+):
+    said = []
+    monkeypatch.setattr(questions.logger, "warning", lambda *a, **_: said.append(a))
+    document = new_document("page")
+    document += [questions.question(kinds=[]), *after]
+    questions.RequireKinds(document).apply()
+    assert said == [(questions.IN_SIGHT,)] * refused
 
 
 FEEDBACK = [("right", "Yes."), ("low", "Too low. It saturates."), ("high", "Too high.")]
