@@ -139,7 +139,7 @@ class Question(PageDirective):
     """Ask for something that was measured."""
 
     has_content = True
-    option_spec = dict.fromkeys(KINDS, flag)  # noqa: RUF012 - as docutils declares it
+    option_spec = dict.fromkeys(KINDS, flag)
 
     def shown(self) -> list[nodes.Node]:
         """Return the question with a number that no other has."""
