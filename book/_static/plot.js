@@ -19,6 +19,19 @@ globalThis.timePlot = (() => {
   /* A number as text, with a typographic minus sign, which a zero has not. */
   const write = (value, digits) => (Number(value.toFixed(digits)) + 0).toFixed(digits).replace("-", "−");
 
+  /* Round numbers from `low` to `high`, about five, with their labels. */
+  function ticksOf(low, high) {
+    const rough = (high - low) / 4;
+    const power = Math.floor(Math.log10(rough));
+    const factor = [1, 2, 5, 10].find((one) => one * 10 ** power >= rough * 0.999);
+    const step = factor * 10 ** power;
+    const first = Math.ceil(low / step - 1e-6);
+    return Array.from({ length: Math.floor(high / step + 1e-6) - first + 1 }, (_, k) => {
+      const value = (first + k) * step;
+      return { value, label: write(value, Math.max(0, -power - (factor === 10))) };
+    });
+  }
+
   /* How far a curve is from a height, where it is below or above a name: 0 if it crosses the height. */
   const distance = (points, [from, to], height) => Math.min(...points.map(([x, y], k) => {
     const [before, beside] = points[k - 1] ?? [x, y];
@@ -70,12 +83,10 @@ globalThis.timePlot = (() => {
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.setAttribute("height", height);
     add(svg, "text", { x: 0, y: 14, class: "title" }, title);
-    const digits = String(Number((end / 4).toFixed(4))).split(".")[1]?.length ?? 1;
-    for (const share of [0, 0.25, 0.5, 0.75, 1]) {
-      const at = x(share * end);
-      add(svg, "line", { x1: at, x2: at, y1: EDGE.top, y2: floor, class: "grid" });
-      const label = write(share * end, digits) + (share === 0 ? " s" : "");
-      add(svg, "text", { x: at, y: height - 6, "text-anchor": "middle" }, label);
+    for (const { value, label } of ticksOf(0, end)) {
+      add(svg, "line", { x1: x(value), x2: x(value), y1: EDGE.top, y2: floor, class: "grid" });
+      const text = value ? label : `${label} s`;
+      add(svg, "text", { x: x(value), y: height - 6, "text-anchor": "middle" }, text);
     }
     for (const { value, label } of ticks) {
       if (!value) add(svg, "line", { x1: x(0), x2: x(end), y1: y(0), y2: y(0), class: "grid" });
@@ -107,5 +118,5 @@ globalThis.timePlot = (() => {
     return { x, y, floor, top: EDGE.top, share: (pixels) => (pixels - EDGE.left) / across, grow };
   }
 
-  return { add, draw, write };
+  return { add, draw, ticksOf, write };
 })();

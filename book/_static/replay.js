@@ -5,17 +5,18 @@
 
 /* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
-  const { add, write } = globalThis.timePlot;
+  const { add, ticksOf, write } = globalThis.timePlot;
   const { kept, keep } = globalThis.memory;
   const HEIGHT = 150;
   const STRIDE = 5; // samples that one press advances where reduced motion is preferred
-  const ROOM = 0.1; // share of an axis below which two labels would overlap
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
   /* Case → {time, values: [one array a channel], mark, levels}. The table's columns: time, then the
-     channels of each case in turn. */
+     channels of each case in turn. It is in the page as text; see scroll-boxes.js. */
   function read(root, radios, channels) {
-    const rows = [...root.parentElement.querySelectorAll("tbody tr")].map((row) =>
+    const { textContent } = root.parentElement.querySelector("details > noscript");
+    const table = new DOMParser().parseFromString(textContent, "text/html");
+    const rows = [...table.querySelectorAll("tbody tr")].map((row) =>
       [...row.cells].map((cell) => Number(cell.textContent.replace("−", "-"))),
     );
     const time = rows.map((row) => row[0]);
@@ -25,13 +26,6 @@ document.addEventListener("DOMContentLoaded", () => {
       const { mark, levels } = radio.dataset;
       return [radio.value, { time, values, mark, levels: JSON.parse(levels) }];
     }));
-  }
-
-  /* Tick values: both ends, and zero between them where the labels do not overlap. */
-  function tickValues(least, most) {
-    const ends = [...new Set([least, most])];
-    if (least >= 0 || most <= 0) return ends;
-    return [...ends.filter((end) => Math.abs(end) > ROOM * (most - least)), 0];
   }
 
   /* Draws one plot of all cases; returns the function that moves its cursor, and shows the part of
@@ -46,9 +40,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const { x, y, floor, top, share, grow } = globalThis.timePlot.draw(svg, {
       title, curves, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
       end: times.at(-1),
-      ticks: tickValues(least, most).map((value) => ({
-        value, label: value ? value.toPrecision(3).replace("-", "−") : "0",
-      })),
+      ticks: ticksOf(least - margin, most + margin),
     });
     const line = add(svg, "line", { y1: top, y2: floor, class: "cursor" });
     const dot = add(svg, "circle", { r: 4.5, class: `dot ${mark}` });
@@ -192,6 +184,7 @@ document.addEventListener("DOMContentLoaded", () => {
       await scene.open(thing, "The plots show the same runs.");
       loading = false;
       nameCase();
+      showSample(); // the time may be another one than that of the picture
       label();
     }
 

@@ -31,8 +31,11 @@
     for (const element of [box, ...box.children]) observer.observe(element);
   }
 
-  /* A fold that opens: the observer can miss a box whose size is the one that it last told. */
+  /* A fold that opens: a long table in it is only text until then, which loads faster. The observer can
+     miss a box whose size is the one that it last told. */
   document.addEventListener("toggle", ({ target }) => {
+    const text = target.querySelector(":scope > noscript");
+    if (text) text.outerHTML = text.textContent;
     target.querySelectorAll(BOXES).forEach(mark);
   }, true); // the event does not bubble
 

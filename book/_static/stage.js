@@ -45,7 +45,7 @@ globalThis.Scene = class Scene {
     status.textContent = "Loading …";
     try {
       await this.load();
-      status.textContent = "Turn the view with the mouse, a finger or the arrow keys.";
+      status.textContent = "Turn the view with the mouse, a finger or the arrow keys. Press a point to see it in the middle, and the background to go back. Zoom with two fingers, or Ctrl and the wheel.";
     } catch {
       this.root.querySelector("model-viewer")?.remove();
       status.textContent = `The ${what} cannot be shown: a file is missing or cannot be read. ${others}`;
@@ -53,14 +53,14 @@ globalThis.Scene = class Scene {
   }
 
   async load() {
-    const { viewer, model, name, alt, orbit, target } = this.root.dataset;
+    const { viewer, model, name, alt, orbit, target, closeUp } = this.root.dataset;
     await Promise.all([viewer, model].map(Scene.script));
     const stage = this.root.querySelector(".stage");
     const element = document.createElement("model-viewer");
     const distance = `auto auto ${orbit.split(" ").at(-1)}`; // the viewer's own limits are farther
     const settings = {
-      alt, loading: "eager", "camera-controls": "", "disable-zoom": "", "disable-tap": "",
-      "disable-pan": "", "interaction-prompt": "none", "touch-action": "pan-y",
+      alt, loading: "eager", "camera-controls": "", "interaction-prompt": "none",
+      "touch-action": "pan-y", "min-field-of-view": "2deg",
       "camera-orbit": orbit, "camera-target": target,
       "min-camera-orbit": distance, "max-camera-orbit": distance,
       "environment-image": Scene.light(), exposure: "1.25", "animation-crossfade-duration": "0",
@@ -72,8 +72,38 @@ globalThis.Scene = class Scene {
       element.addEventListener("error", reject);
       stage.append(element);
     });
+    // The wheel alone scrolls the page.
+    stage.addEventListener("wheel", (event) => event.ctrlKey || event.stopPropagation(), true);
     stage.classList.add("loaded");
     this.viewer = element;
+    this.addButtons(closeUp);
+  }
+
+  /* Buttons that zoom, and where the page declares a close-up, one that shows it. */
+  addButtons(closeUp) {
+    const { add } = globalThis.timePlot;
+    const place = add(this.viewer.parentElement, "p", { class: "zoom" });
+    const button = (text, press, name) => {
+      const made = add(place, "button", { type: "button", ...name }, text);
+      made.addEventListener("click", press);
+      return made;
+    };
+    if (closeUp) {
+      const near = button("Close-up", () => {
+        this.near = !this.near;
+        near.setAttribute("aria-pressed", this.near);
+        this.aim(this.near ? "0m 0m 0m" : this.root.dataset.target, this.near ? closeUp : "auto");
+        this.pose(...this.posed);
+      }, { "aria-pressed": false });
+    }
+    button("−", () => this.viewer.zoom(-10), { "aria-label": "Zoom out" });
+    button("+", () => this.viewer.zoom(10), { "aria-label": "Zoom in" });
+  }
+
+  /* Points the camera at once at a place, with an angle of view. */
+  aim(target, angle) {
+    Object.assign(this.viewer, { cameraTarget: target, fieldOfView: angle });
+    this.viewer.jumpCameraToGoal();
   }
 
   /* Shows a share of the copies at the target, whose material alone is translucent. */
@@ -85,14 +115,18 @@ globalThis.Scene = class Scene {
     look?.setBaseColorFactor([...look.baseColorFactor.slice(0, 3), this.opacity * share]);
   }
 
-  /* The case first: a new animation begins at its own start. */
+  /* The case first: a new animation begins at its own start. In the one of a close-up, the world
+     moves, and what the close-up follows stays at the origin. */
   async pose(name, time) {
+    this.posed = [name, time];
     const { viewer } = this;
     if (!viewer) return;
-    if (viewer.animationName !== name) {
-      viewer.animationName = name;
+    const animation = this.near ? `${name}, close-up` : name;
+    if (viewer.animationName !== animation) {
+      viewer.animationName = animation;
       await viewer.updateComplete;
     }
-    viewer.currentTime = Math.min(time, viewer.duration - 1e-7); // at its end it would start again
+    const latest = this.posed[1]; // the time may have moved on
+    viewer.currentTime = Math.min(latest, viewer.duration - 1e-7); // at its end it would start again
   }
 };

@@ -16,10 +16,18 @@ from robo_genesis.core.project import BOOK
 from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.evidence import panel
 from robo_genesis.site.evidence.plain_nodes import between
+from robo_genesis.site.evidence.plain_nodes import html as html_of
 from robo_genesis.site.figures import palette_css
 from robo_genesis.site.replay import viewer
 
-SCRIPTS = ("memory.js", "plot.js", "stage.js", "replay.js", "explorer.js")
+SCRIPTS = (
+    "memory.js",
+    "scroll-boxes.js",
+    "plot.js",
+    "stage.js",
+    "replay.js",
+    "explorer.js",
+)
 SHEETS = ("course.css", "plot.css", "replay.css", "explorer.css")
 
 
@@ -48,7 +56,8 @@ def page_of(block: nodes.Node, folder: Path) -> Path:
     document = new_document("page")
     document += block.deepcopy()
     for box in list(document.findall(between)):  # whose writer is Sphinx's
-        box.replace_self(nodes.container("", *box.children))
+        ends = (html_of(box[end]) for end in ("opening", "closing"))
+        box.replace_self([next(ends), *box.children, next(ends)])
     for image in document.findall(nodes.image):  # which Sphinx copies
         image["uri"] = (folder / "book" / image["uri"][1:]).resolve().as_uri()
     html = publish_from_doctree(document, writer_name="html5").decode()

@@ -59,3 +59,11 @@ def scroll_box(label: str, *inside: nodes.Node) -> between:
         f'aria-label="{escape(label)}" class="scroll-box" role="region" tabindex="0"'
     )
     return between("", *inside, opening=f"<div {named}>\n", closing="</div>\n")
+
+
+def on_request(*inside: nodes.Node) -> between:
+    """Return long content of a fold, which `scroll-boxes.js` adds to the page when it opens.
+
+    Until then it is text to a browser with scripts; without them it is always there.
+    """
+    return between("", *inside, opening="<noscript>\n", closing="</noscript>\n")

@@ -45,7 +45,7 @@ from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.outputs import accepted_experiment
 from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
-from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
+from robo_genesis.site.evidence.plain_nodes import html, image, on_request, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls
@@ -196,10 +196,12 @@ def postures(
     yield panel(data, f"Show in 3D loads the robot: {weight} kB.")
     if tables_below:
         yield html("<details><summary>All answers as tables</summary>")
+        below = on_request()
         for title, rows in tables_below.items():
-            yield nodes.paragraph("", title)
+            below += nodes.paragraph("", title)
             table = directive.parse_text_to_nodes(tables.markdown(rows))
-            yield scroll_box(title, *table)
+            below += scroll_box(title, *table)
+        yield below
         yield html("</details>")
     yield html(replays.origin_html(name, folder, env, replay.credit))
 

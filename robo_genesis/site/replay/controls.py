@@ -17,6 +17,12 @@ from .scenery import Scenery
 
 PANEL = Path(__file__).with_name("panel.html")  # The template of the controls
 
+# The speeds of a replay as shares of real time, in words. A run plays at the slowest
+# one at which it ends soon: much happens in small parts of it, and feedback waits for
+# its end.
+SPEEDS = {0.1: "1/10", 0.25: "1/4", 1: "real time"}
+LONGEST = 8  # [s]
+
 
 def samples(runs: Runs) -> str:
     """Return every sample of every case as a Markdown table, in the order of time.
@@ -38,15 +44,9 @@ def opening(kind: str, words: Mapping[str, str]) -> str:
     return f'<div class="{kind}" {data}>'
 
 
-def over_the_picture(button: str, veiled: bool = False) -> str:
-    """Return what is on top of the still picture: the state that it shows, and a button.
-
-    A veiled replay shows nothing else until its question has an answer; without the
-    script, the veil is hidden.
-    """
-    return filled(
-        PANEL.with_name("over_the_picture.html"), button=button, veiled=veiled
-    )
+def over_the_picture(button: str) -> str:
+    """Return what is on top of the still picture: the state that it shows, and a button."""
+    return filled(PANEL.with_name("over_the_picture.html"), button=button)
 
 
 def alt(runs: Runs) -> str:
@@ -69,20 +69,26 @@ def caption(runs: Runs, around: Scenery) -> str:
     return " ".join(parts)
 
 
-def panel(name: str, runs: Runs, weight: int) -> str:
+def panel(name: str, runs: Runs, weight: int, veiled: bool = False) -> str:
     """Return the controls and the end of a replay as HTML; the script fills and shows them.
 
     Args:
         name: of the replay.
         runs: the runs to play.
         weight: of what loads with the first Play, compressed [kB].
+        veiled: whether a sentence is in their place until the question has an answer.
     """
     marks = marks_of(list(runs.traces), MARKS)
+    until = runs.replay.until or float(runs.t[-1])
     return filled(
         PANEL,
         name=name,
         runs=runs,
         weight=weight,
+        veiled=veiled,
+        until=until,
+        speeds=SPEEDS,
+        speed=next((speed for speed in SPEEDS if until <= LONGEST * speed), 1),
         marks={case: css_name(mark) for case, mark in marks.items()},
         levels={case: as_json(levels(runs, case)) for case in runs.traces},
     )

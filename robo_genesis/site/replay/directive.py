@@ -4,7 +4,9 @@ A page writes ```` ```{replay} l04/lecture ```` for the first replay that its le
 declares, for another one its name as well: ```` ```{replay} l03/lecture slides ````.
 The option `:brief:` leaves out all channels but the first, and the sentences on each
 case. With `:blind:` the curves appear with the time that is played, and nothing shows
-before the question above has an answer. The panel of a recorded run also has a replay.
+before the question above has an answer. `:first:` names the case that plays first, by
+default the first one of the lesson. `:close-up:` offers a view that follows the link of
+the curves and is this wide [m]. The panel of a recorded run also has a replay.
 Poses and curves come from the record; the shape comes from the model, which the lecture
 writes to a file.
 """
@@ -31,9 +33,9 @@ from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.page_index import page_bundle
 from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.sim import visual_shape
-from robo_genesis.site.evidence.plain_nodes import html, image, scroll_box
+from robo_genesis.site.evidence.plain_nodes import html, image, on_request, scroll_box
 from robo_genesis.site.evidence.runs import BACKEND
-from robo_genesis.site.figures.case_labels import labels_of
+from robo_genesis.site.figures.case_labels import label, labels_of
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.text.questions import question
 
@@ -50,19 +52,34 @@ class ReplayDirective(PageDirective):
 
     required_arguments = 1
     optional_arguments = 1
-    option_spec = {"brief": flag, "blind": flag}  # noqa: RUF012 - as docutils declares it
+    option_spec = {  # noqa: RUF012 - as docutils declares it
+        "brief": flag,
+        "blind": flag,
+        "first": str,
+        "close-up": float,
+    }
 
     def shown(self) -> list[nodes.Node]:
         """Return the replay."""
-        brief, blind = (option in self.options for option in self.option_spec)
+        given = self.options
         lesson_page, *chosen = self.arguments
         asked = next(self.state.document.findall(question), None)
-        if blind and asked is None and self.env.docname != self.config.root_doc:
+        if "blind" in given and asked is None and self.env.docname != self.config.root_doc:
             raise LookupError(
                 "`:blind:` needs a question above it, as `{choice}` or `{number}`."
             )
         key, folder = f"{lesson_page}/{BACKEND}", page_bundle(lesson_page)
-        return [replay_block(self, key, folder, *chosen, brief=brief, blind=blind)]
+        block = replay_block(
+            self,
+            key,
+            folder,
+            *chosen,
+            brief="brief" in given,
+            blind="blind" in given,
+            first=given.get("first"),
+            close_up=given.get("close-up"),
+        )
+        return [block]
 
 
 def replay_block(
@@ -73,6 +90,8 @@ def replay_block(
     *,
     brief: bool = False,
     blind: bool = False,
+    first: str | None = None,
+    close_up: float | None = None,
 ) -> nodes.Node:
     """Return the replay of an accepted bundle, with all its information as text and as a table.
 
@@ -83,9 +102,11 @@ def replay_block(
         chosen: name of the replay, empty for the first of the lesson.
         brief: whether to show the first channel alone, and no sentences on the cases.
         blind: whether nothing shows before the question above it has an answer.
+        first: name of the case that plays first, None for the first of the replay.
+        close_up: width of a view of the link that the curves follow [m], None for none.
 
     Raises:
-        LookupError: the lesson has no such replay.
+        LookupError: the lesson has no such replay, or that no such case.
         ValueError: its runs cannot be played together, or no page of this build wrote
             the shape of these links.
     """
@@ -97,31 +118,37 @@ def replay_block(
     parts = visual_shape.load_shape(shape)
     if replay.places:
         runs, parts = side_by_side(runs, parts)
+    if first:
+        words = label(lesson, first)
+        runs = replace(runs, traces={words: runs.traces[words], **runs.traces})
     around = scenery(parts, runs)
+    if close_up:
+        around = replace(around, near=runs.links.index(replay.follows))
     drawn = around, runs.links, runs.traces, replay.credit
     files, weight, still = leave_model(
         env, name, folder, shape, drawn, controls.alt(runs)
     )
-    shown, (first, *_) = runs, runs.channels
+    if close_up:
+        files["close-up"] = around.camera.angle(close_up)
+    shown, (curve, *_) = runs, runs.channels
     if brief:  # the model is the same
-        shown = replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
+        shown = replace(runs, channels=[curve], levels=runs.levels_of(curve), moves={})
     opening = controls.opening("replay", files | controls.data(shown))
-    samples = f"samples of {', '.join(runs.traces)} as a table"
-    summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
+    samples = "all samples as a table"
+    summary = f"Results and {samples}" if shown.moves else samples.capitalize()
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     if blind:
         on_home = env.docname == env.config.root_doc
         block["classes"] += ["growing"] if on_home else ["growing", "veiled"]
     block += html(opening)
-    over = controls.over_the_picture("Play", blind)
+    over = controls.over_the_picture("Play")
     block += stage(still, over, controls.caption(runs, around), f"{name}-model")
     fold = f"<details><summary>{summary}</summary>"
-    block += html(controls.panel(name, shown, weight) + fold)
+    block += html(controls.panel(name, shown, weight, blind) + fold)
     block += directive.parse_text_to_nodes(bullets(shown.moves.values()))
-    block += scroll_box(
-        summary, *directive.parse_text_to_nodes(controls.samples(shown))
-    )
+    table = directive.parse_text_to_nodes(controls.samples(shown))
+    block += on_request(scroll_box(summary, *table))
     block += html(f"</details>{origin_html(name, folder, env, replay.credit)}")
     return block
 
@@ -161,9 +188,8 @@ def leave_model(
     around, links, traces, credit = drawn
     camera = around.camera
     files = [shape, *files_below(folder), *files_below(project.ROOT / PACKAGE)]
-    inputs = [
-        repr((name, *links, *traces, credit, files_digest(Path("/"), files))).encode()
-    ]
+    digest = files_digest(Path("/"), files)
+    inputs = [repr((name, *links, *traces, around.near, credit, digest)).encode()]
     model = derived("replay", inputs, lambda: glb(*drawn))
     still = derived("poster", inputs, lambda: picture(model, camera))
     text = base64.b64encode(model).decode()

@@ -4,8 +4,9 @@ Each link is a node, placed in the world and moved by one animation per case, wh
 are the samples of the record. One more node holds the parts that do not move, another
 one translucent copies of links at their target. A third one holds the shadows: copies
 of the links that move as these do, pressed onto the ground as by light from straight
-above. If the view follows a link, the world moves against it. Nothing is compressed:
-the page would have to load a decoder.
+above. If the view follows a link, the world moves against it; so it does in the second
+animation of each case, for a close-up. Nothing is compressed: the page would have to
+load a decoder.
 """
 
 from collections.abc import Mapping, Sequence
@@ -37,6 +38,8 @@ CREASE = np.radians(
 # The nodes of the parts that belong to no link, of the copies at the target, and of
 # shadows.
 STILL, TARGET, SHADOWS = "still", "target", "shadows"
+
+CLOSE_UP = ", close-up"  # How the names of these animations end, as in `stage.js`
 
 # Colour of the copies: red, green, blue 0 to 255, and opacity. The script fades them
 # near the target, where surfaces in one place would flicker.
@@ -111,9 +114,13 @@ def glb(
             model.nodes[node].translation = first.link_pos[0, k].tolist()
             model.nodes[node].rotation = rotations(first.link_quat[:1, k])[0].tolist()
     keys = Keys(model)
-    model.animations = [
-        _animation(keys, *run, followed, moved) for run in traces.items()
-    ]
+    for name, trace in traces.items():
+        world = None if followed is None else opposite(trace, followed)
+        model.animations.append(_animation(keys, name, trace, moved, world))
+        if scenery.near is not None:
+            world = opposite(trace, scenery.near, heights=True)
+            near = _animation(keys, name + CLOSE_UP, trace, moved, world)
+            model.animations.append(near)
     model.buffers[0].byteLength = len(keys.data)
     model.set_binary_blob(bytes(keys.data))
     return b"".join(model.save_to_bytes())
@@ -189,12 +196,13 @@ def _animation(
     keys: Keys,
     name: str,
     trace: Run,
-    followed: int | None,
     moved: Sequence[tuple[int, ...]],
+    world: FloatArray | None,
 ) -> gltf.Animation:
     """Return the animation of a case: every link's position and orientation at every sample.
 
-    `moved` are the numbers of each link's nodes.
+    `moved` are the numbers of each link's nodes; `world` has the places (n, 3) of the
+    root node, None if it does not move.
     """
     animation = gltf.Animation(name=name, channels=[], samplers=[])
     last = np.float32(trace.t[-1]).item()
@@ -215,15 +223,18 @@ def _animation(
     for k, nodes in enumerate(moved):
         move("translation", trace.link_pos[:, k], *nodes)
         move("rotation", rotations(trace.link_quat[:, k]), *nodes)
-    if followed is not None:
-        move("translation", opposite(trace, followed), 0)
+    if world is not None:
+        move("translation", world, 0)
     return animation
 
 
-def opposite(trace: Run, link: int) -> FloatArray:
-    """Return the places (n, 3) of the world that keep a link horizontally in the view's centre."""
-    x, y = trace.link_pos[:, link, :2].T
-    return np.column_stack([-x, np.zeros_like(x), y])
+def opposite(trace: Run, link: int, heights: bool = False) -> FloatArray:
+    """Return the places (n, 3) of the world that keep a link in the view's centre.
+
+    It stays there horizontally, and with `heights` at the origin.
+    """
+    x, y, z = trace.link_pos[:, link].T
+    return np.column_stack([-x, -heights * z, y])
 
 
 def rotations(wxyz: FloatArray) -> FloatArray:

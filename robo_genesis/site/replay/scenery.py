@@ -59,6 +59,10 @@ class Camera:
         """The centre in the viewer's notation."""
         return " ".join(f"{value:.4f}m" for value in self.centre)
 
+    def angle(self, width: float) -> str:
+        """Return the vertical angle of view of a picture this wide [m], in the viewer's notation."""
+        return f"{2 * np.degrees(np.arctan(width / ASPECT / 2 / self.distance)):.2f}deg"
+
     @property
     def axes(self) -> FloatArray:
         """The camera's right, up and back (3, 3), unit vectors in its rows."""
@@ -73,7 +77,8 @@ class Scenery:
 
     `target` is by link its pose (4, 4) where the joint is at its target and the others
     at their start. The view follows the link number `followed` horizontally; None if it
-    does not move. `ground` is the height on which shadows fall [m].
+    does not move. A close-up has the link number `near` in its centre; None for no
+    close-up. `ground` is the height on which shadows fall [m].
     """
 
     parts: Sequence[Part]
@@ -81,6 +86,7 @@ class Scenery:
     axis: bool = False
     target: Mapping[str, FloatArray] = field(default_factory=dict)
     followed: int | None = None
+    near: int | None = None
     ground: float = 0.0
 
 

@@ -165,6 +165,15 @@ def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
 
 
 @pytest.mark.browser
+def test_the_first_move_of_the_time_slider_moves_the_picture(page):
+    page.locator("input[type=range]").press("End")
+    page.get_by_text("Turn the view").wait_for(timeout=120_000)
+    page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.39")
+    _, _, height = call(page, "poses")["box"]["position"]
+    assert height == pytest.approx(2.0 - G * 0.4**2 / 2, abs=1e-4)
+
+
+@pytest.mark.browser
 def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
     show_model(page)
     slider = choose(page, "low", 0)
