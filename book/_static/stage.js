@@ -45,7 +45,7 @@ globalThis.Scene = class Scene {
     status.textContent = "Loading …";
     try {
       await this.load();
-      status.textContent = "Turn the view with the mouse, a finger or the arrow keys. Press a point to see it in the middle, and the background to go back. Zoom with two fingers, or Ctrl and the wheel.";
+      status.textContent = "Turn the view by dragging or with the arrow keys. Press a point to centre it, the background to reset.";
     } catch {
       this.root.querySelector("model-viewer")?.remove();
       status.textContent = `The ${what} cannot be shown: a file is missing or cannot be read. ${others}`;

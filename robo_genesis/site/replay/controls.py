@@ -57,7 +57,7 @@ def alt(runs: Runs) -> str:
 
 def caption(runs: Runs, around: Scenery) -> str:
     """Return the caption of the model, with the meaning of what it shows besides the bodies."""
-    parts = [f"Recorded poses of the {runs.replay.thing}."]
+    parts = ["The poses are recorded."]
     if around.axis:
         parts.append(f"Yellow rod: the axis of {runs.subject}.")
     if around.target:
