@@ -6,6 +6,7 @@
     "div.math": "Formula",
     "div.cell_output pre": "Output",
     pre: "Code",
+    ".explorer .cells": "Map",
     ".pst-scrollable-table-container": "Table",
     ".cell_output > .output": "Output",
   };

@@ -14,6 +14,16 @@ from .table_map import CASE, CELLS, WORDS, X, Y, outlines, verdicts
 
 MEASURES = False
 
+# What the map says of a cell that does not pass a test of `table_map.WORDS`.
+FAILED = {
+    "reachable": "the hand does not reach it",
+    **{
+        name: f"the camera {place} does not show the whole outline"
+        for name, place in rungs.CAMERAS.items()
+    },
+    "graspable": "the bowl or the edge is in the way",
+}
+
 
 def explored(found: Experiment) -> dict[str, Any]:
     """Return the data of the map, as `site/figures/explorer.py` shows them."""
@@ -29,8 +39,11 @@ def explored(found: Experiment) -> dict[str, Any]:
         "around": True,
         "maps": [maps.grid(caption, columns, rows, cells, run="table", label="Table")],
         "measures": [
-            {"label": f"thousand pixels, camera {place}"}
-            for place in rungs.CAMERAS.values()
+            {"label": "tests passed"},
+            *(
+                {"label": f"thousand pixels, camera {place}"}
+                for place in rungs.CAMERAS.values()
+            ),
         ],
         "columns": names,
         "notes": {
@@ -58,20 +71,21 @@ def cell(number: int, good: dict[str, bool], pixels: FloatArray) -> dict[str, An
     }
     x, y = CASE.places[number]
     failed = [
-        WORDS[name]
+        FAILED[name]
         for name, passed in good.items()
         if not passed and words[name] != "not tested"
     ]
+    passes = int(sum(good.values()))
     return {
         "answer": 2 * number + 2,
         "name": (place := f"{x:g}, {decimal(y, 2)}"),
         "tag": "×" if not reachable else "" if graspable else "○",
         "state": "accepted" if reachable else "refused",
         "opens": number == len(CELLS) // 2,
-        "sentence": f"Not passed: {', '.join(failed)}."
+        "sentence": f"{'; '.join(failed).capitalize()}."
         if failed
         else "Passes all four tests.",
         "values": [place, *words.values()],
-        "numbers": [round(area) for area in pixels],
-        "texts": [f"{area / 1000:.1f}" for area in pixels],
+        "numbers": [passes, *(round(area) for area in pixels)],
+        "texts": [f"{passes}", *(f"{area / 1000:.1f}" for area in pixels)],
     }

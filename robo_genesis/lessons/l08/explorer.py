@@ -34,8 +34,8 @@ def explored(found: Experiment) -> dict[str, Any]:
         cells.append(cell(k, int(level[k]), press, 1000 * apart[k]))
     x, y = (np.linspace(*ends, 2 * spec.CELLS + 1)[1::2] for ends in spec.REGION)
     starts = maps.grid(
-        "Starts from above, x [cm] to the right, y [mm] upwards. A cell is an episode.",
-        [f"{100 * place:.0f}" for place in x],
+        "Starts from above [mm]: x to the right, y upwards. A cell is an episode.",
+        [f"{1000 * place:.0f}" for place in x],
         [decimal(1000 * place, 0) for place in y],
         cells,
         run="ends",

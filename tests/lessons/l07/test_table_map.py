@@ -21,6 +21,7 @@ def test_each_cell_shows_its_own_answer(scenes):
         assert len(cell["values"]) == len(data["columns"])
     assert cells[MIDDLE]["sentence"] == "Passes all four tests."
     assert cells[-1]["state"] == "refused"
+    assert cells[MIDDLE]["numbers"][0] == 4 > cells[-1]["numbers"][0]
 
 
 # A change, and the verdict on the cell in the middle that it breaks
