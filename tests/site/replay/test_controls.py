@@ -1,6 +1,7 @@
 """The controls of a replay name what it shows, and its table has every sample."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,6 +39,13 @@ def test_the_controls_name_parts_and_levels_and_have_the_script_s_data(joint):
     around = Scenery([], CAMERA, axis=True, target={"hand": np.eye(4)})
     for words in ("the axis of joint4", "joint4 at its target"):
         assert words in controls.caption(joint, around)
+
+
+@pytest.mark.parametrize(("until", "speed"), [(0.6, "0.1"), (1.2, "0.25"), (6.5, "1")])
+def test_a_run_ends_within_eight_seconds(joint, until, speed):
+    timed = replace(joint, replay=replace(joint.replay, until=until))
+    root = BeautifulSoup(controls.panel("replay-x", timed, 560), "html.parser")
+    assert root.select_one("option[selected]")["value"] == speed
 
 
 def test_the_viewer_is_the_package_s_without_other_hosts():

@@ -134,6 +134,8 @@ def test_keys_read_the_record_out_and_the_plots_draw_it(page):
     fallen = (np.array(heights) - heights[0]) / (heights[-1] - heights[0])
     assert fallen == pytest.approx(np.linspace(0, 1, STEPS + 1) ** 2, abs=0.01)
     assert page.locator(".replay .dot.case-g2").count() == 2
+    ticks = page.locator(".plot").first.locator("text[text-anchor=middle]")
+    assert ticks.all_text_contents()[:5] == ["0.0 s", "0.1", "0.2", "0.3", "0.4"]
     cursor = page.locator(".replay .cursor").first
     places = [
         slider.press(key) or cursor.get_attribute("x1") for key in ("End", "Home")
@@ -171,6 +173,59 @@ def test_the_first_move_of_the_time_slider_moves_the_picture(page):
     page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.39")
     _, _, height = call(page, "poses")["box"]["position"]
     assert height == pytest.approx(2.0 - G * 0.4**2 / 2, abs=1e-4)
+
+
+@pytest.fixture
+def asking(dropped, tmp_path) -> nodes.Node:
+    more = {"blind": True, "first": "low", "close_up": 0.5}
+    return replay_block(Panel(tmp_path / "book"), KEY, dropped, **more)
+
+
+@pytest.mark.browser
+def test_the_case_that_is_asked_about_is_first_and_the_veil_leaves_its_picture(
+    asking, open_block
+):
+    page = open_block(asking, state="attached")
+    assert page.locator("input[type=radio]").first.is_checked()
+    assert page.locator("input:checked").get_attribute("value") == "low"
+    veil, stage = (page.locator(one).bounding_box() for one in (".veil", ".stage"))
+    assert veil["y"] >= stage["y"] + stage["height"]
+
+
+VIEW = """() => {
+  const viewer = document.querySelector("model-viewer");
+  return [viewer.animationName, viewer.getCameraTarget().y, viewer.getFieldOfView()];
+}"""
+
+
+@pytest.mark.browser
+def test_a_close_up_follows_the_box_and_buttons_zoom(asking, open_block):
+    asking["classes"].remove("veiled")
+    page = open_block(asking)
+    choose(page, "low", 30)
+    page.get_by_text("Turn the view").wait_for(timeout=120_000)
+    whole = page.evaluate(VIEW)
+    close = page.get_by_role("button", name="Close-up")
+    close.click()
+    page.wait_for_function(f"({VIEW})()[0] === 'low, close-up'")
+    _, height, angle = page.evaluate(VIEW)
+    assert height == 0  # where this animation keeps the box
+    assert angle < whole[2]
+    close.click()
+    page.wait_for_function(f"({VIEW})()[0] === 'low'")
+    assert page.evaluate(VIEW) == pytest.approx(whole)
+    page.get_by_role("button", name="Zoom in").click()
+    page.wait_for_function(f"({VIEW})()[2] < {0.8 * whole[2]}")
+
+
+@pytest.mark.browser
+def test_the_table_of_samples_is_in_the_page_when_its_fold_opens(page):
+    cells = page.locator("td")
+    assert cells.count() == 0
+    page.locator("summary").click()
+    cells.last.wait_for()
+    assert cells.count() == (STEPS + 1) * 5
+    assert violations(page, "details", preload=False) == []
 
 
 @pytest.mark.browser
