@@ -64,7 +64,11 @@ class ReplayDirective(PageDirective):
         given = self.options
         lesson_page, *chosen = self.arguments
         asked = next(self.state.document.findall(question), None)
-        if "blind" in given and asked is None and self.env.docname != self.config.root_doc:
+        if (
+            "blind" in given
+            and asked is None
+            and self.env.docname != self.config.root_doc
+        ):
             raise LookupError(
                 "`:blind:` needs a question above it, as `{choice}` or `{number}`."
             )

@@ -60,7 +60,7 @@ class Camera:
         return " ".join(f"{value:.4f}m" for value in self.centre)
 
     def angle(self, width: float) -> str:
-        """Return the vertical angle of view of a picture this wide [m], in the viewer's notation."""
+        """Return the vertical angle of view of a picture this wide [m], as the viewer writes it."""
         return f"{2 * np.degrees(np.arctan(width / ASPECT / 2 / self.distance)):.2f}deg"
 
     @property

@@ -26,6 +26,11 @@ PLACES = (
 )
 NUMBERED = re.compile(r"id\d+$")
 
+# Where a line of text in a drawing begins, its scale, and where a letter of it begins.
+LINE = re.compile(r"translate\(([\d.]+) [\d.]+\) scale\(([\d.]+) -")
+LETTER = re.compile(r"translate\(([\d.]+)")
+HALF = 30  # of a letter, in the units of the line
+
 
 @pytest.mark.parametrize(
     ("lesson", "name"),
@@ -70,6 +75,21 @@ def test_every_page_is_valid_html(site, tmp_path):
     )
     assert "<p>" in found(spoiled)[str(spoiled)][0][1]
     assert found(*pages) == {}
+
+
+def test_no_text_is_cut_off_at_the_edge_of_a_drawing(parsed_pages):
+    room = []
+    for name, page in parsed_pages.items():
+        for line in page.select("svg.drawing g:has(> use)"):
+            if place := LINE.match(line.get("transform", "")):
+                letters = [
+                    LETTER.match(use.get("transform", "")) for use in line("use")
+                ]
+                last = max((float(at[1]) for at in letters if at), default=0)
+                end = float(place[1]) + float(place[2]) * (last + HALF)
+                _, _, width, _ = line.find_parent("svg")["viewbox"].split()
+                room.append((float(width) - end, name))
+    assert min(room) > (0,)
 
 
 def test_published_anchors_stay_and_new_ones_are_kept_from_now_on(parsed_pages):

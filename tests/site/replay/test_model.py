@@ -220,3 +220,9 @@ def test_the_world_moves_against_a_followed_link_and_else_not(model, shape, turn
     assert moved(model) == {visual_shape.WORLD, *LINKS, *shadows}
     plain = pygltflib.GLTF2.load_from_bytes(drawn(shape, turning))
     assert moved(plain) == {*LINKS, *shadows}
+    near = pygltflib.GLTF2.load_from_bytes(drawn(shape, turning, near=2))
+    for case, trace in turning.items():
+        end = replay_model.CLOSE_UP
+        _, places = keys(near, case + end, visual_shape.WORLD, "translation")
+        x, y, z = trace.link_pos[:, 2].T
+        assert np.array_equal(places, np.column_stack([-x, -z, y]))
