@@ -113,7 +113,7 @@ def baseline_forces(run: Experiment) -> Figure:
     ):
         ax.plot(trace.t[1:], array[:, ENTRY], label=name, **look(mark, **DOTS))
     ax.set_xlim(-0.005, BEFORE_REST)
-    ax.set_ylim(bottom=-60)  # room for both names, too long for one line above the axes
+    ax.set_ylim(bottom=-60)  # room for both names: above the axes they need two lines
     plotting.finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", "lower right")
     return figure
 

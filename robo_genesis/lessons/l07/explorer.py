@@ -14,7 +14,7 @@ from .table_map import CASE, CELLS, WORDS, X, Y, outlines, verdicts
 
 MEASURES = False
 
-# What the map says of a cell that does not pass a test of `table_map.WORDS`.
+# The words for a cell that does not pass a test of `table_map.WORDS`.
 FAILED = {
     "reachable": "the hand does not reach it",
     **{
