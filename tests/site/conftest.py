@@ -62,14 +62,14 @@ def open_block(browser_3d, tmp_path):
     end; what it asks for is its `asked`."""
     opened = []
 
-    def open_it(block, of=browser_3d, state="visible", **window):
+    def open_it(block, of=browser_3d, **window):
         page = of.new_page(**{"viewport": {"width": 480, "height": 700}} | window)
         page.problems, page.asked = errors(page), []
         page.on(
             "request", lambda request: page.asked.append(request.url.rpartition("/")[2])
         )
         page.goto(page_of(block, tmp_path).as_uri())
-        page.locator(".panel").first.wait_for(state=state)
+        page.locator(".panel").first.wait_for()
         opened.append(page)
         return page
 
