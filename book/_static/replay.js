@@ -15,10 +15,9 @@ document.addEventListener("DOMContentLoaded", () => {
      channels of each case in turn. It is in the page as text; see scroll-boxes.js. */
   function read(root, radios, channels) {
     const { textContent } = root.parentElement.querySelector("details > noscript");
-    const table = new DOMParser().parseFromString(textContent, "text/html");
-    const rows = [...table.querySelectorAll("tbody tr")].map((row) =>
-      [...row.cells].map((cell) => Number(cell.textContent.replace("−", "-"))),
-    );
+    const [, , ...lines] = textContent.split("<tr"); // a parser would take four times as long
+    const number = (cell) => Number(/>([^<>]+)</.exec(cell)[1].replace("−", "-"));
+    const rows = lines.map((line) => line.split("<td").slice(1).map(number));
     const time = rows.map((row) => row[0]);
     return Object.fromEntries(radios.map((radio, k) => {
       const first = 1 + k * channels.length;
