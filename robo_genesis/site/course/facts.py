@@ -40,8 +40,9 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
 
 def keep_facts(app: Sphinx, document: nodes.document) -> None:
     """Keep the time that a page takes, and the beginning of its first paragraph."""
-    facts: dict[str, Any] = app.env.metadata[app.env.docname]
-    facts[MINUTES] = count_minutes(Path(app.env.doc2path(app.env.docname)))
+    name = app.env.docname
+    facts: dict[str, Any] = app.env.metadata[name]
+    facts[MINUTES] = count_minutes(name, Path(app.env.doc2path(name)))
     section = document.next_node(nodes.section)
     paragraphs = (n for n in section or () if isinstance(n, nodes.paragraph))
     if node := next(paragraphs, None):

@@ -10,10 +10,18 @@ from myst_parser.parsers.directives import parse_directive_text
 from nbformat import NotebookNode
 from nbformat.v4 import new_markdown_cell, new_notebook
 
-from robo_genesis.pipeline.pages.book import LAB, WORK_SHEET, Page, read_notebook
+from robo_genesis.pipeline.pages.book import (
+    LAB,
+    WORK_SHEET,
+    Page,
+    code_cells,
+    read_notebook,
+)
+from robo_genesis.pipeline.pages.page_index import executed_notebook
 from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
 
-# A slow pace, for technical prose; code, tables and formulas are not counted
+# A slow pace, for technical prose, tables, captions and outputs; `reading-times.md` describes
+# the computation to readers
 WORDS_A_MINUTE = 150
 LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
 MINUTES_A_QUESTION = 2
@@ -27,8 +35,9 @@ MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
 # Occurs in a cell with a function that the reader writes
 STUB = "raise NotImplementedError"
 
-# Tags of cells whose code is not visible.
+# Tags of cells whose code is not visible, and of those whose outputs are not.
 HIDDEN = {"hide-cell", "hide-input", "remove-cell"}
+NO_OUTPUT = {"hide-cell", "hide-output", "remove-cell"}
 
 # What is counted on a page, in words.
 MEASURES = {
@@ -83,10 +92,19 @@ class Minutes:
         return f"{self.total} min to read"
 
 
-def count_minutes(page: Path) -> Minutes:
-    """Return the time that a page takes."""
+def count_minutes(docname: str, page: Path) -> Minutes:
+    """Return the time that a page takes, with its outputs if it was executed.
+
+    Args:
+        docname: the name of the page.
+        page: its file.
+    """
     text = new_notebook(cells=[new_markdown_cell(page.read_text("utf8"))])
-    return size(read_notebook(page) or text, page)[0]
+    if notebook := read_notebook(page):
+        executed = executed_notebook(docname, notebook)
+        for cell, ran in zip(code_cells(notebook), executed.cells, strict=True):
+            cell.outputs = ran.outputs
+    return size(notebook or text, page)[0]
 
 
 def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
@@ -95,7 +113,7 @@ def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
     A page with functions to write is also run.
 
     Args:
-        notebook: the page's source.
+        notebook: the page, whose outputs count if it has them.
         file: of the page.
     """
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
@@ -114,26 +132,45 @@ def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
         work += len(THOUGHT.findall(text)) * MINUTES_A_CHECKPOINT
     sheet = file.stem == LAB and file.with_name(WORK_SHEET).is_file()
     words = sum(map(count_words, texts))
-    read = max(1, round(words / WORDS_A_MINUTE))
+    read_words = sum(count_words(text, beside=True) for text in texts)
+    read_words += sum(map(count_shown, notebook.cells))
+    read = max(1, round(read_words / WORDS_A_MINUTE))
     minutes = Minutes(read, round(work + sheet * MINUTES_A_SHEET), sheet)
     longest = max(lines, default=0)
     sizes = {"words": words, "cells": len(visible), "longest": longest}
     return minutes, sizes | {"minutes": minutes.total}
 
 
-def count_words(text: str) -> int:
-    """Return the number of words of running text: no folds, tables, captions, code or formulas."""
-    words, in_table = 0, False
+def count_words(text: str, beside: bool = False) -> int:
+    """Return the number of words of running text: no folds, code or formulas.
+
+    Args:
+        text: MyST Markdown.
+        beside: whether also tables and captions count.
+    """
+    words, skipped = 0, False
     for token in PARSER.parse(text):
         directive = DIRECTIVE.match(token.info.strip())
         if token.type in ("table_open", "table_close"):
-            in_table = token.type == "table_open"
-        elif token.type == "inline" and not in_table:
+            skipped = token.type == "table_open" and not beside
+        elif token.type == "inline" and not skipped:
             words += len(ENTRY.sub("", token.content).split())
-        elif directive and directive[1] in SHOWN_AS_PROSE:
+        elif directive and directive[1] in SHOWN_AS_PROSE | ({"figure"} if beside else set()):
             inside = parse_directive_text(TestDirective, directive[2], token.content)
             if "dropdown" not in inside.options.get("class", ""):
-                words += count_words("\n".join(inside.body))
+                words += count_words("\n".join(inside.body), beside)
+    return words
+
+
+def count_shown(cell: NotebookNode) -> int:
+    """Return the number of words that a code cell prints or displays, and of its caption."""
+    if NO_OUTPUT.intersection(cell.metadata.get("tags", ())):
+        return 0
+    figure = cell.metadata.get("mystnb", {}).get("figure", {})
+    words = count_words(figure.get("caption", ""))
+    for output in cell.get("outputs", ()):
+        words += len(output.get("text", "").split())
+        words += count_words(output.get("data", {}).get("text/markdown", ""), True)
     return words
 
 
