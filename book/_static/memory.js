@@ -35,12 +35,11 @@ document.addEventListener("DOMContentLoaded", () => {
   const article = document.querySelector("article");
   const make = (name, properties) => Object.assign(document.createElement(name), properties);
 
-  /* Answers by the text of their question, which stays when questions move: the number of the option,
+  /* Answers by the name of their question, which stays when questions move: the number of the option,
      or what was typed. The scripts of questions and replays treat them as given, without a word. */
   const inputsOf = (question) => [...question.querySelectorAll("[type=radio], [type=number]")];
-  const asked = (question) => question.querySelector("legend").textContent.trim();
   for (const question of document.querySelectorAll("fieldset.choice")) {
-    const answer = kept(asked(question));
+    const answer = kept(question.id);
     const inputs = inputsOf(question);
     const input = inputs[0].type === "number" ? inputs[0] : inputs[answer];
     if (answer === undefined || !input) continue;
@@ -53,43 +52,71 @@ document.addEventListener("DOMContentLoaded", () => {
     const question = target.closest("fieldset.choice");
     if (!question || detail === "kept") return;
     const answer = target.type === "radio" ? inputsOf(question).indexOf(target) : target.value;
-    keep(asked(question), answer === "" ? undefined : answer);
+    keep(question.id, answer === "" ? undefined : answer);
   });
 
-  /* The home page: where to go on, what is finished, and how to forget it. */
+  /* Marks of finished and begun pages in the menu and in the map. */
+  function mark() {
+    for (const old of document.querySelectorAll(".progress-mark")) old.remove();
+    const { pages = {} } = read();
+    for (const link of document.querySelectorAll(".bd-links a, .lesson-list a, .course-map .time a")) {
+      const of = pages[nameOf(link.href)];
+      if (!of) continue;
+      const [name, sign] = of.finished ? ["finished", " ✓"] : ["begun", " ◐"];
+      const sight = make("span", { className: `progress-mark ${name}`, role: "img", ariaLabel: name, title: name });
+      sight.textContent = sign;
+      link.after(sight);
+    }
+  }
+  mark();
+
+  /* The home page: where to go on, and how to forget it. */
   const place = document.querySelector(".memory");
-  const { last, pages } = read();
+  const { last } = read();
   if (place && last) {
-    const go = make("a", { href: new URL(last.page, root).href, textContent: last.title });
+    const address = new URL(`${last.page}${last.hash ?? ""}`, root).href;
+    const words = last.heading ? `${last.title}, “${last.heading}”` : last.title;
+    const go = make("a", { href: address, textContent: words });
     const away = make("button", { type: "button", textContent: "Forget all" });
     away.addEventListener("click", () => {
       write({});
+      mark();
       place.replaceChildren("Forgotten.");
       place.focus();
-      for (const mark of document.querySelectorAll(".finished")) mark.remove();
     });
     place.append("Continue where you left off: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
-    for (const link of document.querySelectorAll(".course-map .time a")) {
-      if (!pages?.[nameOf(link.href)]?.finished) continue;
-      link.after(make("span", { className: "finished", textContent: " ✓ finished" }));
-    }
   }
 
-  /* The link to the form for feedback names the section at the top of the window. */
+  /* The heading at the top of the window. */
+  const here = () => {
+    const headings = [...article.querySelectorAll("h1, h2, h3")].filter((one) => one.getClientRects().length);
+    return headings.findLast((one) => one.getBoundingClientRect().top < 200) ?? headings[0];
+  };
+
+  /* The link to the form for feedback names it. */
   const report = document.querySelector(".report a");
   const address = report?.href; // it ends with the page
   report?.addEventListener("click", () => {
-    const headings = [...article.querySelectorAll("h1, h2, h3")];
-    const above = headings.findLast((one) => one.getBoundingClientRect().top < 200) ?? headings[0];
-    report.href = address + encodeURIComponent(`, "${above.firstChild.textContent}"`);
+    report.href = address + encodeURIComponent(`, "${here().firstChild.textContent}"`);
   });
 
-  /* A page of a lesson: it is the last one, and its end offers to mark it. */
+  /* A page of a lesson: it is the last one, at the heading where it was left, and its end offers to mark it. */
   if (!article || !keeps || !page.startsWith("lessons/")) return;
   const title = article.querySelector("h1").firstChild.textContent;
-  write({ ...read(), last: { page, title } });
+  keep("opened", true);
+  if (last?.page !== page) write({ ...read(), last: { page, title } });
+  addEventListener("pagehide", () => {
+    const heading = here();
+    const at = heading.matches("h1") ? {} : {
+      hash: heading.querySelector(".headerlink")?.hash, heading: heading.firstChild.textContent,
+    };
+    write({ ...read(), last: { page, title, ...at } });
+  });
   const box = make("input", { type: "checkbox", id: "finished", checked: kept("finished") });
-  box.addEventListener("change", () => keep("finished", box.checked || undefined));
+  box.addEventListener("change", () => {
+    keep("finished", box.checked || undefined);
+    mark();
+  });
   const line = make("p", { className: "finish-page" });
   line.append(box, make("label", { htmlFor: box.id, textContent: " I have finished this page" }));
   article.append(line);

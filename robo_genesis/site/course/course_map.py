@@ -3,6 +3,7 @@
 | in a page | shows |
 |---|---|
 | {course-map} (directive) | published lessons as cards, planned ones as a list of titles |
+| {course-map} with :brief: | a short list of the published lessons |
 | {featured} L04 (directive) | its content, while the map has this lesson published |
 | {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import yaml
 from docutils import nodes
+from docutils.parsers.rst.directives import flag
 from pydantic import TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 from sphinx.application import Sphinx
@@ -120,17 +122,20 @@ def lesson_pages(docnames: Iterable[str], lesson: str) -> dict[str, str]:
 class CourseMap(MapDirective):
     """Show the published lessons as cards, and the planned ones as a list."""
 
+    option_spec = {"brief": flag}  # noqa: RUF012 - as docutils declares it
+
     def shown(self) -> list[nodes.Node]:
         """Return the place of the map."""
         self.lessons()
-        return [late(make=cards)]
+        return [late(make=partial(cards, "brief" in self.options))]
 
 
-def cards(app: Sphinx, docname: str) -> str:
+def cards(brief: bool, app: Sphinx, docname: str) -> str:
     """Return the map, when the minutes of all pages and the pictures of replays are known."""
     lessons = read_map(Path(app.srcdir))
     return filled(
         Path(__file__).with_suffix(".html"),
+        brief=brief,
         lessons=lessons,
         times=partial(times, app.env),
         pictures=sorted(name for _, name in app.env.images.values()),

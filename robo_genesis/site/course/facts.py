@@ -17,6 +17,7 @@ from .sizes import count_minutes
 # Longest description, in characters: search engines show about as many
 DESCRIPTION = 200
 MINUTES = "minutes"  # The name of the time in a page's metadata
+COUNTED = "minutes"  # The label of the section that says how the time is counted
 
 
 FORM = "lesson.yml"  # The repository's form for a mistake or a question
@@ -27,8 +28,16 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     section = document.next_node(nodes.section)
     repository = app.config.course_repository
     if docname != app.config.root_doc:
-        time = f"About {app.env.metadata[docname][MINUTES]}."
-        section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
+        time: nodes.Node = nodes.Text(str(app.env.metadata[docname][MINUTES]))
+        if COUNTED in (labels := app.env.get_domain("std").anonlabels):
+            page, anchor = labels[COUNTED]
+            place = app.builder.get_relative_uri(docname, page)
+            link = nodes.reference("", "", time, internal=True)
+            link["refuri"] = f"{place}#{anchor}"
+            time = link
+        line = nodes.paragraph("", "About ", time, nodes.Text("."))
+        line["classes"].append("page-facts")
+        section.insert(1, line)
     if repository.startswith("https://github.com/"):
         place = f"{docname}, Genesis {engine_pin()}"
         address = (

@@ -20,8 +20,9 @@ from robo_genesis.pipeline.pages.book import (
 from robo_genesis.pipeline.pages.page_index import executed_notebook
 from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
 
-# A slow pace, for technical prose, tables, captions and outputs; `reading-times.md` describes
-# the computation to readers
+# These numbers are on the home page, below "How the minutes are counted".
+
+# A slow pace, for technical prose, tables, captions and outputs
 WORDS_A_MINUTE = 150
 LINES_A_MINUTE = 10  # The pace of somebody who runs and changes visible code
 MINUTES_A_QUESTION = 2

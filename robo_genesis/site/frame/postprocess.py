@@ -32,6 +32,7 @@ NEEDED_BY: dict[str, set[str]] = {
     "language_data.js": {"search-results"},
     "plot.js": {"explorer", "replay"},
     "replay.js": {"replay"},
+    "review.js": {"all-questions"},
     "search-from-disk.js": {"search-results"},
     "searchindex.js": {"search-results"},
     "searchtools.js": {"search-results"},

@@ -1,7 +1,8 @@
 """Search also finds a long name by its end: `control_force` finds `get_dofs_control_force`.
 
 Sphinx's index contains whole words. Its script searches for parts of words only where
-no page has the whole word.
+no page has the whole word. Words that only ask are not searched for: a page must have
+all words.
 """
 
 import re
@@ -10,8 +11,13 @@ from sphinx.application import Sphinx
 from sphinx.search.en import SearchEnglish
 
 
+ASKING = "can do does how i my should what when where which who why you your"
+
+
 class SearchNames(SearchEnglish):
     """English, with the ends of names that are joined by underscores."""
+
+    stopwords = SearchEnglish.stopwords | set(ASKING.split())
 
     def split(self, input: str) -> list[str]:
         """Return the words of a text, each name followed by its shorter and shorter ends."""

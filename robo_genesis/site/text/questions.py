@@ -32,7 +32,8 @@ the build refuses any other:
 - `:hides:`: whatever follows in its section, with subsections, figures and outputs,
   shows after an answer. The section's end is the marked place: a heading ends it earlier;
 - `:calculation:`: it follows from inputs that are given, and no result of it is in sight;
-- `:recall:`: it asks about an earlier lesson;
+- `:explained:`: it asks about an earlier lesson, and names the section that explains it,
+  for after the answer, in Markdown: `` :explained: {ref}`a contact <l03>` ``;
 - `:absent:`: a choice for a second case that no page of the lesson records, so that
   unknown is right; its cause says which measurement would tell.
 """
@@ -49,6 +50,7 @@ from sphinx.transforms import SphinxTransform
 from sphinx.util import logging
 
 from robo_genesis.core.comparison import Comparison
+from robo_genesis.core.files import json_digest
 from robo_genesis.core.markup import filled
 from robo_genesis.core.tables import comparison_sentence
 from robo_genesis.core.text import SCALED, format_value
@@ -74,15 +76,17 @@ CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 
 # The key of a typical wrong number: the value times this factor.
 FACTOR = re.compile(r"x\d+(\.\d+)?")
+QUESTIONS = "questions"  # In the metadata of a page: the facts of each, by its name
+
 # Below a question; `course.css` hides what follows it.
 HIDES = '<p class="after-answer">The text goes on here when you have answered.</p>'
 
 # The options of a question that say why its answer is not in sight; see above.
-KINDS = ("hides", "calculation", "recall")
+KINDS: dict[str, Any] = {"hides": flag, "calculation": flag, "explained": unchanged}
 IN_SIGHT = (
     "the answer of this question may be in sight. Add `:hides:` if results follow in its "
     "section, let a `{replay}` with `:blind:` follow directly, or add `:calculation:` if it "
-    "follows from given inputs, or `:recall:` if it is about an earlier lesson."
+    "follows from given inputs, or `:explained:` if it is about an earlier lesson."
 )
 
 logger = logging.getLogger(__name__)
@@ -107,6 +111,11 @@ def asked(**facts: Any) -> question:
     whole = filled(Path(__file__).with_name("question.html"), **facts)
     opening, closing = whole.split("TEXT", 1)
     return question(opening=opening, closing=closing)
+
+
+def identifier(text: str) -> str:
+    """Return the name of a question by its words: it stays when the question moves."""
+    return f"question-{json_digest(text)[:8]}"
 
 
 def split_causes(
@@ -139,17 +148,26 @@ class Question(PageDirective):
     """Ask for something that was measured."""
 
     has_content = True
-    option_spec = dict.fromkeys(KINDS, flag)
 
     def shown(self) -> list[nodes.Node]:
-        """Return the question with a number that no other has."""
+        """Return the question, which the course's list of questions then has too."""
         text, facts = self.ask()
-        node = asked(name=f"choice-{self.env.new_serialno('choice')}", **facts)
+        name = identifier(text)
+        node = asked(name=name, **facts)
         node["kinds"] = [kind for kind in (*KINDS, "absent") if kind in self.options]
         self.set_source_info(node)
         words, messages = self.parse_inline(text, lineno=self.lineno)
         node += words
-        return [node, *messages, *([html(HIDES)] if "hides" in self.options else [])]
+        of_page = self.env.metadata[self.env.docname].setdefault(QUESTIONS, {})
+        if name in of_page:
+            raise LookupError("the page asks this already, in the same words.")
+        of_page[name] = {"text": node.astext(), **facts}
+        after = [html(HIDES)] if "hides" in self.options else []
+        if section := self.options.get("explained"):
+            link, more = self.parse_inline(section, lineno=self.lineno)
+            line = nodes.paragraph("", "Explained in ", *link, classes=["explained"])
+            after, messages = [line, *after], messages + more
+        return [node, *messages, *after]
 
     def ask(self) -> tuple[str, dict[str, Any]]:
         """Return the question's text, and its facts; see `asked`."""
@@ -160,7 +178,7 @@ class Choice(Question):
     """Ask how the second of two cases compares with the first in one metric."""
 
     required_arguments = 4
-    option_spec = Question.option_spec | {"absent": flag}
+    option_spec = KINDS | {"absent": flag}
 
     def ask(self) -> tuple[str, dict[str, Any]]:
         """See `Question.ask`."""
@@ -177,7 +195,7 @@ class Number(Question):
     """Ask for the value of one metric."""
 
     required_arguments = 2
-    option_spec = Question.option_spec | {"tolerance": float, "unit": unchanged}
+    option_spec = KINDS | {"tolerance": float, "unit": unchanged}
 
     def ask(self) -> tuple[str, dict[str, Any]]:
         """See `Question.ask`."""

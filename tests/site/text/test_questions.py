@@ -139,7 +139,7 @@ ASKED = "```{{choice}} l04/lab overshoot G1 {}\nMore?\n```"
 PAGE = [
     (ASKED.format("G2"), True),
     ("```{number} l04/lab G2.overshoot\n:tolerance: 5\nHow far?\n```", True),
-    (ASKED.format("G2\n:recall:"), False),
+    (ASKED.format("G2\n:explained: `L03`"), False),
     (ASKED.format("G2\n:calculation:"), False),
     (ASKED.format("unseen\n:absent:"), False),
     (ASKED.format("G2\n:hides:"), False),
@@ -214,7 +214,7 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
         ("1.0", "Too high."),
         ("", ""),
     ):
-        page.locator("#choice-4").fill(typed)
+        page.locator("#choice-4-0").fill(typed)
         page.keyboard.press("Tab")
         assert said.last.inner_text() == text
         shown = [
@@ -229,7 +229,7 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
 @pytest.mark.parametrize(
     "answer",
     [
-        lambda page: [page.locator("#choice-5").press(key) for key in ("3", "Tab")],
+        lambda page: [page.locator("#choice-5-0").press(key) for key in ("3", "Tab")],
         lambda page: page.locator("summary").click(),
         lambda page: page.evaluate("location.hash = 'result'"),
     ],

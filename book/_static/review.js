@@ -1,0 +1,25 @@
+/* The page with all questions: those that were missed, then those without an answer. */
+"use strict";
+
+document.addEventListener("DOMContentLoaded", () => {
+  const { read, nameOf } = globalThis.memory;
+  const list = document.querySelector(".all-questions");
+  const { pages = {} } = read();
+  const groups = { missed: [], open: [], right: [] };
+  for (const item of list.children) {
+    const { value, tolerance, right } = item.dataset;
+    const link = item.querySelector("a");
+    const given = pages[nameOf(link.href)]?.[link.hash.slice(1)];
+    const isRight = value ? Math.abs(given - value) <= tolerance : String(given) === right;
+    groups[given === undefined ? "open" : isRight ? "right" : "missed"].push(item);
+  }
+  const { missed, open, right } = groups;
+  const state = document.querySelector(".review");
+  if (missed.length + right.length === 0) {
+    state.textContent = "This browser has no answer of yours yet. Begin with the first question.";
+    return;
+  }
+  state.textContent = `Missed: ${missed.length}. Right: ${right.length}. Without an answer: ${open.length}.`;
+  for (const item of missed) item.prepend(Object.assign(document.createElement("strong"), { textContent: "Missed: " }));
+  list.replaceChildren(...missed, ...open);
+});
