@@ -1,11 +1,11 @@
 /* What Sphinx's search lacks. Excerpts of results: none from disk, where a page cannot read other files, and
    of articles alone, without menus, tables and lines of provenance. Words with one wrong letter. Lectures
-   come first if the reader asks a question. */
+   come first if the reader asks a question. It runs between Sphinx's script and the index (`postprocess.py`). */
 "use strict";
 
 if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
 
-document.addEventListener("DOMContentLoaded", () => {
+{
   const { htmlToText, _parseQuery } = Search;
   Search.htmlToText = (html, anchor) => {
     const page = new DOMParser().parseFromString(html, "text/html");
@@ -43,4 +43,4 @@ document.addEventListener("DOMContentLoaded", () => {
     Scorer.score = (result) => result[4] + (lecture(result) ? 100 : 0);
     return parsed;
   };
-});
+}

@@ -26,7 +26,7 @@ MAP = [
         "outcomes": ["walk"],
     },
 ]
-CARDS = "```{course-map}\n```\n"
+CARDS = "```{course-map}\n```\n\n```{course-map}\n:brief:\n```\n"
 FEATURED = paragraphs(
     "{lesson}`The second <l02/lecture>` and {lesson}`the\nthird <l03/lab>`.",
     ":::{featured} L04\nFour was measured.\n:::",
@@ -104,6 +104,7 @@ def render_small_book(folder: Path) -> Path:
     }
     pages |= {"times": "Times\n\n```{cell-times}\n```\n"}
     texts = {name: f"# {text}\n\nText.\n" for name, text in pages.items()}
+    texts["times"] = f"(minutes)=\n{texts['times']}"
     texts |= {"glossary": GLOSSARY, "terms": TERMS, "described": DESCRIBED}
     texts["timed"] = notebook(cell("1"), cell("2"), cell(""), cell("3"))
     texts["other"] = notebook(cell("4"), title="Other")

@@ -48,12 +48,12 @@ MEASURES = {
     "minutes": "minutes to read and to work",
 }
 
-# The largest numbers by kind of page: the first word of its name.
-LECTURE = {"words": 3300, "cells": 12, "longest": 15, "minutes": 50}
+# The largest numbers by kind of page: the first word of its name. `make lint` knows no outputs.
+LECTURE = {"words": 3300, "cells": 12, "longest": 15, "minutes": 65}
 LIMITS = {
     "lecture": LECTURE,
     "motion": LECTURE,  # the second part of L04's lecture
-    "lab": {"minutes": 80},
+    "lab": {"minutes": 90},
     "mistakes": {"words": 2000},
     "deeper": {"words": 2000},
 }

@@ -40,6 +40,8 @@ NEEDED_BY: dict[str, set[str]] = {
     "togglebutton.js": {"toggle"},
 }
 
+OWN_SEARCH, SEARCH = "search-from-disk.js", "searchtools.js"
+
 # Files of the theme in `_static` that no page loads.
 UNUSED = ("**/*.map", "*webpack-macros.html", "locales", "scripts/fontawesome.js*")
 
@@ -85,6 +87,7 @@ def finish_page(html: str, folder: Path) -> str:
     accessibility.stack_tables(page)
     drawings.inline_drawings(page, folder)
     drop_idle_scripts(page)
+    place_search_script(page)
     defer_scripts(page)
     choose_theme(page)
     wait_for_the_title(page)
@@ -108,6 +111,15 @@ def drop_idle_scripts(page: BeautifulSoup) -> None:
         file = Path(urlsplit(str(script["src"])).path).name
         if not names & NEEDED_BY.get(file, names):
             script.decompose()
+
+
+def place_search_script(page: BeautifulSoup) -> None:
+    """Let our script for the search follow Sphinx's, and so precede the index and the query."""
+    own, tools = (
+        page.select_one(f"script[src*='/{name}']") for name in (OWN_SEARCH, SEARCH)
+    )
+    if own and tools:
+        tools.insert_after(own)
 
 
 def defer_scripts(page: BeautifulSoup) -> None:

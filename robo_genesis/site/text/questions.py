@@ -161,7 +161,7 @@ class Question(PageDirective):
         of_page = self.env.metadata[self.env.docname].setdefault(QUESTIONS, {})
         if name in of_page:
             raise LookupError("the page asks this already, in the same words.")
-        of_page[name] = {"text": node.astext(), **facts}
+        of_page[name] = {"text": "".join(w.astext() for w in words), **facts}
         after = [html(HIDES)] if "hides" in self.options else []
         if section := self.options.get("explained"):
             link, more = self.parse_inline(section, lineno=self.lineno)

@@ -74,6 +74,7 @@ def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(
             "stop",
             "Builds on L01 and L02.",
             "Lecture: 1 min to read",
+            "The whole lesson: 1 min",
         ],
         [
             "L06 Six",
@@ -81,6 +82,7 @@ def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(
             "Lecture: 4 min to read",
             "Lab: 15 min with the work sheet",
             "2 more pages: 8 min to read",
+            "The whole lesson: 26 min",
         ],
     ]
     pages = ("lecture", "lecture", "lab")
@@ -91,6 +93,12 @@ def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(
     lines = {item["id"]: item.get_text().strip() for item in planned.select("li")}
     assert lines == {"lesson-l01": "L01 One", "lesson-l02": "L02 Two"}
     assert not planned.select("a")
+
+
+def test_the_brief_map_is_a_list_of_lectures_with_their_minutes(small_site):
+    lines = parsed(small_site, "cards").select("ul.lesson-list > li")
+    assert [line.get_text() for line in lines] == ["L04: Four 1 min", "L06: Six 4 min"]
+    assert lines[1].a["href"] == "lessons/l06-six/lecture.html"
 
 
 def test_lessons_that_are_absent_leave_words_and_no_content(small_site):

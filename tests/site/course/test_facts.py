@@ -25,7 +25,9 @@ def test_minutes_are_shown_with_their_parts(counted, shown):
 
 def test_a_page_has_both_and_the_home_page_no_time(small_site):
     page, home = parsed(small_site, "described"), parsed(small_site, "index")
-    assert "About 1 min to read." in page.select_one("h1 + p.page-facts").get_text()
+    time = page.select_one("h1 + p.page-facts")
+    assert time.get_text() == "About 1 min to read."
+    assert time.a["href"] == "times.html#minutes"
     assert not home.select(".page-facts")
     (tag,) = page.select('meta[name="description"]')
     assert tag["content"].startswith("A joint’s step & more. word")
@@ -43,7 +45,9 @@ REPOSITORIES = [
 @pytest.mark.parametrize(("repository", "offered"), REPOSITORIES)
 def test_feedback_goes_to_the_form_of_a_repository_on_github(repository, offered):
     config = SimpleNamespace(root_doc="index", course_repository=repository)
-    env = SimpleNamespace(metadata={"l04/lab": {facts.MINUTES: "1 min"}})
+    std = SimpleNamespace(anonlabels={})
+    metadata = {"l04/lab": {facts.MINUTES: "1 min"}}
+    env = SimpleNamespace(metadata=metadata, get_domain={"std": std}.get)
     keep = {"doctitle_xform": False}
     document = publish_doctree("Title\n=====\n\nText.", settings_overrides=keep)
     facts.add_facts(SimpleNamespace(config=config, env=env), document, "l04/lab")
