@@ -275,7 +275,7 @@ def attack(page: Any, gs: Any, worlds: Mapping[str, table.World]) -> None:
         failing = (of for of in spec.RUNGS if not rungs.passed(found.measure(of)))
         page.readings["attacks"][name] = rungs.NUMBERS.index(next(failing, None))
         if quantity:
-            of = found.values[rungs.rung_of(quantity)]
+            of = found.measure(rungs.rung_of(quantity))
             page.readings["caught"][name] = of[quantity]
     for world in known.values():
         world.scene.reset()

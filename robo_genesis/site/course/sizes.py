@@ -156,7 +156,9 @@ def count_words(text: str, beside: bool = False) -> int:
             skipped = token.type == "table_open" and not beside
         elif token.type == "inline" and not skipped:
             words += len(ENTRY.sub("", token.content).split())
-        elif directive and directive[1] in SHOWN_AS_PROSE | ({"figure"} if beside else set()):
+        elif directive and directive[1] in SHOWN_AS_PROSE | (
+            {"figure"} if beside else set()
+        ):
             inside = parse_directive_text(TestDirective, directive[2], token.content)
             if "dropdown" not in inside.options.get("class", ""):
                 words += count_words("\n".join(inside.body), beside)

@@ -10,7 +10,6 @@ import re
 from sphinx.application import Sphinx
 from sphinx.search.en import SearchEnglish
 
-
 ASKING = "can do does how i my should what when where which who why you your"
 
 

@@ -65,7 +65,12 @@ def ran(code, *tags, text="", caption="", **data):
         # 150 words; 20 lines, two functions, a run and a work sheet
         (
             "lab",
-            [new_markdown_cell("word " * 150), ran(STUB), ran(STUB), ran("a = 1\n" * 16)],
+            [
+                new_markdown_cell("word " * 150),
+                ran(STUB),
+                ran(STUB),
+                ran("a = 1\n" * 16),
+            ],
             1,
             2 + 20 + 5 + 10,
         ),

@@ -1,6 +1,8 @@
 """The right option of a question is the one that the bundle shows, and it is not in sight."""
 
 import re
+from collections import defaultdict
+from types import SimpleNamespace
 
 import pytest
 from bundles import RENDERER
@@ -135,14 +137,14 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
         questions.asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
 
 
-ASKED = "```{{choice}} l04/lab overshoot G1 {}\nMore?\n```"
+ASKED = "```{{choice}} l04/lab overshoot G1 {}\nMore in run {}?\n```"
 PAGE = [
-    (ASKED.format("G2"), True),
+    (ASKED.format("G2", 1), True),
     ("```{number} l04/lab G2.overshoot\n:tolerance: 5\nHow far?\n```", True),
-    (ASKED.format("G2\n:explained: `L03`"), False),
-    (ASKED.format("G2\n:calculation:"), False),
-    (ASKED.format("unseen\n:absent:"), False),
-    (ASKED.format("G2\n:hides:"), False),
+    (ASKED.format("G2\n:explained: `L03`", 2), False),
+    (ASKED.format("G2\n:calculation:", 3), False),
+    (ASKED.format("unseen\n:absent:", 4), False),
+    (ASKED.format("G2\n:hides:", 5), False),
 ]
 
 
@@ -181,6 +183,38 @@ def test_a_question_is_blind_with_the_replay_that_follows_directly(
     document += [questions.question(kinds=[]), *after]
     questions.RequireKinds(document).apply()
     assert said == [(questions.IN_SIGHT,)] * refused
+class Asked(questions.Question):
+    """A question on a page, where Sphinx does not run."""
+
+    lineno = 1
+
+    def __init__(self, env, text, **options):
+        settings = SimpleNamespace(env=env)
+        self.state = SimpleNamespace(document=SimpleNamespace(settings=settings))
+        self.text, self.options = text, options
+
+    def ask(self):
+        shown = [("less", False, ""), ("more", True, "")]
+        return self.text, {"options": shown, **MEASURED}
+
+    def parse_inline(self, text, lineno):
+        return [nodes.Text(text)], []
+
+    def set_source_info(self, node):
+        pass
+
+
+def test_a_question_keeps_its_name_and_leads_to_what_explains_it():
+    env = SimpleNamespace(docname="page", metadata=defaultdict(dict))
+    first, line = Asked(env, "When?", explained="L03").shown()
+    (second,) = Asked(env, "Where?").shown()
+    assert line.astext() == "Explained in L03"
+    (name, when), (other, _) = env.metadata["page"][questions.QUESTIONS].items()
+    assert (name, when["text"]) == (questions.identifier("When?"), "When?")
+    assert f'id="{name}"' in first["opening"]
+    assert f'id="{other}"' in second["opening"]
+    with pytest.raises(LookupError, match="in the same words"):
+        Asked(env, "When?").shown()
 
 
 FEEDBACK = [("right", "Yes."), ("low", "Too low. It saturates."), ("high", "Too high.")]
