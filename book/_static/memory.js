@@ -65,7 +65,7 @@ document.addEventListener("DOMContentLoaded", () => {
       const [name, sign] = of.finished ? ["finished", " ✓"] : ["begun", " ◐"];
       const sight = make("span", { className: `progress-mark ${name}`, role: "img", ariaLabel: name, title: name });
       sight.textContent = sign;
-      link.after(sight);
+      link.append(sight);
     }
   }
   mark();

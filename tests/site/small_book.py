@@ -92,11 +92,11 @@ def render_small_book(folder: Path) -> Path:
     pages = {
         "page": "Page",
         "lessons/l02-two/lecture": "Two",
-        "cards": f"Map\n\n{CARDS}",
+        "cards": f'Map\n\n<p class="memory"></p>\n\n{CARDS}',
     }
     pages |= {
         "featured": f"Map\n\n{FEATURED}",
-        "lessons/l06-six/lecture": f"Six\n\n{WORDS}",
+        "lessons/l06-six/lecture": f"Six\n\n{WORDS}\n\n## Later\n\n",
     }
     pages |= {
         f"lessons/l06-six/{name}": f"Six\n\n{WORDS}"

@@ -158,10 +158,8 @@ class Question(PageDirective):
         self.set_source_info(node)
         words, messages = self.parse_inline(text, lineno=self.lineno)
         node += words
-        of_page = self.env.metadata[self.env.docname].setdefault(QUESTIONS, {})
-        if name in of_page:
-            raise LookupError("the page asks this already, in the same words.")
-        of_page[name] = {"text": "".join(w.astext() for w in words), **facts}
+        known = self.env.metadata[self.env.docname].setdefault(QUESTIONS, {})
+        known[name] = {"text": "".join(word.astext() for word in words), **facts}
         after = [html(HIDES)] if "hides" in self.options else []
         if section := self.options.get("explained"):
             link, more = self.parse_inline(section, lineno=self.lineno)

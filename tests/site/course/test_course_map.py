@@ -97,7 +97,10 @@ def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(
 
 def test_the_brief_map_is_a_list_of_lectures_with_their_minutes(small_site):
     lines = parsed(small_site, "cards").select("ul.lesson-list > li")
-    assert [line.get_text() for line in lines] == ["L04: Four 1 min", "L06: Six 4 min"]
+    assert [line.get_text() for line in lines] == [
+        "L04: Four 1\xa0min",
+        "L06: Six 4\xa0min",
+    ]
     assert lines[1].a["href"] == "lessons/l06-six/lecture.html"
 
 

@@ -1,8 +1,6 @@
 """The right option of a question is the one that the bundle shows, and it is not in sight."""
 
 import re
-from collections import defaultdict
-from types import SimpleNamespace
 
 import pytest
 from bundles import RENDERER
@@ -183,38 +181,6 @@ def test_a_question_is_blind_with_the_replay_that_follows_directly(
     document += [questions.question(kinds=[]), *after]
     questions.RequireKinds(document).apply()
     assert said == [(questions.IN_SIGHT,)] * refused
-class Asked(questions.Question):
-    """A question on a page, where Sphinx does not run."""
-
-    lineno = 1
-
-    def __init__(self, env, text, **options):
-        settings = SimpleNamespace(env=env)
-        self.state = SimpleNamespace(document=SimpleNamespace(settings=settings))
-        self.text, self.options = text, options
-
-    def ask(self):
-        shown = [("less", False, ""), ("more", True, "")]
-        return self.text, {"options": shown, **MEASURED}
-
-    def parse_inline(self, text, lineno):
-        return [nodes.Text(text)], []
-
-    def set_source_info(self, node):
-        pass
-
-
-def test_a_question_keeps_its_name_and_leads_to_what_explains_it():
-    env = SimpleNamespace(docname="page", metadata=defaultdict(dict))
-    first, line = Asked(env, "When?", explained="L03").shown()
-    (second,) = Asked(env, "Where?").shown()
-    assert line.astext() == "Explained in L03"
-    (name, when), (other, _) = env.metadata["page"][questions.QUESTIONS].items()
-    assert (name, when["text"]) == (questions.identifier("When?"), "When?")
-    assert f'id="{name}"' in first["opening"]
-    assert f'id="{other}"' in second["opening"]
-    with pytest.raises(LookupError, match="in the same words"):
-        Asked(env, "When?").shown()
 
 
 FEEDBACK = [("right", "Yes."), ("low", "Too low. It saturates."), ("high", "Too high.")]
