@@ -23,9 +23,8 @@ from . import case_labels
 
 # Its template. Paper has the light theme
 SHEET = Path(__file__).with_name("palette.css")
-NAMES = sorted({*course_marks()} - {"baseline"})
-
-# A case's name in prose.
+# A case's name in prose: "pushed" and "baseline" are ordinary words there.
+NAMES = sorted(name for name in course_marks() if not name.isalpha())
 NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES))})\b")
 OTHER_TEXT = (
     nodes.literal,
@@ -47,8 +46,8 @@ class MarkCases(SphinxPostTransform):
     """Mark each case that is named.
 
     A cell of a table that holds a case's name or its words, and nothing else, gets the
-    line of the plots beside it; in running text the name has the case's colour,
-    "baseline" excepted.
+    line of the plots beside it. In running text the name has the case's colour, unless
+    it is an ordinary word.
     """
 
     default_priority = 400  # outputs of cells have been chosen by then
