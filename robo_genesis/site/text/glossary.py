@@ -1,12 +1,19 @@
-"""Definitions of the glossary as titles of the links to it, which authors write as {term}."""
+"""Definitions of the glossary beside the words that authors write as {term}.
+
+Such a word is a button, which shows its definition by touch, keyboard and mouse without
+a script, and below the definition a link to the glossary.
+"""
 
 import re
+from html import escape
 from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.transforms.post_transforms import SphinxPostTransform
+
+from robo_genesis.site.evidence.plain_nodes import between
 
 GLOSSARY = "glossary"
 
@@ -24,25 +31,42 @@ def glossary_terms(env: BuildEnvironment) -> dict[str, str]:
     return sentences
 
 
-class TitleTerms(SphinxPostTransform):
-    """Write the definition of a term into the title of its link."""
+class DefineTerms(SphinxPostTransform):
+    """Replace each link to a term by a button and a note with the definition."""
 
     default_priority = 11  # just after references are resolved
 
     def run(self, **kwargs: Any) -> None:
-        """Add titles, and the class that style sheets name."""
+        """Replace the links."""
         links = [
             link
             for link in self.document.findall(nodes.reference)
             if any("std-term" in part["classes"] for part in link.findall(nodes.inline))
         ]
         sentences = glossary_terms(self.env) if links else {}
-        for link in links:
-            anchor = link.get("refid") or link["refuri"].partition("#")[2]
-            link["reftitle"] = sentences[anchor]
-            link["classes"].append("term-link")
+        for number, link in enumerate(links):
+            address = link.get("refuri") or f"#{link['refid']}"
+            sentence = sentences[address.partition("#")[2]]
+            link.replace_self(defined(link, f"note-{number}", sentence, address))
+
+
+def defined(
+    link: nodes.reference, name: str, sentence: str, address: str
+) -> nodes.Node:
+    """Return the button of a term with the words of a link, and its note.
+
+    Args:
+        link: to the entry of the term.
+        name: the identifier of the note, unique on the page.
+        sentence: the definition.
+        address: of the entry.
+    """
+    entry = f'<a href="{escape(address)}">Glossary</a>'
+    note = f'<span class="term-note" id="{name}" popover>{escape(sentence)} {entry}</span>'
+    button = f'<button class="term-link" popovertarget="{name}" type="button">'
+    return between("", *link.children, opening=button, closing=f"</button>{note}")
 
 
 def setup(app: Sphinx) -> None:
-    """Register the titles."""
-    app.add_post_transform(TitleTerms)
+    """Register the definitions."""
+    app.add_post_transform(DefineTerms)

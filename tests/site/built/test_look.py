@@ -102,6 +102,34 @@ def test_a_figure_has_the_colours_of_the_theme(page, theme):
     assert not {getattr(mark, other) for mark in (*marks, PARTS["text"])} & colours
 
 
+ALONE = "article => article.replaceChildren(...article.querySelectorAll('div.math'))"
+
+
+def is_cut(page: Page) -> bool:
+    """Whether the formulas of a page have more ink where their boxes cut nothing above or below."""
+    article = page.locator("article")
+    article.evaluate(ALONE)
+    shown = article.screenshot()
+    page.add_style_tag(content="div.math { overflow: clip visible !important; }")
+    return article.screenshot() != shown
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_no_formula_is_cut_off(browser, address, parsed_pages, width):
+    page = browser.new_page(viewport={"width": width, "height": 800})
+    pages = [name for name, one in parsed_pages.items() if one.select("div.math")]
+    cut = []
+    for name in pages:
+        page.goto(f"{address}/{name}.html")
+        page.evaluate("document.fonts.ready")
+        cut += [name] * is_cut(page)
+    assert cut == []
+    page.reload()
+    page.add_style_tag(content="div.math { height: 1rem; }")
+    assert is_cut(page)
+    page.close()
+
+
 def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, address):
     page = browser.new_page(viewport={"width": 390, "height": 800})
     page.goto(f"{address}/{LECTURE}")

@@ -1,18 +1,53 @@
-"""The title of a link to a term is its definition."""
+"""A term is a button that shows its definition, with a link to its entry."""
 
+import pytest
+from browsers import launched
 from built_site import parsed
+from playwright.sync_api import expect
+from watching import violations
+
+SENTENCE = "How far it passes, counted along its DOF."
 
 
-def test_a_link_to_a_term_has_its_definition_as_title(small_site):
+def test_a_term_has_its_definition_and_a_link_to_its_entry(small_site):
     entries, page = parsed(small_site, "glossary"), parsed(small_site, "terms")
-    links = page.select("a.term-link")
-    assert [(link.get_text().split(), link["title"]) for link in links] == [
-        (["Overshoots"], "How far it passes, counted along its DOF."),
-        (["degree", "of", "freedom"], "One axis of motion."),
-    ]
-    for link in links:
-        file, _, anchor = link["href"].partition("#")
+    found = []
+    for button in page.select("button.term-link"):
+        note = page.find(id=button["popovertarget"])
+        file, _, anchor = note.a.extract()["href"].partition("#")
         assert file == "glossary.html"
         assert entries.find(id=anchor).name == "dt"
-    (own,) = entries.select("a.term-link")
-    assert (own["href"][0], own["title"]) == ("#", "One axis of motion.")
+        found.append((button.get_text().split(), note.get_text().strip()))
+    assert found == [
+        (["Overshoots"], SENTENCE),
+        (["degree", "of", "freedom"], "One axis of motion."),
+    ]
+    (own,) = entries.select(".term-note")
+    assert own.a["href"] == "#term-DOF"
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("touch", [True, False])
+def test_touch_and_keyboard_show_and_hide_a_definition(small_site, touch):
+    with launched() as browser:
+        phone = {"viewport": {"width": 390, "height": 700}, "has_touch": touch}
+        page = browser.new_page(**phone)
+        page.goto((small_site / "terms.html").as_uri())
+        note = page.get_by_text(SENTENCE)
+        word = page.get_by_role("button", name="Overshoots")
+        expect(note).to_be_hidden()
+        if touch:
+            word.tap()
+        else:
+            word.focus()
+            page.keyboard.press("Enter")
+        expect(note).to_be_visible()
+        box, below = note.bounding_box(), word.bounding_box()
+        assert 0 <= box["x"] <= 390 - box["width"]
+        assert 0 <= box["y"] - (below["y"] + below["height"]) < 20
+        assert violations(page, "article") == []
+        if touch:
+            page.touchscreen.tap(200, 600)
+        else:
+            page.keyboard.press("Escape")
+        expect(note).to_be_hidden()
