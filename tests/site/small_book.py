@@ -42,6 +42,9 @@ GLOSSARY = paragraphs(
     "PD control\n  A law with two gains.",
     "step\ntime step\n  What one call of the solver covers.\n```",
 )
+CALLS = paragraphs(
+    "{.in-reference}\n| call |\n| --- |\n| {term}`DOF` |", "| other |\n| --- |\n| none |"
+)
 TERMS = paragraphs(
     "# Terms",
     "{term}`Overshoots<overshoot>` of a\n{term}`degree\nof freedom`; a DOF more.",
@@ -96,7 +99,8 @@ def render_small_book(folder: Path) -> Path:
     }
     pages |= {
         "featured": f"Map\n\n{FEATURED}",
-        "lessons/l06-six/lecture": f"Six\n\n{WORDS}\n\n## Later\n\n",
+        "lessons/l06-six/lecture": f"Six\n\n{CALLS}\n\n{WORDS}\n\n## Later\n\n",
+        "calls": "Calls\n\n```{reference}\n```",
     }
     pages |= {
         f"lessons/l06-six/{name}": f"Six\n\n{WORDS}"

@@ -38,7 +38,7 @@ MEASURED, PRINTED = "Measured", "Printed by this run"
 # The line below an item that belongs to no run, by the keys of its origin.
 WITHOUT_RUN: dict[tuple[str, ...] | None, str] = {
     None: "Illustration, not measured.",
-    (): "Chosen, not measured.",
+    (): "Settings, not measured.",
 }
 
 

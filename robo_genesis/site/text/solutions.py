@@ -1,8 +1,11 @@
 """With `SOLUTIONS=0`, pages, search index and executed notebooks have no solutions and answers.
 
 The pages' sources, which contain them, are not published. A question that the page
-itself marks keeps its feedback.
+itself marks keeps its feedback. Otherwise a page of a lesson can be printed without
+answers; `print.css` leaves them out.
 """
+
+from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -22,6 +25,12 @@ FOLDS = {"dropdown", "toggle"}
 UNMARKED = (
     f"a fold does not say whether it is a solution. Add `:class-container: {SOLUTION}`, or "
     f"`{EXPLANATION}` if a site without solutions may show it."
+)
+
+# What the button does that prints a page without answers.
+PRINT = (
+    "document.body.classList.add('no-answers'); print();"
+    "document.body.classList.remove('no-answers')"
 )
 
 logger = logging.getLogger(__name__)
@@ -67,9 +76,22 @@ def hide_sources(app: Sphinx, config: Config) -> None:
     config.html_theme_options["use_download_button"] = False  # it leads to the source
 
 
+def offer_print(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Add to the downloads of a lesson's page, the theme's print among them, our print."""
+    for group in context["header_buttons"]:
+        if page.startswith("lessons/") and group["label"] == "download-buttons":
+            words = {"text": ".pdf without answers", "tooltip": "Print without answers"}
+            kind = {"type": "javascript", "javascript": PRINT, "icon": "fas fa-file-pdf"}
+            group["buttons"].append(words | kind | {"label": "print-without-answers"})
+
+
 def setup(app: Sphinx) -> None:
     """Register what requires marks and, if solutions are not shown, leaves them out."""
     app.add_transform(RequireMarks)
+    # After the theme, which makes the group.
+    app.connect("html-page-context", offer_print, priority=900)
     if not solutions_shown():
         app.add_transform(LeaveOutSolutions)
         app.connect("config-inited", hide_sources)

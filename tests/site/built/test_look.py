@@ -87,6 +87,31 @@ def test_on_paper_the_menus_are_gone_and_folds_can_be_read(page):
     page.emulate_media(media="screen")
 
 
+ANSWERS = ["article .choice details", "article .solution"]
+
+
+def test_a_lecture_prints_without_answers_and_then_with_them_again(page):
+    page.evaluate("window.print = () => { printed = document.body.className; }")
+    page.get_by_label("Download this page").click()
+    page.get_by_role("button", name="without answers").click()
+    classes = page.evaluate("[printed, document.body.className]")
+    assert classes == ["no-answers", ""]
+    page.emulate_media(media="print")
+    assert min(page.evaluate(SHOWN, ANSWERS)) > 0
+    page.evaluate("document.body.className = 'no-answers'")
+    assert page.evaluate(SHOWN, ANSWERS) == [0, 0]
+    page.evaluate("document.body.className = ''")
+    page.emulate_media(media="screen")
+
+
+def test_the_reference_prints_on_two_sheets(browser, address):
+    page = browser.new_page()
+    page.goto(f"{address}/reference.html")
+    sheets = re.findall(rb"/Type /Page\b", page.pdf(prefer_css_page_size=True))
+    page.close()
+    assert len(sheets) == 2
+
+
 def test_a_figure_has_the_colours_of_the_theme(page, theme):
     drawn = page.locator("#fig-l04-gains svg.drawing")
     found = drawn.evaluate(

@@ -26,7 +26,7 @@ def table(name):
 INPUTS = ":tags: [inputs]\n"
 FIGURE = ":tags: [figure]\n:mystnb: {image: {alt: A drawing}}\n"
 OF_RUN = "No accepted evidence: cpu-stale. ledger"
-CHOSEN = "Chosen, not measured."
+CHOSEN = "Settings, not measured."
 
 
 SHOW = """\
