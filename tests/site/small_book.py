@@ -43,7 +43,8 @@ GLOSSARY = paragraphs(
     "step\ntime step\n  What one call of the solver covers.\n```",
 )
 CALLS = paragraphs(
-    "{.in-reference}\n| call |\n| --- |\n| {term}`DOF` |", "| other |\n| --- |\n| none |"
+    "{.in-reference}\n| call |\n| --- |\n| {term}`DOF` |",
+    "| other |\n| --- |\n| none |",
 )
 TERMS = paragraphs(
     "# Terms",

@@ -62,7 +62,9 @@ def defined(
         address: of the entry.
     """
     entry = f'<a href="{escape(address)}">Glossary</a>'
-    note = f'<span class="term-note" id="{name}" popover>{escape(sentence)} {entry}</span>'
+    note = (
+        f'<span class="term-note" id="{name}" popover>{escape(sentence)} {entry}</span>'
+    )
     button = f'<button class="term-link" popovertarget="{name}" type="button">'
     return between("", *link.children, opening=button, closing=f"</button>{note}")
 

@@ -83,7 +83,11 @@ def offer_print(
     for group in context["header_buttons"]:
         if page.startswith("lessons/") and group["label"] == "download-buttons":
             words = {"text": ".pdf without answers", "tooltip": "Print without answers"}
-            kind = {"type": "javascript", "javascript": PRINT, "icon": "fas fa-file-pdf"}
+            kind = {
+                "type": "javascript",
+                "javascript": PRINT,
+                "icon": "fas fa-file-pdf",
+            }
             group["buttons"].append(words | kind | {"label": "print-without-answers"})
 
 

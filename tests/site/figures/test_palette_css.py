@@ -20,7 +20,9 @@ def marked(*children: nodes.Node) -> tuple[str, list[tuple[str, list[str]]]]:
     return document.astext(), [(node.astext(), node["classes"]) for node in found]
 
 
-TEXT = "The baseline, then KP is doubled (G1 → G2): G2's overshoot, not G22's or pushed."
+TEXT = (
+    "The baseline, then KP is doubled (G1 → G2): G2's overshoot, not G22's or pushed."
+)
 
 
 @pytest.mark.parametrize(
