@@ -11,7 +11,8 @@ from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES, MODEL_COUNTS
 from robo_genesis.sim.camera import film
 from robo_genesis.sim.common_checks import structure
 
-from . import checks, metrics, rates, rates_checks, spec
+from . import capstone, checks, metrics, rates, rates_checks, spec
+from .capstone_checks import CAPSTONE
 from .creep import HeldMetrics
 from .creep_checks import CREEP
 from .metrics import EpisodesMetrics
@@ -84,13 +85,15 @@ TOGETHER = replace(
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES | rates.CASES, EpisodesMetrics)
-    | dict.fromkeys(CREEP.cases, HeldMetrics),
+    | dict.fromkeys(CREEP.cases, HeldMetrics)
+    | dict.fromkeys(capstone.CASES, capstone.AttemptMetrics),
     pages={
         "lecture": LECTURE,
         "lab": LAB,
         "mistakes": MISTAKES,
         "rates": RATES,
         "creep": CREEP,
+        "capstone": CAPSTONE,
     },
     replays={"episodes": EPISODES, "together": TOGETHER},
 )

@@ -152,6 +152,10 @@ LABELS = (
         "timed": "descent by a clock",
         "boxes": "yaw ignored",
         "paced": "three speeds",
+        "own": "own object and camera",
+        "without_cause": "without the cause",
+        "without_rival": "without the other possible cause",
+        "attack": "new starts",
     }
     | creep.LABELS
 )
@@ -168,6 +172,7 @@ TOLERANCES = check_spec.TOLERANCES | creep.TOLERANCES | {"1/s": (0.05, 0.01)}
 TOLERANCES |= dict.fromkeys(
     ("askew", "round", "grid", "plain", "corrected", "timed", "boxes"), (20.0, 0.0)
 )
+TOLERANCES |= dict.fromkeys(("own", "without_rival", "attack", "rule"), (8.0, 0.0))
 
 # No metric of two cases is compared.
 RELATIONS: tuple[Any, ...] = ()

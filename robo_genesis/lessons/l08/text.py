@@ -74,6 +74,18 @@ def rung_table(run: Experiment) -> tables.Rows:
         left = askew
 
 
+def attempt_table(run: Experiment, *names: str) -> str:
+    """Return the rates of runs with their intervals, and how many episodes fail first where."""
+    rows = []
+    for name in names:
+        level = metrics.reached(run.traces[name], run.cases[name])
+        lost = [f"{(level == k).sum()} {of}" for k, of in enumerate(metrics.RUNGS)]
+        good = rate((level == len(metrics.RUNGS)).sum(), len(level))
+        first = ", ".join(words for words in lost if words[:2] != "0 ") or "–"
+        rows.append({"run": spec.LABELS[name]} | good | {"fail first at": first})
+    return tables.markdown(rows)
+
+
 @tables.as_table
 def pair_table(run: Experiment) -> tables.Rows:
     """Return the outcomes of both experts at the first starts, and p of the paired test."""

@@ -12,6 +12,7 @@ from robo_genesis.core.files import bytes_digest, write_whole
 from robo_genesis.core.markup import filled
 from robo_genesis.pipeline.html.archive import contents, zipped
 from robo_genesis.site.pages import PageDirective
+from robo_genesis.site.text.solutions import answer_left_out
 
 from .plain_nodes import late
 from .runs import all_runs, badge
@@ -33,7 +34,7 @@ def run_list(app: Sphinx, docname: str) -> str:
     """Return each run's facts and its bundle, or why it is missing and what creates it."""
     runs, archives = all_runs(Path(app.srcdir)).values(), {}
     for run in runs:
-        if run.manifest is not None:
+        if run.manifest is not None and not answer_left_out(run.page.split("/")[1]):
             name = f"{run.key.replace('/', '-')}-{run.manifest.run_id[:8]}.zip"
             content = zipped(contents(run.folder))
             archives[run.key] = name, bytes_digest(content)

@@ -34,6 +34,7 @@ from robo_genesis.pipeline.pages import page_index
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.site.evidence.values import measured
+from robo_genesis.site.text.solutions import answer_left_out
 
 from .notebooks import (
     CHECK,
@@ -83,16 +84,20 @@ def write_takeaways(page: Page, folder: Path, config: Config) -> dict[str, Any]:
     writer = writer_of(page.path, page.docname)
     hidden = replace(writer, measured=lambda _: NOT_SHOWN)
     _write(student, student_notebook(page, origin("student notebook"), check, hidden))
-    _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
-    return {
+    found = {
         "student": student,
-        "executed": ran,
         "wheel": wheel,
         "constraints": Path(shutil.copy(LOCK, folder / CONSTRAINTS)),
+        "commands": commands,
+    }
+    if answer_left_out(page.page):
+        return found
+    _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
+    return found | {
+        "executed": ran,
         "units": Path(shutil.copy(run / "arrays.json", own)),
         "arrays": [*_arrays(run, own)],
         "figures": [*_figures(page, executed, own)],
-        "commands": commands,
     }
 
 

@@ -1,7 +1,8 @@
 """With `SOLUTIONS=0`, pages, search index and executed notebooks have no solutions and answers.
 
 The pages' sources, which contain them, are not published. A question that the page
-itself marks keeps its feedback. Otherwise a page of a lesson can be printed without
+itself marks keeps its feedback. A page whose run is itself an answer has no outputs, and
+its bundle cannot be downloaded. Otherwise a page of a lesson can be printed without
 answers; `print.css` leaves them out.
 """
 
@@ -19,6 +20,8 @@ from robo_genesis.pipeline.pages.page_rules import NO_SOLUTION, SOLUTION
 # The second is the class that a code cell has from its tag.
 MARKS = {SOLUTION, f"tag_{SOLUTION}"}
 EXPLANATION = "explanation"  # The class of a fold that a site without solutions keeps
+
+ANSWER = "capstone"  # A page whose run is the course's own answer
 
 # What a click shows: directives, and a class of others.
 FOLDS = {"dropdown", "toggle"}
@@ -39,6 +42,11 @@ logger = logging.getLogger(__name__)
 def classes_of(node: nodes.Element) -> list[str]:
     """Return the classes of an element, and those of a dropdown's container."""
     return [*node["classes"], *node.get("container_classes", ())]
+
+
+def answer_left_out(page: str | None) -> bool:
+    """Return whether the run of a page, by its last name, is an answer that is not shown."""
+    return page == ANSWER and not solutions_shown()
 
 
 class RequireMarks(SphinxTransform):
@@ -63,9 +71,11 @@ class LeaveOutSolutions(SphinxTransform):
 
     def apply(self, **kwargs: object) -> None:
         """Remove them from the page; the outputs of cells below a solution follow from it."""
+        page = self.document.settings.env.docname.rpartition("/")[2]
+        left_out = MARKS | ({"cell_output"} if answer_left_out(page) else set())
         for node in [*self.document.findall(nodes.Element)]:
             classes = classes_of(node)
-            if MARKS.intersection(classes):
+            if left_out.intersection(classes):
                 note = nodes.paragraph("", "", nodes.emphasis("", NO_SOLUTION))
                 node.parent.replace(node, [note] if "cell" in classes else [])
 

@@ -1,0 +1,198 @@
+"""Named checks of the capstone, and tests of the functions that a student writes there."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.checks import (
+    Finding,
+    Findings,
+    above,
+    at_most,
+    below,
+    equal,
+    within,
+)
+from robo_genesis.core.exercises import Written, as_test, same_array, with_functions
+from robo_genesis.core.experiment import Experiment, MeasuringPage, counts, inputs, runs_of
+from robo_genesis.core.trace import Episodes, Trace
+from robo_genesis.sim.arm.franka import JOINT_NAMES, MODEL_COUNTS
+from robo_genesis.sim.arm.picking import PickCase
+from robo_genesis.sim.common_checks import posture, stamps, structure
+
+from . import capstone, checks, metrics, spec, statistics
+
+MEASURES = False
+
+# The rungs of L07's ladder.
+SCENE = ("built", "stable", "seen", "reachable", "graspable")
+
+FEWEST = 64  # Starts of each run
+PART = 1 / 8  # Least share of episodes that succeed, and that fail; most wrong predictions
+LARGEST = 0.04  # Largest error of a camera [m]
+SMALLEST = 1e-3  # An error below this is none [m]
+
+
+def rungs(passed: Mapping[str, float]) -> Findings:
+    """Require all rungs of a scene."""
+    for name in SCENE:
+        yield equal(name, int(passed[name]), 1)
+
+
+def one_change(own: PickCase, other: PickCase, *others: PickCase) -> Findings:
+    """Require one other setting than in `own`, not the starts, an error that is left, and
+    another case than all others.
+    """
+    changed = capstone.settings_changed(own, other)
+    single = len(changed) == 1 and changed != ["starts"]
+    yield Finding("changed settings", changed, single, "one, and not the starts")
+    left = np.abs(other.beliefs - other.starts).max()
+    yield above("largest error that is left [m]", left, SMALLEST)
+    for case in others:
+        differ = len(capstone.settings_changed(case, other))
+        yield above("differences from the other change", differ, 0)
+
+
+def new_starts(own: PickCase, other: PickCase) -> Findings:
+    """Require at least 64 starts, each of them farther than 0.1 mm from all others of a case."""
+    yield above("starts", len(other.starts), FEWEST - 1)
+    apart = np.linalg.norm(own.starts[:, None] - other.starts, axis=2)
+    yield above("distance of an old and a new start [m]", apart.min(), 1e-4)
+
+
+def few_wrong(wrong: float, good: np.ndarray) -> Findings:
+    """Require few wrong predictions, and half as many as if all were predicted alike."""
+    yield at_most("wrong predictions", wrong, PART * len(good))
+    yield at_most("twice the wrong ones", 2 * wrong, min(good.sum(), (~good).sum()))
+
+
+@as_test
+def scene(my_object: Written, passed: Mapping[str, float]) -> Findings:
+    """Check `my_object()`: not the cylinder of L07 and L08, and a scene with all rungs."""
+    other = replace(spec.EXACT, **my_object())
+    same = (other.shape, other.size) == (spec.EXACT.shape, spec.EXACT.size)
+    yield equal("the course's cylinder", same, False)
+    yield from rungs(passed)
+
+
+@as_test
+def sees(camera: Written) -> Findings:
+    """Check `camera(places)`: believed places (e, 2), with errors of a possible size."""
+    places = spec.starts(4, seed=9)
+    found = camera(places)
+    yield from same_array("believed places", found, places, LARGEST)
+    apart = np.linalg.norm(found - places, axis=1).max()
+    yield within("largest error [m]", apart, (LARGEST + SMALLEST) / 2, (LARGEST - SMALLEST) / 2)
+    yield from same_array("the same places again", camera(places), found, 0.0)
+    known = np.abs(found - spec.turned(places, 4.0)).max()
+    yield above("difference from the turned camera [m]", known, SMALLEST)
+
+
+@as_test
+def change(function: Written, own: PickCase, *others: PickCase) -> Findings:
+    """Check a function that returns a case with one change, which no other case has."""
+    yield from one_change(own, function(own), *others)
+
+
+@as_test
+def renewed(attack: Written, own: PickCase) -> Findings:
+    """Check `attack(case)`: a case with new starts."""
+    yield from new_starts(own, attack(own))
+
+
+@as_test
+def rule(fails: Written, case: PickCase, trace: Episodes) -> Findings:
+    """Check `fails(case)`: predicted failures (e,) of episodes that it was not made from."""
+    good = metrics.good(trace, case)
+    found = np.asarray(fails(case))
+    yield equal("type and shape", f"{found.dtype} {found.shape}", f"bool {good.shape}")
+    yield from few_wrong((found == good).sum(), good)
+
+
+def scene_passes(run: Experiment) -> Findings:
+    """The scene with the chosen object passes the five rungs of L07's ladder."""
+    yield from rungs(run.readings["ladder"])
+
+
+def something_to_explain(run: Experiment) -> Findings:
+    """Of at least 64 episodes, at least one in eight succeeds, and one in eight fails."""
+    n, good = len(run.cases["own"].starts), run.metrics["own"].resting
+    yield above("own.starts", n, FEWEST - 1)
+    yield within("own.success", good, n / 2, (0.5 - PART) * n)
+
+
+def changes_are_single(run: Experiment) -> Findings:
+    """Without the cause, and without the other possible cause, one setting differs and the
+    starts are equal; the starts of the last run are new.
+    """
+    own, cause, rival, attack = (run.cases[name] for name in capstone.CASES)
+    yield from one_change(own, cause)
+    yield from one_change(own, rival, cause)
+    yield from new_starts(own, attack)
+
+
+def cause_is_removed(run: Experiment) -> Findings:
+    """Without the cause the interval of the rate is above the one before; on the same starts
+    more episodes succeed than without the other possible cause, by the paired test with p
+    below 0.05.
+    """
+    own, cause, rival = (
+        metrics.good(run.traces[name], run.cases[name])
+        for name in ("own", "without_cause", "without_rival")
+    )
+    before, after = (statistics.wilson(of.sum(), len(of)) for of in (own, cause))
+    yield above("without_cause.lower", after[0], before[1])
+    more, less = (cause & ~rival).sum(), (rival & ~cause).sum()
+    yield above("only_without_cause", more, less)
+    yield below("p", statistics.paired(int(more), int(less)), 0.05)
+
+
+def rule_predicts(run: Experiment) -> Findings:
+    """Of the episodes with new starts, the rule predicts at most one in eight wrongly, and
+    at most half as many as if all outcomes were predicted alike.
+    """
+    good = metrics.good(run.traces["attack"], run.cases["attack"])
+    yield from few_wrong(run.readings["rule"]["wrong"], good)
+
+
+CHECKS = (
+    structure,
+    stamps,
+    checks.laws_of_motion,
+    posture,
+    scene_passes,
+    something_to_explain,
+    changes_are_single,
+    cause_is_removed,
+    rule_predicts,
+)
+
+CAPSTONE: MeasuringPage = with_functions(
+    MeasuringPage(
+        runs=runs_of(
+            {"first": spec.one(0, capstone.CASES["own"])},
+            False,
+            "the first episode of `own`, at all its steps",
+            Trace,
+        )
+        | runs_of(capstone.CASES),
+        kind=Episodes,
+        joints=JOINT_NAMES,
+        readings={
+            "model": counts(MODEL_COUNTS),
+            "ladder": counts(SCENE),
+            "rule": counts(("wrong",)),
+        },
+        measure=capstone.attempt_metrics,
+        checks=CHECKS,
+        parameters=lambda: inputs(CAPSTONE.cases, spec.VIEW, counted=[*MODEL_COUNTS]),
+    ),
+    "my_object",
+    "camera",
+    "fails",
+    "without_cause",
+    "without_rival",
+    "attack",
+)
