@@ -38,7 +38,7 @@ def cases() -> dict[str, PickCase]:
         shape="box",
         size=SIZE,
         density=1000.0,
-        friction=0.5,
+        friction=0.9,
         starts=starts,
         beliefs=believed,
     )

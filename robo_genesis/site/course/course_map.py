@@ -33,7 +33,7 @@ from .sizes import Minutes
 FILE = "course_map.yml"
 
 # The pages with a line of their own, besides the lecture.
-LINES = {"motion": "Lecture, part 2", LAB: "Lab"}
+LINES = {"motion": "Lecture, part 2", LAB: "Lab", "capstone": "Capstone"}
 
 
 @dataclass(frozen=True, slots=True, config={"extra": "forbid"})
