@@ -25,8 +25,8 @@ MOVED = (0.42, 0.62), (-0.28, 0.02)  # Region of the new starts, as `spec.REGION
 
 def seen(places: FloatArray) -> FloatArray:
     """Return where a camera above the middle sees tops of objects at places (e, 2) [m]."""
-    larger = ABOVE / (ABOVE - SIZE[2])
-    return read_only(spec.MIDDLE + (places - spec.MIDDLE) * larger)
+    apart = (places - spec.MIDDLE) * ABOVE / (ABOVE - SIZE[2])
+    return read_only(spec.MIDDLE + apart)
 
 
 def cases() -> dict[str, PickCase]:

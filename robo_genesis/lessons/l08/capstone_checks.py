@@ -41,18 +41,19 @@ def rungs(passed: Mapping[str, float]) -> Findings:
         yield equal(name, int(passed[name]), 1)
 
 
-def one_change(own: PickCase, other: PickCase, *others: PickCase) -> Findings:
+def one_change(name: str, own: PickCase, *cases: PickCase) -> Findings:
     """Require one other setting than in `own`, not the starts, an error that is left, and
-    another case than all others.
+    another case than all that follow.
     """
-    changed = capstone.settings_changed(own, other)
+    case, *others = cases
+    changed = capstone.settings_changed(own, case)
     single = len(changed) == 1 and changed != ["starts"]
-    yield Finding("changed settings", changed, single, "one, and not the starts")
-    left = np.abs(other.beliefs - other.starts).max()
-    yield above("largest error that is left [m]", left, SMALLEST)
-    for case in others:
-        differ = len(capstone.settings_changed(case, other))
-        yield above("differences from the other change", differ, 0)
+    yield Finding(f"{name}.changed", changed, single, "one setting, not the starts")
+    left = np.abs(case.beliefs - case.starts).max()
+    yield above(f"{name}.largest_error_m", left, SMALLEST)
+    for other in others:
+        differ = len(capstone.settings_changed(other, case))
+        yield above(f"{name}.different", differ, 0)
 
 
 def new_starts(own: PickCase, other: PickCase) -> Findings:
@@ -93,7 +94,7 @@ def sees(camera: Written) -> Findings:
 @as_test
 def change(function: Written, own: PickCase, *others: PickCase) -> Findings:
     """Check a function that returns a case with one change, which no other case has."""
-    yield from one_change(own, function(own), *others)
+    yield from one_change("case", own, function(own), *others)
 
 
 @as_test
@@ -128,8 +129,8 @@ def changes_are_single(run: Experiment) -> Findings:
     starts are equal; the starts of the last run are new.
     """
     own, cause, rival, attack = (run.cases[name] for name in capstone.CASES)
-    yield from one_change(own, cause)
-    yield from one_change(own, rival, cause)
+    yield from one_change("without_cause", own, cause)
+    yield from one_change("without_rival", own, rival, cause)
     yield from new_starts(own, attack)
 
 
