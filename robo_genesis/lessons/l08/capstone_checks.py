@@ -41,19 +41,13 @@ def rungs(passed: Mapping[str, float]) -> Findings:
         yield equal(name, int(passed[name]), 1)
 
 
-def one_change(name: str, own: PickCase, *cases: PickCase) -> Findings:
-    """Require one other setting than in `own`, not the starts, an error that is left, and
-    another case than all that follow.
-    """
-    case, *others = cases
+def one_change(name: str, own: PickCase, case: PickCase) -> Findings:
+    """Require one other setting than in `own`, not the starts, and an error that is left."""
     changed = capstone.settings_changed(own, case)
     single = len(changed) == 1 and changed != ["starts"]
     yield Finding(f"{name}.changed", changed, single, "one setting, not the starts")
     left = np.abs(case.beliefs - case.starts).max()
     yield above(f"{name}.largest_error_m", left, SMALLEST)
-    for other in others:
-        differ = len(capstone.settings_changed(other, case))
-        yield above(f"{name}.different", differ, 0)
 
 
 def new_starts(own: PickCase, other: PickCase) -> Findings:
@@ -84,17 +78,14 @@ def sees(camera: Written) -> Findings:
     places = spec.starts(4, seed=9)
     found = camera(places)
     yield from same_array("believed places", found, places, LARGEST)
-    apart = np.linalg.norm(found - places, axis=1).max()
-    yield within("largest error [m]", apart, (LARGEST + SMALLEST) / 2, (LARGEST - SMALLEST) / 2)
     yield from same_array("the same places again", camera(places), found, 0.0)
-    known = np.abs(found - spec.turned(places, 4.0)).max()
-    yield above("difference from the turned camera [m]", known, SMALLEST)
+    yield above("largest error [m]", np.abs(found - places).max(), SMALLEST)
 
 
 @as_test
-def change(function: Written, own: PickCase, *others: PickCase) -> Findings:
-    """Check a function that returns a case with one change, which no other case has."""
-    yield from one_change("case", own, function(own), *others)
+def change(function: Written, own: PickCase) -> Findings:
+    """Check a function that returns a case with one change."""
+    yield from one_change("case", own, function(own))
 
 
 @as_test
@@ -130,7 +121,7 @@ def changes_are_single(run: Experiment) -> Findings:
     """
     own, cause, rival, attack = (run.cases[name] for name in capstone.CASES)
     yield from one_change("without_cause", own, cause)
-    yield from one_change("without_rival", own, rival, cause)
+    yield from one_change("without_rival", own, rival)
     yield from new_starts(own, attack)
 
 

@@ -64,22 +64,6 @@ def errors(run: Experiment, batch: str = "askew") -> Figure:
     return figure
 
 
-def failures(run: Experiment, batch: str) -> Figure:
-    """Draw the error of the believed place in each episode, by the rung that it fails first."""
-    figure, ax = plotting.axes(4.6)
-    case = run.cases[batch]
-    error = 1000 * (case.beliefs - case.starts)
-    level = metrics.reached(run.traces[batch], case)
-    rungs = (*metrics.RUNGS, "success")
-    for k, sign in zip(np.unique(level), "sx^ov+D*", strict=False):
-        ax.plot(*error[level == k].T, sign, markersize=4, label=rungs[k])
-    ax.axhline(0, **LINE)
-    ax.axvline(0, **LINE)
-    ax.set(xlabel="error along the pads, x [mm]", ylabel="error across them, y [mm]")
-    legend_above(ax, "Where episodes fail first, by their error")
-    return figure
-
-
 def slide(run: Experiment) -> Figure:
     """Draw how far the object is below its place in the hand at the start of the move."""
     figure, ax = plotting.axes(3.4)

@@ -79,10 +79,10 @@ def attempt_table(run: Experiment, *names: str) -> str:
     rows = []
     for name in names:
         level = metrics.reached(run.traces[name], run.cases[name])
-        lost = [f"{(level == k).sum()} {of}" for k, of in enumerate(metrics.RUNGS)]
         good = rate((level == len(metrics.RUNGS)).sum(), len(level))
-        first = ", ".join(words for words in lost if words[:2] != "0 ") or "–"
-        rows.append({"run": spec.LABELS[name]} | good | {"fail first at": first})
+        lost = {of: (level == k).sum() for k, of in enumerate(metrics.RUNGS)}
+        words = ", ".join(f"{n} {of}" for of, n in lost.items() if n)
+        rows.append({"run": spec.LABELS[name], **good, "fail first at": words or "–"})
     return tables.markdown(rows)
 
 

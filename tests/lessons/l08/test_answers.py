@@ -5,8 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from lessons.exercise_cells import solutions
 
-from robo_genesis.lessons.l08 import metrics, spec
+from robo_genesis.lessons.l08 import capstone, metrics, spec
 from robo_genesis.sim.arm import picking
 from robo_genesis.sim.arm.joints import describe
 
@@ -41,6 +42,20 @@ def test_an_answer_of_the_lab_is_true(real_engine, name):
     case = replace(spec.EXACT, starts=STARTS, **{"beliefs": STARTS} | changes)
     found = metrics.episodes_metrics(episodes(real_engine.gs, case)[0], case)
     assert least <= getattr(found, counted) <= most
+
+
+OWN, ATTACK = (capstone.CASES[name] for name in ("own", "attack"))
+FURTHER = {
+    "half_the_step": replace(ATTACK, substeps=2 * ATTACK.substeps),
+    "room_for_each_error": replace(OWN, size=(0.04, 0.046, 0.09)),
+}
+
+
+@pytest.mark.parametrize("name", FURTHER)
+def test_the_rule_of_the_capstone_survives_further_attacks(real_engine, name):
+    case = FURTHER[name]
+    good = metrics.good(episodes(real_engine.gs, case)[0], case)
+    assert (good == solutions("l08", "capstone")["fails"](case)).sum() <= 8
 
 
 class Replayed(picking.Expert):

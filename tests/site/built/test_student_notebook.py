@@ -16,7 +16,7 @@ from robo_genesis.core import project
 from robo_genesis.pipeline import stages
 
 pytestmark = [pytest.mark.engine, pytest.mark.slow]
-LABS = {lesson: name for (lesson, page), name in LESSON_PAGES.items() if page == "lab"}
+LABS = {key: name for key, name in LESSON_PAGES.items() if key[1] in ("lab", "capstone")}
 OURS = ("PYTHON", "VIRTUAL_ENV", "ROBO_GENESIS", "JUPYTER", "IPYTHON")
 """Variables of this environment that a reader's does not have."""
 
@@ -43,9 +43,9 @@ def taken(site: Path, lab: str, home: Path) -> list[str]:
     return box.select_one("pre").get_text().strip().replace("\\\n", " ").splitlines()
 
 
-def write_solutions(notebook: Path, lesson: str) -> None:
-    """Write the lab's own solutions where the student's notebook leaves functions to write."""
-    cells = page_of(lesson, "lab").notebook.cells
+def write_solutions(notebook: Path, lesson: str, page: str) -> None:
+    """Write the page's own solutions where the student's notebook leaves functions to write."""
+    cells = page_of(lesson, page).notebook.cells
     solved = [c.source for c in cells if "solution" in c.metadata.get("tags", [])]
     left = nbformat.read(notebook, as_version=4)
     for solution in solved:
@@ -57,7 +57,7 @@ def write_solutions(notebook: Path, lesson: str) -> None:
 
 
 def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
-    lines = {lesson: taken(site, lab, home) for lesson, lab in LABS.items()}
+    lines = {key: taken(site, lab, home) for key, lab in LABS.items()}
     (install,), *others = {tuple(of[:2]) for of in lines.values()}
     assert others == []  # one environment serves both
     given = {
@@ -73,13 +73,13 @@ def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
     with stages.build_lock(project.CACHE):
         doctor = run(f"{folder}/bin/python -m robo_genesis.doctor", home, environment)
     assert "DOCTOR: all" in doctor
-    for lesson, (*_, start) in lines.items():
+    for (lesson, page), (*_, start) in lines.items():
         execute = start.replace(
             "jupyter lab", f"jupyter execute --output={lesson}-done.ipynb"
         )
         for verdict in ("INCOMPLETE, not passed: ", "PASSED"):
             if verdict == "PASSED":
-                write_solutions(home / start.split()[-1], lesson)
+                write_solutions(home / start.split()[-1], lesson, page)
             with stages.build_lock(project.CACHE):
                 run(execute, home, environment)
             done = nbformat.read(home / f"{lesson}-done.ipynb", as_version=4)
@@ -88,4 +88,4 @@ def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
             assert final.startswith(f"{lesson.upper()} CHECK: {verdict}")
         assert f"genesis-world {project.engine_pin()}" in done.cells[1].outputs[0].text
         assert (home / start.split()[-1]).is_file()
-        assert (home / "outputs" / lesson / "lab" / "cpu" / "manifest.json").is_file()
+        assert (home / "outputs" / lesson / page / "cpu" / "manifest.json").is_file()
