@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -16,7 +15,13 @@ from robo_genesis.core.checks import (
     within,
 )
 from robo_genesis.core.exercises import Written, as_test, same_array, with_functions
-from robo_genesis.core.experiment import Experiment, MeasuringPage, counts, inputs, runs_of
+from robo_genesis.core.experiment import (
+    Experiment,
+    MeasuringPage,
+    counts,
+    inputs,
+    runs_of,
+)
 from robo_genesis.core.trace import Episodes, Trace
 from robo_genesis.sim.arm.franka import JOINT_NAMES, MODEL_COUNTS
 from robo_genesis.sim.arm.picking import PickCase
@@ -30,7 +35,9 @@ MEASURES = False
 SCENE = ("built", "stable", "seen", "reachable", "graspable")
 
 FEWEST = 64  # Starts of each run
-PART = 1 / 8  # Least share of episodes that succeed, and that fail; most wrong predictions
+PART = (
+    1 / 8
+)  # Least share of episodes that succeed, and that fail; most wrong predictions
 LARGEST = 0.04  # Largest error of a camera [m]
 SMALLEST = 1e-3  # An error below this is none [m]
 

@@ -81,7 +81,9 @@ def test_a_wrong_work_is_named(work, change, check):
 def test_rates_that_show_no_cause_are_named(work, run, like, level, check):
     """Nothing fails, the removal changes nothing, or the other removal helps as much."""
     of = replace(CASES[run], beliefs=CASES[like].beliefs)
-    assert failed(replace(work, traces={**work.traces, run: attempts(of, level)})) == check
+    assert (
+        failed(replace(work, traces={**work.traces, run: attempts(of, level)})) == check
+    )
 
 
 ATTACK = CASES["attack"]

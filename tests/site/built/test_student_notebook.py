@@ -16,7 +16,9 @@ from robo_genesis.core import project
 from robo_genesis.pipeline import stages
 
 pytestmark = [pytest.mark.engine, pytest.mark.slow]
-LABS = {key: name for key, name in LESSON_PAGES.items() if key[1] in ("lab", "capstone")}
+LABS = {
+    key: name for key, name in LESSON_PAGES.items() if key[1] in ("lab", "capstone")
+}
 OURS = ("PYTHON", "VIRTUAL_ENV", "ROBO_GENESIS", "JUPYTER", "IPYTHON")
 """Variables of this environment that a reader's does not have."""
 

@@ -11,7 +11,11 @@ from robo_genesis.site.text.solutions import ANSWER, LeaveOutSolutions
 
 @pytest.mark.parametrize(
     ("page", "solutions", "left"),
-    [(ANSWER, "0", ["text"]), (ANSWER, "1", ["text", "output"]), ("lab", "0", ["text", "output"])],
+    [
+        (ANSWER, "0", ["text"]),
+        (ANSWER, "1", ["text", "output"]),
+        ("lab", "0", ["text", "output"]),
+    ],
 )
 def test_outputs_of_an_answer_are_left_out(monkeypatch, page, solutions, left):
     monkeypatch.setenv("SOLUTIONS", solutions)
@@ -21,4 +25,3 @@ def test_outputs_of_an_answer_are_left_out(monkeypatch, page, solutions, left):
     document += [nodes.paragraph("", "text"), output]
     LeaveOutSolutions(document).apply()
     assert [of.astext() for of in document.findall(nodes.paragraph)] == left
-
