@@ -39,7 +39,7 @@ PART = (
     1 / 8
 )  # Least share of episodes that succeed, and that fail; most wrong predictions
 LARGEST = 0.04  # Largest error of a camera [m]
-SMALLEST = 1e-3  # An error below this is none [m]
+SMALLEST = 1e-3  # A smaller error does not count [m]
 
 
 def rungs(passed: Mapping[str, float]) -> Findings:
