@@ -29,7 +29,7 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     repository = app.config.course_repository
     if docname != app.config.root_doc:
         time: nodes.Node = nodes.Text(str(app.env.metadata[docname][MINUTES]))
-        if COUNTED in (labels := app.env.get_domain("std").anonlabels):
+        if COUNTED in (labels := app.env.domaindata["std"]["anonlabels"]):
             page, anchor = labels[COUNTED]
             place = app.builder.get_relative_uri(docname, page)
             link = nodes.reference("", "", time, internal=True)
