@@ -22,7 +22,7 @@ def test_a_name_is_found_by_its_ends(text, found):
     ("query", "first"),
     [
         ("overshot", "glossary"),  # which has overshoot
-        ("joint’s stap", "described"),  # both words, one of them with a wrong letter
+        ("joint’s szep", "described"),  # both words, one of them with a wrong letter
         ("Why does a word lead?", "lessons/l06-six/lecture"),
         ("word", "described"),  # by its title's place in the alphabet
     ],
