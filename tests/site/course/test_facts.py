@@ -45,9 +45,8 @@ REPOSITORIES = [
 @pytest.mark.parametrize(("repository", "offered"), REPOSITORIES)
 def test_feedback_goes_to_the_form_of_a_repository_on_github(repository, offered):
     config = SimpleNamespace(root_doc="index", course_repository=repository)
-    std = SimpleNamespace(anonlabels={})
     metadata = {"l04/lab": {facts.MINUTES: "1 min"}}
-    env = SimpleNamespace(metadata=metadata, get_domain={"std": std}.get)
+    env = SimpleNamespace(metadata=metadata, domaindata={"std": {"anonlabels": {}}})
     keep = {"doctitle_xform": False}
     document = publish_doctree("Title\n=====\n\nText.", settings_overrides=keep)
     facts.add_facts(SimpleNamespace(config=config, env=env), document, "l04/lab")
