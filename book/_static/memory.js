@@ -117,7 +117,6 @@ document.addEventListener("DOMContentLoaded", () => {
     keep("finished", box.checked || undefined);
     mark();
   });
-  const line = make("p", { className: "finish-page" });
-  line.append(box, make("label", { htmlFor: box.id, textContent: " I have finished this page" }));
-  article.append(line);
+  const label = make("label", { htmlFor: box.id, textContent: " I have finished this page" });
+  article.querySelector(".finish-page").append(box, label);
 });

@@ -16,7 +16,6 @@ document.addEventListener("DOMContentLoaded", () => {
   const { missed, open, right } = groups;
   const state = document.querySelector(".review");
   if (missed.length + right.length === 0) {
-    state.textContent = "This browser has no answer of yours yet. Begin with the first question.";
     return;
   }
   state.textContent = `Missed: ${missed.length}. Right: ${right.length}. Without an answer: ${open.length}.`;

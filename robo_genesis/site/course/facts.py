@@ -60,7 +60,16 @@ def keep_facts(app: Sphinx, document: nodes.document) -> None:
         document.insert(0, nodes.meta("", name="description", content=text))
 
 
+def add_place(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Keep room for the line in which `memory.js` offers to mark a page of a lesson."""
+    if page.startswith("lessons/"):
+        context["body"] += '<p class="finish-page"></p>\n'
+
+
 def setup(app: Sphinx) -> None:
     """Register the additions."""
+    app.connect("html-page-context", add_place)
     app.connect("doctree-read", keep_facts)
     app.connect("doctree-resolved", add_facts)

@@ -152,7 +152,7 @@ def replay_block(
     block += html(controls.panel(name, shown, weight, blind) + fold)
     block += directive.parse_text_to_nodes(bullets(shown.moves.values()))
     table = directive.parse_text_to_nodes(controls.samples(shown))
-    block += on_request(scroll_box(summary, *table))
+    block += on_request(scroll_box(f"{summary}: {', '.join(runs.traces)}", *table))
     block += html(f"</details>{origin_html(name, folder, env, replay.credit)}")
     return block
 

@@ -84,7 +84,7 @@ def test_without_scripts_all_but_replay_and_explorer_remains(browser, address):
     assert not bare.locator(f"{REPLAY} .panel").is_visible()
     assert bare.locator("#fig-l04-gains svg").is_visible()
     bare.locator(f"{BLOCK} summary").click()
-    assert bare.get_by_text("gets the target").first.is_visible()
+    assert bare.locator(BLOCK).get_by_text("gets the target").first.is_visible()
     assert bare.locator(f"{BLOCK} tbody tr").count() == 121
     assert bare.locator(f"{BLOCK} table").is_visible()
     assert not bare.locator(".explorer .panel").is_visible()

@@ -24,7 +24,7 @@ PLACES = (
     "article section[id], article section > span[id], article p[id], article p > span[id], "
     "article figure[id], article dt[id]"
 )
-NUMBERED = re.compile(r"id\d+$")
+NUMBERED = re.compile(r"(id|note-)\d+$")
 
 # In a drawing where a line of text begins, its scale, and where its last letter begins.
 LINE = re.compile(
