@@ -23,5 +23,5 @@ document.addEventListener("change", ({ target, detail }) => {
 });
 
 document.addEventListener("toggle", ({ target }) => {
-  target.closest("fieldset.choice")?.classList.add("answered");
+  if (target.matches("details")) target.closest("fieldset.choice")?.classList.add("answered");
 }, true); // the event does not bubble

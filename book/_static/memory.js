@@ -35,7 +35,7 @@ document.addEventListener("DOMContentLoaded", () => {
   const article = document.querySelector("article");
   const make = (name, properties) => Object.assign(document.createElement(name), properties);
 
-  /* Answers by the name of their question, which stays when questions move: the number of the option,
+  /* Answers by the name of their question, which stays when it moves on its page: the number of the option,
      or what was typed. The scripts of questions and replays treat them as given, without a word. */
   const inputsOf = (question) => [...question.querySelectorAll("[type=radio], [type=number]")];
   for (const question of document.querySelectorAll("fieldset.choice")) {
@@ -104,8 +104,10 @@ document.addEventListener("DOMContentLoaded", () => {
   if (!article || !keeps || !page.startsWith("lessons/")) return;
   const title = article.querySelector("h1").firstChild.textContent;
   keep("opened", true);
+  mark();
   if (last?.page !== page) write({ ...read(), last: { page, title } });
-  addEventListener("pagehide", () => {
+  document.addEventListener("visibilitychange", () => {
+    if (document.visibilityState === "visible" || !read().pages) return; // or all was forgotten
     const heading = here();
     const at = heading.matches("h1") ? {} : {
       hash: heading.querySelector(".headerlink")?.hash, heading: heading.firstChild.textContent,

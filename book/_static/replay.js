@@ -79,6 +79,7 @@ document.addEventListener("DOMContentLoaded", () => {
     let cursors = [];
     let playing = null; // {clock, time, next}: of the last frame [ms], of the run [s], the next frame
     let loading = false;
+    let tried = false;
 
     const chosen = () => radios.find((radio) => radio.checked).value;
     const run = () => runs[chosen()];
@@ -178,7 +179,7 @@ document.addEventListener("DOMContentLoaded", () => {
 
     /* Loads the model. Where that fails, the plots play alone. */
     async function load() {
-      loading = true;
+      loading = tried = true;
       play.textContent = "Loading …";
       await scene.open(thing, "The plots show the same runs.");
       loading = false;
@@ -202,7 +203,7 @@ document.addEventListener("DOMContentLoaded", () => {
     function jump() {
       if (playing) stop();
       showSample();
-      if (!scene.viewer && !loading) load(); // the picture shows the start
+      if (!tried) load(); // the picture shows the start
     }
 
     function pick(share) {

@@ -28,17 +28,26 @@
     const boxes = changes.map(({ target }) => target.closest(BOXES)); // null where it was removed
     new Set(boxes.filter(Boolean)).forEach(mark);
   });
-  for (const box of document.querySelectorAll(BOXES)) {
-    for (const element of [box, ...box.children]) observer.observe(element);
+  function watch(place) {
+    for (const box of place.querySelectorAll(BOXES)) {
+      for (const element of [box, ...box.children]) observer.observe(element);
+    }
   }
+  watch(document);
 
   /* A fold that opens: a long table in it is only text until then, which loads faster. The observer can
      miss a box whose size is the one that it last told. */
+  function insert(fold) {
+    const text = fold.querySelector(":scope > noscript");
+    if (!text) return;
+    text.outerHTML = text.textContent;
+    watch(fold);
+  }
   document.addEventListener("toggle", ({ target }) => {
-    const text = target.querySelector(":scope > noscript");
-    if (text) text.outerHTML = text.textContent;
+    insert(target);
     target.querySelectorAll(BOXES).forEach(mark);
   }, true); // the event does not bubble
+  addEventListener("beforeprint", () => document.querySelectorAll(".explorer-block details").forEach(insert));
 
   /* An element that gets the focus inside such a box is scrolled into full view. */
   document.addEventListener("focusin", ({ target }) => {

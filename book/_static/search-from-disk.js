@@ -11,7 +11,7 @@ if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = f
     const page = new DOMParser().parseFromString(html, "text/html");
     const article = page.querySelector("article.bd-article");
     if (!article) return htmlToText(html, anchor);
-    const left = "nav, summary, table, figure, pre, .provenance, .page-facts, .lesson-status, .headerlink";
+    const left = "nav, summary, table, figure, pre, .term-note, .provenance, .page-facts, .lesson-status, .headerlink";
     for (const part of article.querySelectorAll(left)) part.remove();
     return htmlToText(`<div role="main">${article.innerHTML}</div>`, anchor);
   };

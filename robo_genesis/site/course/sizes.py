@@ -33,8 +33,9 @@ MINUTES_A_FUNCTION = 10
 # An estimate of the time of one run of a lab, in which the engine compiles its kernels.
 MINUTES_A_RUN = 5
 MINUTES_A_SHEET = 10  # An estimate of the time to fill in a work sheet
-# By page with a work sheet, an estimate of the time for choices, looking and writing
-MINUTES_A_PROJECT = {LAB: 0, "capstone": 75}
+# An estimate of the time for choices and writing in the capstone
+MINUTES_A_PROJECT = 75
+PROJECTS = {LAB: 0, "capstone": MINUTES_A_PROJECT}  # The pages with a work sheet
 # Occurs in a cell with a function that the reader writes
 STUB = "raise NotImplementedError"
 
@@ -133,8 +134,8 @@ def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
     for text in texts:
         work += len(QUESTION.findall(text)) * MINUTES_A_QUESTION
         work += len(THOUGHT.findall(text)) * MINUTES_A_CHECKPOINT
-    sheet = file.stem in MINUTES_A_PROJECT and file.with_name(WORK_SHEET).is_file()
-    work += MINUTES_A_PROJECT.get(file.stem, 0)
+    sheet = file.stem in PROJECTS and file.with_name(WORK_SHEET).is_file()
+    work += PROJECTS.get(file.stem, 0)
     words = sum(map(count_words, texts))
     read_words = sum(count_words(text, beside=True) for text in texts)
     read_words += sum(map(count_shown, notebook.cells))
