@@ -111,7 +111,7 @@ class Facts:
         self.case, self.render = case, page.render
         self.world = world or table.build(gs, case, spec.VIEW, spec.WRIST)
         if world:
-            world.scene.reset()  # the orientation, too
+            world.scene.reset()  # places and orientations
             table.arrange(world, case)
             world.body.set_friction(case.friction)
         self.joints = describe(page, self.world.robot)
