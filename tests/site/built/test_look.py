@@ -87,11 +87,16 @@ def test_on_paper_the_menus_are_gone_and_folds_can_be_read(page):
     page.emulate_media(media="screen")
 
 
+LEFT_OUT = """() => [...document.querySelectorAll("article section > h2")]
+  .filter(one => !one.checkVisibility()).map(one => one.parentElement.id)"""
 ANSWERS = ["article .choice details", "article .solution"]
 
 
 def test_a_lecture_prints_without_answers_and_then_with_them_again(page):
-    page.evaluate("window.print = () => { printed = document.body.className; }")
+    page.evaluate("""window.print = () => {
+      printed = document.body.className;
+      dispatchEvent(new Event("afterprint"));
+    }""")
     page.get_by_label("Download this page").click()
     page.get_by_role("button", name="without answers").click()
     classes = page.evaluate("[printed, document.body.className]")
@@ -100,6 +105,7 @@ def test_a_lecture_prints_without_answers_and_then_with_them_again(page):
     assert min(page.evaluate(SHOWN, ANSWERS)) > 0
     page.evaluate("document.body.className = 'no-answers'")
     assert page.evaluate(SHOWN, ANSWERS) == [0, 0]
+    assert page.evaluate(LEFT_OUT) == ["checks"]
     page.evaluate("document.body.className = ''")
     page.emulate_media(media="screen")
 

@@ -93,7 +93,7 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(
     packed = re.search(rb'"\] = "(.*)";', script)
     assert base64.b64decode(packed[1]) == (written / f"{NAME}.glb").read_bytes()
     weight = len(gzip.compress(script)) + len(gzip.compress(viewer.viewer()))
-    assert f"Play loads the 3D model: {round(weight / 1000)} kB." in text
+    assert f"Play or the time loads the 3D model: {round(weight / 1000)} kB." in text
 
 
 def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_path):
