@@ -32,8 +32,9 @@ UNMARKED = (
 
 # What the button does that prints a page without answers.
 PRINT = (
-    "document.body.classList.add('no-answers'); addEventListener('afterprint', () => "
-    "document.body.classList.remove('no-answers'), { once: true }); print()"
+    "document.body.classList.add('no-answers');"
+    "window.addEventListener('afterprint', () => document.body.classList"
+    ".remove('no-answers'), { once: true }); print()"
 )
 
 logger = logging.getLogger(__name__)
