@@ -49,4 +49,4 @@ def test_a_read_has_the_shape_in_the_table(lab):
     for call, declared in reads:
         found = np.shape(eval(call, names))
         for name, size in zip(declared, found, strict=True):
-            assert name in "gkqHW" or str(sizes.get(name, name)) == str(size), call
+            assert name in {*"gkqHW"} or str(sizes.get(name, name)) == str(size), call

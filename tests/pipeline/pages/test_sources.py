@@ -326,7 +326,10 @@ def test_a_module_that_computes_uses_none_that_presents(lesson):
             for each, path in used.items()
             if path.name != "__init__.py" and not tree.measures(each, path)
         }
-        assert shown <= {"exercises", "spec", "project", "laws", "text"}, name
+        allowed = {"spec", "project", "laws", "text"}
+        if name == "lessons.l08.capstone":  # it asks which functions passed
+            allowed.add("exercises")
+        assert shown <= allowed, name
 
 
 SAME = [
