@@ -92,11 +92,14 @@ class Work:
     def run(self, name: str, case: PickCase) -> Episodes:
         """Let the expert work in all environments of a case, and keep the run by its name.
 
-        A scene is built unless the last one has the same settings.
+        A scene is built unless the last one differs in starts and beliefs alone.
         """
         page, runs = self.page, self.page.experiment.page.runs
-        changed = self.case and settings_changed(self.case, case)
-        if not changed or {*changed} - {"starts", "beliefs"}:
+        if not (
+            self.case
+            and len(self.case.starts) == len(case.starts)
+            and {*settings_changed(self.case, case)} <= {"starts", "beliefs"}
+        ):
             self.world = picking.build(self.gs, case, spec.VIEW)
         self.case, world = case, self.world
         joints = describe(page, world.robot)

@@ -63,6 +63,7 @@ def test_the_course_s_answer_is_declared_and_passes(work):
         (reading(FUNCTIONS, "fails", 0), "functions"),
         (case("without_cause", density=500.0), "changes_are_single"),
         (case("without_cause", beliefs=OWN.starts), "changes_are_single"),
+        (case("without_cause", beliefs=OWN.starts + 1e-3), "changes_are_single"),
         (case("attack", starts=OWN.starts), "changes_are_single"),
     ],
 )
@@ -87,6 +88,17 @@ def test_rates_that_show_no_cause_are_named(work, run, like, level, check):
 
 
 ATTACK = CASES["attack"]
+EXACT = replace(ATTACK, beliefs=ATTACK.starts)
+
+
+def twins(case):
+    """Return a case whose starts are one new place."""
+    return replace(case, starts=np.repeat(ATTACK.starts[:1], 64, axis=0))
+
+
+def never(case):
+    """Return that no episode fails."""
+    return np.zeros(len(case.starts), bool)
 
 
 @pytest.mark.parametrize(
@@ -103,6 +115,8 @@ ATTACK = CASES["attack"]
         ("scene", dict, [RUNGS], "the course's cylinder"),
         ("change", SOLVED["without_rival"], [OWN], ""),
         ("renewed", SOLVED["without_cause"], [OWN], "distance"),
+        ("renewed", twins, [OWN], "distance"),
+        ("rule", never, [EXACT, attempts(EXACT, 1)], "success is"),
     ],
 )
 def test_each_function_is_tested(test, function, given, problem):
