@@ -247,7 +247,9 @@ def asked_number(
             (key, f"{verdict} {causes.get(key, '')}".strip())
             for key, verdict in verdicts.items()
         ],
-        "answer": f"{text}; answers within {percent:g} % count as right.",
+        "answer": f"{text}; answers within {percent:g} % count as right."
+        if value
+        else f"{text}, exactly.",
         "origin": origin,
     }
 
