@@ -1,11 +1,10 @@
-/* Recorded results to choose from: cells of a map, or pixels of a picture. A map can have curves, which
-   a question precedes, or the chosen posture in 3D. The page contains all data as JSON. */
+/* Recorded results to choose from: cells of a map, or pixels of a picture. A map can have curves, or
+   the chosen posture in 3D. The page contains all data as JSON. */
 "use strict";
 
 /* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const KEYS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
-  const UNKNOWN = "this record cannot tell";
   const { add, draw, write } = globalThis.timePlot;
   const HEIGHT = 210;
 
@@ -103,17 +102,14 @@ document.addEventListener("DOMContentLoaded", () => {
 
   function startMap(root, data) {
     const find = (name) => root.querySelector(name);
-    const [which, measure, predict] = ["map", "measure", "predict"].map((n) => find(`[name=${n}]`));
-    const [question, output] = [".question", "output"].map(find);
+    const [which, measure, output] = ["[name=map]", "[name=measure]", "output"].map(find);
     const table = add(find(".cells"), "table", { class: "map" });
     const view = data.curves ? curvesOf(root, data.curves) : modelOf(root, data.dt);
     for (const map of data.maps) for (const cell of cellsOf(map)) cell.map = map;
     const all = data.maps.flatMap(cellsOf);
     let open; // the map that the table shows
     let chosen = all.find((cell) => cell.opens) ?? all[0];
-    let shown = null; // it differs from `chosen` while a question is open
     let last = null; // the run before, drawn as a ghost
-    let asked = 0; // how many questions were answered or skipped
 
     function writeMap() {
       if (open !== chosen.map) {
@@ -125,11 +121,10 @@ document.addEventListener("DOMContentLoaded", () => {
       const { label } = data.measures[k];
       const seen = all.map(({ numbers }) => numbers[k]).filter((value) => value !== null);
       const [low, high] = [Math.min(...seen), Math.max(...seen)];
-      const compared = predict && (chosen === shown ? last : shown);
       const inside = table.contains(document.activeElement);
       for (const cell of cellsOf(open)) {
         const { place, name, tag, state, texts, numbers } = cell;
-        const before = cell === compared;
+        const before = cell === last;
         place.textContent = texts[k];
         if (tag) place.prepend(add(place, "b", {}, tag), " ");
         const observed = numbers[k] === null ? " not observed" : "";
@@ -150,73 +145,24 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     function choose(cell) {
+      if (data.curves && cell !== chosen) last = chosen;
       chosen = cell;
+      show();
+    }
+
+    function show() {
       writeMap();
-      question.hidden = true;
-      if (cell === shown) output.textContent = cell.sentence;
-      else if (predict?.checked) ask();
-      else show("");
-    }
-
-    /* The order of two runs, as the lesson judges it. A time that the window did not reach is later
-       than any in it. */
-    function order({ margin }, [first, second]) {
-      const [a, b] = [first ?? Infinity, second ?? Infinity];
-      if (a === b) return a === Infinity ? UNKNOWN : "equal";
-      if (Math.abs(b - a) <= margin) return "equal";
-      return b > a ? "higher" : "lower";
-    }
-
-    /* Questions are about measures in turn, except the one that the map shows. */
-    function ask() {
-      const others = data.measures.filter((_, k) => k !== Number(measure.value));
-      const about = others[asked % others.length];
-      const at = data.measures.indexOf(about);
-      const words = { lower: about.lower, equal: "too close to call", higher: about.higher };
-      if (all.some(({ numbers }) => numbers[at] === null)) words[UNKNOWN] = UNKNOWN;
-      const [from, to] = [shown, chosen].map(({ name, map }) => `${name}, ${map.setting}`);
-      const [legend] = question.children;
-      legend.textContent = `From ${from} to ${to}: what happens to the ${about.noun}?`;
-      question.replaceChildren(legend);
-      for (const [key, word] of [...Object.entries(words), ["", "Skip"]]) {
-        add(question, "button", { type: "button" }, word).onclick = () => answer(about, at, key, words);
-      }
-      question.hidden = false;
-      output.textContent = legend.textContent;
-    }
-
-    function answer(about, at, key, words) {
-      const right = order(about, [shown, chosen].map(({ numbers }) => numbers[at]));
-      const margin = right === "equal" ? ` The margin is ${about.within}.` : "";
-      const verdict = key ? (key === right ? "Yes" : "No") : "Skipped";
-      const [before, now] = [shown, chosen].map(({ values }) => values[about.column]);
-      asked += 1;
-      show(`${verdict}. The ${about.noun}: ${words[right]}, first ${before}, now ${now}.${margin} `);
-      chosen.place.focus({ preventScroll: true }); // the button has gone
-    }
-
-    function show(feedback) {
-      if (predict) last = shown;
-      shown = chosen;
-      question.hidden = true;
-      writeMap();
-      output.textContent = feedback + shown.sentence;
-      writeValues(root, shown.values, last?.values);
-      view(shown, last);
+      output.textContent = chosen.sentence;
+      writeValues(root, chosen.values, last?.values);
+      view(chosen, last);
     }
 
     which.addEventListener("change", () => {
       const cells = cellsOf(data.maps[which.value]);
       choose(cells[cellsOf(open).indexOf(chosen)] ?? cells[0]); // the same place
     });
-    measure.addEventListener("change", () => {
-      writeMap();
-      if (!question.hidden) ask();
-    });
-    predict?.addEventListener("change", () => {
-      if (!question.hidden) show("");
-    });
-    show("");
+    measure.addEventListener("change", writeMap);
+    show();
   }
 
   /* Bytes of a PNG, four for each pixel. */

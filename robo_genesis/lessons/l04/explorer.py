@@ -1,6 +1,6 @@
 """The step explorer: the grid as compact data for a script, and as a table.
 
-The script asks what a chosen run will show before it shows the run beside the last one.
+The script shows a chosen run beside the last one.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,9 +15,9 @@ from robo_genesis.core.tables import as_table
 from robo_genesis.core.text import decimal, format_value
 
 from .metrics import StepMetrics
-from .spec import ENTRY, MARGINS, STEPPED_JOINT
+from .spec import ENTRY, STEPPED_JOINT
 from .study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
-from .tables import NOUNS, UNITS, margin_text, share_text
+from .tables import share_text
 
 MEASURES = False
 
@@ -36,8 +36,7 @@ LABELS = {
 # Not in the table, because it is the number of saturated samples times the time step.
 REPEATED = "saturation_duration"
 
-# Factor, digits and unit of the number in a cell of the map, by metric. These metrics
-# have a declared margin, so a reader can be asked for the order of two runs.
+# Factor, digits and unit of the number in a cell of the map, by metric
 CELLS = {
     "saturation_samples": (1, 0, "samples"),
     "rise_time": (1000, 0, "ms"),
@@ -78,7 +77,9 @@ def explored(run: Experiment) -> dict[str, Any]:
     return {
         "choices": (f"Step of {STEPPED_JOINT}", "Map shows"),
         "maps": [_map(run, step, start, limit) for step in STEP_SIZES],
-        "measures": [_measure(name) for name in CELLS],
+        "measures": [
+            {"label": f"{LABELS[name]} [{unit}]"} for name, (*_, unit) in CELLS.items()
+        ],
         "columns": [*LABELS.values()],
         "notes": {"–": "A dash: not observed."},
         "curves": {
@@ -139,20 +140,6 @@ def _axis(
         "high": high,
         "ticks": [{"value": value, "label": decimal(value, digits)} for value in ticks],
         "levels": [{"value": value, "mark": mark} for value in at],
-    }
-
-
-def _measure(name: str) -> dict[str, Any]:
-    """Return a metric that cells show and questions are about."""
-    lower, higher = ("earlier", "later") if UNITS[name] == "s" else ("lower", "higher")
-    return {
-        "label": f"{LABELS[name]} [{CELLS[name][2]}]",
-        "column": [*LABELS].index(name),
-        "noun": NOUNS[name],
-        "lower": lower,
-        "higher": higher,
-        "margin": MARGINS[name],
-        "within": margin_text(name),
     }
 
 

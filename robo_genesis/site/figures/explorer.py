@@ -9,7 +9,7 @@ bundle and the directive's second word:
 |---|---|
 | `columns` | names of the values that are read |
 | `maps` | each a `label`, a `caption`, labels of `columns`, and `rows` of a `label` and `cells` |
-| `measures` | each a `label`; a `noun` makes questions about the next run |
+| `measures` | each a `label` |
 | `choices` | labels of the choice of a map and of a measure, by default `Map`, `Cells show` |
 | `notes` | the meaning of signs in the cells |
 | `curves` | what is drawn of a run; each map has the axes, each cell the packed values |
@@ -126,8 +126,8 @@ def opening(kind: str, data: Data, **words: str) -> nodes.Node:
 def panel(data: Data, loads: str = "") -> nodes.Node:
     """Return the controls and the end of an explorer; the script fills and shows them.
 
-    A map has the choices of it, places for its cells, a question and a sentence; a
-    picture has a slider each for column and row. `loads` says what a button loads.
+    A map has the choices of it, places for its cells and a sentence; a picture has a
+    slider each for column and row. `loads` says what a button loads.
     """
     return html(filled(Path(__file__).with_suffix(".html"), **data, loads=loads))
 

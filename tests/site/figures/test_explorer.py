@@ -170,7 +170,7 @@ def curves(folder, tmp_path) -> nodes.Node:
     data = {
         "columns": ["height [m]"],
         "maps": [grid | {"rows": [{"label": "z", "cells": cells}]}],
-        "measures": [{"label": "height [m]", "noun": "height"}],
+        "measures": [{"label": "height [m]"}],
         "notes": {},
         "curves": {"of": "box", "dt": 0.01, "until": 0.6, "drawn": [drawn]},
     }
@@ -195,7 +195,6 @@ def test_the_curve_of_the_last_run_has_its_name_beside_it(curves, open_block):
     page = open_block(curves, **PHONE)
     name = page.locator(".time-plot .name")
     assert name.count() == 0  # there is one run
-    page.get_by_label("Predict first").uncheck()
     page.get_by_role("gridcell", name="1 m height").tap()
     assert name.text_content() == "last run"
     last, chosen, covered = page.locator(".time-plot").evaluate(BESIDE)
