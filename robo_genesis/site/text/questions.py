@@ -72,6 +72,7 @@ UNKNOWN = "unknown"  # The key of the option that no order was observed
 
 # The keys of an answer that is a number, and its feedback.
 JUDGED = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
+AGAIN = "Try another number, or open the answer."  # A wrong number without a cause
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 
 # The key of a typical wrong number: the value times this factor.
@@ -244,7 +245,7 @@ def asked_number(
         "tolerance": abs(value) * percent / 100,
         "unit": unit or ("" if own_unit == "1" else own_unit),
         "feedback": [
-            (key, f"{verdict} {causes.get(key, '')}".strip())
+            (key, f"{verdict} {causes.get(key, AGAIN * (key != 'right'))}".strip())
             for key, verdict in verdicts.items()
         ],
         "answer": f"{text}; answers within {percent:g} % count as right."
