@@ -47,7 +47,7 @@ def test_an_answer_of_the_lab_is_true(real_engine, name):
 OWN, ATTACK = (capstone.CASES[name] for name in ("own", "attack"))
 FURTHER = {
     "half_the_step": replace(ATTACK, substeps=2 * ATTACK.substeps),
-    "room_for_each_error": replace(OWN, size=(0.04, 0.046, 0.09)),
+    "more_room": replace(OWN, size=(0.04, 0.046, 0.09)),
 }
 
 
