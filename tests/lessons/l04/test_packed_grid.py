@@ -48,8 +48,5 @@ def test_the_cell_of_a_case_says_what_was_measured(experiments):
         f"KP 7000, KV 100, step 0.25 rad (the case G2). Overshoot: {share} of the step. "
         f"Saturated: {measured.saturation_samples} of 120 samples at the force limit."
     )
-    assert [of["margin"] for of in data["measures"]] == [
-        spec.MARGINS[name] for name in explorer.CELLS
-    ]
     rows = explorer.table(run).splitlines()[2:]
     assert [k for k, row in enumerate(rows) if "| G2 |" in row] == [number]
