@@ -26,7 +26,7 @@ from . import rungs, spec
 X, Y = np.arange(2, 11) / 10, np.arange(-3, 4) * 0.12
 
 # Counts of each cell: of its two postures those that the solver accepts, without
-# contact of the robot with table, legs or itself, and of these those without contact
+# contact of the robot with table or itself, and of these those without contact
 # with the bowl.
 COUNTED = ("reached", "free")
 

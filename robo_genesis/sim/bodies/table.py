@@ -166,11 +166,17 @@ def build(
     scene = new_scene(gs, case, options, first_only=n_envs > 0)
 
     def block(
-        size: Sequence[float], x: float, y: float, top: float, shade: float = 0.6
+        size: Sequence[float],
+        x: float,
+        y: float,
+        top: float,
+        shade: float = 0.6,
+        **morph: Any,
     ) -> Any:
         """Add a fixed box by its top."""
+        pos = (x, y, top - size[2] / 2)
         return scene.add_entity(
-            gs.morphs.Box(size=tuple(size), pos=(x, y, top - size[2] / 2), fixed=True),
+            gs.morphs.Box(size=tuple(size), pos=pos, fixed=True, **morph),
             material=gs.materials.Rigid(friction=0.8),
             surface=gs.surfaces.Default(color=(shade, shade, shade - 0.05, 1.0)),
         )
@@ -183,7 +189,9 @@ def build(
         for t in (-1, 1)
     ]
     fixed = [block(TABLE[0], x, y, 0.0)]
-    fixed += [block((0.05, 0.05, -FLOOR - thick), *at, -thick, 0.5) for at in corners]
+    # Nothing reaches the legs, and each would cost time in every step.
+    leg = (0.05, 0.05, -FLOOR - thick)
+    fixed += [block(leg, *at, -thick, 0.5, collision=False) for at in corners]
     if case.place[2]:
         fixed.append(block(SHELF, *case.place, 0.5))
     robot = scene.add_entity(
