@@ -51,20 +51,29 @@ def value_of(folder: Path, name: str, unit: str = "") -> tuple[Any, str | None, 
         raise LookupError(f"no {kind} {name!r}. Known: {known}.")
     value = record = found[group][label]
     given, origin = None, f"found by the check {group}"
-    valid = SCALES.keys() | DIGITS.keys()
+    own = unit_of_label(label)
     if isinstance(record, bundle.Metric):
-        value, given, origin = (
+        value, own, origin = (
             record.value,
             record.unit,
             f"from {', '.join(record.source)}",
         )
-        valid = {given, SCALED.get(given, given), MICRO.get(given, given)}
+        given = own
+    valid = {own, SCALED.get(own, own), MICRO.get(own, own)} - {""}
     if unit and not (isinstance(value, int | float) and unit in valid):
         raise LookupError(
-            f"{name} = {quoted(value)} in {given or 'no unit'}, which cannot be shown in {unit!r}. "
-            f"Valid for a number is {' or '.join(sorted(valid))}."
+            f"{name} = {quoted(value)} in {own or 'no unit'}, which cannot be shown in {unit!r}. "
+            f"Valid is {' or '.join(sorted(valid)) or 'no unit'}."
         )
     return value, given, origin
+
+
+def unit_of_label(label: str) -> str:
+    """Return the unit in which a finding's label ends, as in `lost_m_s`, or an empty text."""
+    units = {re.sub("[/·]", "_", unit): unit for unit in DIGITS}
+    units |= {"px": "pixel", "share": "1"}
+    ends = [end for end in units if label.endswith(f"_{end}")]
+    return units[max(ends, key=len)] if ends else ""
 
 
 def prints(page: NotebookNode) -> list[dict[int, str]]:

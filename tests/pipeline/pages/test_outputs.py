@@ -203,9 +203,14 @@ DROP = "baseline.drop m"
         (DROP, "0.2011 m", "it has `prints: baseline.drop m`"),
         ({1: "baseline.drp m"}, "0.2011 m", "no metric 'baseline.drp'. Known: model."),
         (
+            {1: "clear_of_ground:baseline.clearance_m kg"},
+            "0.249",
+            "in m, which cannot be shown in 'kg'. Valid is m or mm or µm",
+        ),
+        (
             {1: "baseline.drop kg"},
             "0.2011 m",
-            "cannot be shown in 'kg'. Valid for a number is m",
+            "cannot be shown in 'kg'. Valid is m",
         ),
     ],
 )

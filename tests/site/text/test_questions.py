@@ -129,9 +129,7 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
     assert found_count["answer"].startswith(f"{count};")
     assert found["feedback"][1] == ("low", "Too low. The motor saturates.")
     assert found["feedback"][3] == ("x57.3", "No. In degrees.")
-    with pytest.raises(
-        LookupError, match=r"cannot be shown in 'mm'\. Valid for a number is mrad"
-    ):
+    with pytest.raises(LookupError, match=r"cannot be shown in 'mm'\. Valid is mrad"):
         questions.asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
 
 
