@@ -1,5 +1,6 @@
 """Markdown tables of measured values, metrics and checks."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from typing import Any
@@ -14,6 +15,8 @@ from .text import decimal, format_value
 MEASURES = False
 
 Rows = Iterable[Mapping[str, Any]]  # What a table is made of
+
+HYPHEN = re.compile(r"(?<![\w.-])-(?=\d)")  # Instead of the minus of a number
 
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -35,8 +38,9 @@ def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _cell(value: Any) -> str:
     if isinstance(value, float):
-        return f"{value:z.4f}".rstrip("0").rstrip(".").replace("-", "−")
-    return str(value)
+        value = f"{value:z.4f}".rstrip("0").rstrip(".")
+    code = "`" in str(value)
+    return str(value) if code else HYPHEN.sub("−", str(value))
 
 
 def as_table(rows: Callable[[Experiment], Rows]) -> Callable[[Experiment], str]:
@@ -83,9 +87,7 @@ def timed_table(
 
 def six_digits(metrics: Mapping[str, CaseMetrics]) -> str:
     """Return metrics as rows and cases as columns, each value with six digits and its unit."""
-    return metric_table(
-        metrics, lambda *value: text.six_digits(*value).replace("-", "−")
-    )
+    return metric_table(metrics, text.six_digits)
 
 
 def metric_table(
