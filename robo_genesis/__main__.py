@@ -128,10 +128,11 @@ def seconds(options: Namespace) -> Sequence[str]:
 
 def sizes(options: Namespace) -> int:
     """Compare the size of each page with the limits."""
-    from robo_genesis.pipeline.pages.book import find_pages
+    from robo_genesis.pipeline.pages.book import find_pages, page_files
     from robo_genesis.site.course.sizes import report
 
-    problems = report(find_pages(options.book))
+    find_pages(options.book)  # refuses pages that are not valid
+    problems = report(page_files(options.book))
     print(*problems, sep="\n")
     return int(bool(problems))
 

@@ -72,7 +72,8 @@ def with_chapter(toc: str, lesson: str) -> str:
     head, *chapters = re.split(f"(?m)^(?={CHAPTER})", f"{toc.rstrip()}\n")
     folder = f"lessons/{lesson}-new-lesson"
     new = f"{CHAPTER}{folder}/lecture\n    sections:\n"
-    new += "".join(f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes"))
+    names = ("practice", "lab", "mistakes")
+    new += "".join(f"      - file: {folder}/{name}\n" for name in names)
     # The lessons are the first chapters.
     at = sum(f"{CHAPTER}lessons/" <= text < new for text in chapters)
     chapters.insert(at, new)

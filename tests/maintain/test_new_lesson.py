@@ -100,7 +100,8 @@ def test_the_lists_stay_in_order(lesson, before):
     toc = yaml.safe_load(with_chapter(TOC.read_text(), lesson))["chapters"]
     names = [chapter["file"] for chapter in toc]
     at = names.index(f"lessons/{lesson}-new-lesson/lecture")
-    pages = [f"lessons/{lesson}-new-lesson/{page}" for page in ("lab", "mistakes")]
+    names_of_pages = ("practice", "lab", "mistakes")
+    pages = [f"lessons/{lesson}-new-lesson/{page}" for page in names_of_pages]
     assert [section["file"] for section in toc[at]["sections"]] == pages
     assert names[at - 1].startswith(f"lessons/{before}") if before else at == 0
     assert len(names) == len(yaml.safe_load(TOC.read_text())["chapters"]) + 1

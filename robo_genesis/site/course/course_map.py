@@ -33,7 +33,12 @@ from .sizes import Minutes
 FILE = "course_map.yml"
 
 # The pages with a line of their own, besides the lecture.
-LINES = {"motion": "Lecture, part 2", LAB: "Lab", "capstone": "Capstone"}
+LINES = {
+    "motion": "Lecture, part 2",
+    "practice": "Practice",
+    LAB: "Lab",
+    "capstone": "Capstone",
+}
 
 
 @dataclass(frozen=True, slots=True, config={"extra": "forbid"})

@@ -1,7 +1,7 @@
 """The size of each page in its source and its minutes, and the limits of `make lint`."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +13,6 @@ from nbformat.v4 import new_markdown_cell, new_notebook
 from robo_genesis.pipeline.pages.book import (
     LAB,
     WORK_SHEET,
-    Page,
     code_cells,
     read_notebook,
 )
@@ -56,6 +55,7 @@ LECTURE = {"words": 3300, "cells": 12, "longest": 15, "minutes": 65}
 LIMITS = {
     "lecture": LECTURE,
     "motion": LECTURE,  # the second part of L04's lecture
+    "practice": {"minutes": 30},
     "lab": {"minutes": 90},
     "mistakes": {"words": 2000},
     "deeper": {"words": 2000},
@@ -103,12 +103,18 @@ def count_minutes(docname: str, page: Path) -> Minutes:
         docname: the name of the page.
         page: its file.
     """
-    text = new_notebook(cells=[new_markdown_cell(page.read_text("utf8"))])
-    if notebook := read_notebook(page):
+    notebook = notebook_of(page)
+    if cells := code_cells(notebook):
         executed = executed_notebook(docname, notebook)
-        for cell, ran in zip(code_cells(notebook), executed.cells, strict=True):
+        for cell, ran in zip(cells, executed.cells, strict=True):
             cell.outputs = ran.outputs
-    return size(notebook or text, page)[0]
+    return size(notebook, page)[0]
+
+
+def notebook_of(page: Path) -> NotebookNode:
+    """Return the notebook of a page; one without code is a cell of text."""
+    text = new_notebook(cells=[new_markdown_cell(page.read_text("utf8"))])
+    return read_notebook(page) or text
 
 
 def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
@@ -181,24 +187,24 @@ def count_shown(cell: NotebookNode) -> int:
     return words
 
 
-def report(pages: Iterable[Page]) -> list[str]:
+def report(pages: Mapping[str, Path]) -> list[str]:
     """Return what to do about each page that is too large.
 
     Args:
-        pages: the executed pages of the book.
+        pages: the file of each page of the book by its name.
     """
     problems = []
-    for page in pages:
-        kind = page.path.stem.partition("-")[0]
-        _, found = size(page.notebook, page.path)
+    for name, file in pages.items():
+        kind = file.stem.partition("-")[0]
+        _, found = size(notebook_of(file), file)
         over = [
-            f"{found[name]:,} {MEASURES[name]} (at most {limit:,})"
-            for name, limit in LIMITS.get(kind, {}).items()
-            if found[name] > limit
+            f"{found[of]:,} {MEASURES[of]} (at most {limit:,})"
+            for of, limit in LIMITS.get(kind, {}).items()
+            if found[of] > limit
         ]
         if over:
             problems.append(
-                f"{page.docname} is over its size: {'; '.join(over)}. Shorten it, or move a part "
+                f"{name} is over its size: {'; '.join(over)}. Shorten it, or move a part "
                 "to a deeper page."
             )
     return problems

@@ -6,7 +6,6 @@ import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.site.course import sizes
 
 
@@ -91,13 +90,15 @@ def test_readers_find_the_numbers_of_the_computation():
 
 
 def test_a_large_page_is_named(tmp_path):
-    large = new_notebook(cells=[new_markdown_cell("word " * 3400)])
-    pages = [
-        Page(name, tmp_path / f"{name}.md", large, None, None)
-        for name in ("lecture", "lab")
-    ]
-    (problem,) = sizes.report(pages)
-    assert problem.startswith(
+    """A page without code too; a lab has no limit for its words."""
+    pages = {name: tmp_path / f"{name}.md" for name in ("lecture", "practice", "lab")}
+    for file in pages.values():
+        file.write_text("word " * 3400 + f"\n\n{ASKED}" * 3)
+    lecture, practice = sizes.report(pages)
+    assert lecture.startswith(
         "lecture is over its size: 3,400 words of prose (at most 3,300)"
     )
-    assert problem.endswith("Shorten it, or move a part to a deeper page.")
+    assert practice.startswith(
+        "practice is over its size: 32 minutes to read and to work (at most 30)"
+    )
+    assert practice.endswith("Shorten it, or move a part to a deeper page.")
