@@ -1,6 +1,5 @@
 """Markdown tables of measured values, metrics and checks."""
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from typing import Any
@@ -15,8 +14,6 @@ from .text import decimal, format_value
 MEASURES = False
 
 Rows = Iterable[Mapping[str, Any]]  # What a table is made of
-
-HYPHEN = re.compile(r"(?<![\w.-])-(?=\d)")  # Instead of the minus of a number
 
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -38,9 +35,8 @@ def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _cell(value: Any) -> str:
     if isinstance(value, float):
-        value = f"{value:z.4f}".rstrip("0").rstrip(".")
-    code = "`" in str(value)
-    return str(value) if code else HYPHEN.sub("−", str(value))
+        return f"{value:z.4f}".rstrip("0").rstrip(".").replace("-", "−")
+    return str(value)
 
 
 def as_table(rows: Callable[[Experiment], Rows]) -> Callable[[Experiment], str]:
@@ -87,7 +83,9 @@ def timed_table(
 
 def six_digits(metrics: Mapping[str, CaseMetrics]) -> str:
     """Return metrics as rows and cases as columns, each value with six digits and its unit."""
-    return metric_table(metrics, text.six_digits)
+    return metric_table(
+        metrics, lambda *value: text.six_digits(*value).replace("-", "−")
+    )
 
 
 def metric_table(

@@ -225,7 +225,7 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
         | {
-            label: f"{round(by * found[key][k], 6) + 0.0:.{n}g}"
+            label: f"{round(by * found[key][k], 6) + 0.0:.{n}g}".replace("-", "−")
             for label, (key, by, n) in QUANTITIES.items()
         }
         for k in range(case.steps)

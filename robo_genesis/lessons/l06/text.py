@@ -38,7 +38,7 @@ def mixed_table(run: Experiment) -> tables.Rows:
     for k, (residual, accepted) in enumerate(zip(*found, strict=True)):
         yield {
             "row": f"{k}",
-            "target [m]": "{:g}, {:g}, {:g}".format(*spec.MIXED[k]),
+            "target [m]": "{:g}, {:g}, {:g}".format(*spec.MIXED[k]).replace("-", "−"),
             "position residual [mm]": mm(residual, 3),
             "the row is": "accepted" if accepted else "**refused**",
         }

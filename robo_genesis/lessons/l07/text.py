@@ -59,7 +59,7 @@ def attack_table(run: Experiment) -> tables.Rows:
             "scene": scene,
             "what misleads": misleads,
             "fails": rung or "none",
-            "caught by": f"{CATCHES[quantity]} {value}",
+            "caught by": f"{CATCHES[quantity]} {value}".replace("-", "−"),
         }
 
 
