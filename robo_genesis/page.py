@@ -80,8 +80,9 @@ def open_page(lesson: str, name: str) -> "LessonPage":
     plotting.use_course_style()
     if RUN_ID not in os.environ:
         if shell := get_ipython():
-            short = NotImplementedError, CheckFailed, RecordError
+            short = NotImplementedError, CheckFailed, RecordError, session.EngineError
             shell.set_custom_exc(short, without_frames)
+            shell.events.register("pre_run_cell", page.begin)
             shell.events.register("post_run_cell", page.go_on)
         if nothing_compiled(cache_folders()):
             print(FIRST_START.format(count=len(declared.runs)))
@@ -219,24 +220,35 @@ class LessonPage:
             )
         print(f"{name} passes its test")
 
+    def begin(self, cell: Any) -> None:
+        """Forget the error that a cell had when it ran before."""
+        self._errors.pop(cell.cell_id, None)
+
     def go_on(self, result: Any) -> None:
-        """Let the next cells run after an error, and name the functions that its cell needs.
+        """Let the next cells run after an error, and say what its cell needs.
 
         Jupyter would skip the cells that wait, and the reader would see neither the error
-        nor a verdict.
+        nor a verdict. A second `gs.init` fails too, and the first one still holds.
 
         Args:
             result: of a cell, by IPython; it loses its error.
         """
         error, cell = result.error_before_exec or result.error_in_exec, result.info
-        self._errors.pop(cell.cell_id, None)
-        if isinstance(error, Exception):
-            self._errors[cell.cell_id] = f"[{result.execution_count}]"
-            result.error_before_exec = result.error_in_exec = None
-            missing = self._missing
-            used = [n for n in missing if re.search(rf"\b{n}\b", cell.raw_cell)]
-            if missing:
-                print(f"No passed test yet: {', '.join(used or missing)}.")
+        if not isinstance(error, Exception):
+            return
+        result.error_before_exec = result.error_in_exec = None
+        if isinstance(error, session.EngineError):
+            return
+        self._errors[cell.cell_id] = f"[{result.execution_count}]"
+        for name in self._written:
+            if f"def {name}(" in cell.raw_cell:  # an older one must not count
+                self._written[name] = 0
+        missing = self._missing
+        used = [n for n in missing if re.search(rf"\b{n}\b", cell.raw_cell)]
+        if used and not isinstance(error, NameError | AttributeError):
+            print(f"No passed test yet: {', '.join(used)}.")
+        elif missing:
+            print("Begin with the first cell that has an error.")
 
     @property
     def _missing(self) -> list[str]:

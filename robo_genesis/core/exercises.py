@@ -98,6 +98,11 @@ class Brief(Repr):
         """Return a value in words; a number of NumPy as one of Python."""
         return super().repr1(x.item() if isinstance(x, np.generic) else x, level)
 
+    def repr_instance(self, x: Any, level: int) -> str:
+        """Return another object; one that draws a picture of itself only by its class."""
+        text = super().repr_instance(x, level)
+        return text if text.isprintable() else f"<{type(x).__name__}>"
+
     def repr_float(self, x: float, level: int) -> str:
         """Return a number."""
         return f"{x:.6g}"

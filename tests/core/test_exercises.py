@@ -63,6 +63,11 @@ def test_the_first_wrong_row_is_named_with_what_it_should_be():
     assert says in check.detail
 
 
+class Drawn:
+    def __repr__(self):
+        return "───\n a picture of a scene"
+
+
 @pytest.mark.parametrize(
     ("value", "words"),
     [
@@ -70,6 +75,7 @@ def test_the_first_wrong_row_is_named_with_what_it_should_be():
         (np.arange(16), "[ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]"),
         (np.arange(1000.0), "[0, 1, 2, ..., 997, 998, 999]"),
         ([np.float32(0.5), None], "[0.5, None]"),
+        (Drawn(), "<Drawn>"),
     ],
 )
 def test_a_message_shows_the_whole_of_a_short_input(value, words):

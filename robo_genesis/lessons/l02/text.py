@@ -55,7 +55,7 @@ def metric_table(run: Experiment) -> str:
 def three_drops(run: Experiment) -> tables.Rows:
     """Return a table of the measured drop and both formulas."""
     found, case = run.metrics["baseline"], run.cases["baseline"]
-    steps = case.steps * case.substeps
+    steps = run.traces["baseline"].steps * case.substeps
     for name, drop in (
         ("measured", found.drop),
         ("stepped, g h² n (n + 1) / 2", summed_drop(case.h, steps, case.gravity)),
