@@ -120,7 +120,7 @@ SPOILED = [
     ("words_differ", metric("askew", raised_once=180.0)),
     ("pads_are_short", metric("exact", short=0.0)),
     ("held_but_sliding", metric("exact", creep=0.0)),
-    ("held_but_sliding", trace("exact", object_pos=shift((60, 0, 2), 1e-3))),
+    ("held_but_sliding", trace("exact", object_pos=shift((45, 0, 2), 1e-3))),
     ("along_the_pads", LOST_AT_THE_END),
     ("edge_of_the_pads", LOST_AT_THE_END),
     ("shown_episodes", LOST_AT_THE_END),
