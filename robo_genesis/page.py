@@ -20,6 +20,7 @@ from IPython import get_ipython
 from IPython.display import Markdown, display
 from matplotlib.figure import Figure
 
+import __main__
 from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check, CheckFailed
 from robo_genesis.core.exercises import FUNCTIONS, FunctionFailed, Written, refused
@@ -241,8 +242,9 @@ class LessonPage:
             return
         self._errors[cell.cell_id] = f"[{result.execution_count}]"
         for name in self._written:
-            if f"def {name}(" in cell.raw_cell:  # an older one must not count
+            if f"def {name}(" in cell.raw_cell:  # the older one must not count
                 self._written[name] = 0
+                vars(__main__).pop(name, None)
         missing = self._missing
         used = [n for n in missing if re.search(rf"\b{n}\b", cell.raw_cell)]
         if used and not isinstance(error, NameError | AttributeError):

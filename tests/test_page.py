@@ -12,6 +12,7 @@ from IPython.core.interactiveshell import ExecutionResult
 from lessons.body_runs import make_drop
 from lessons.exercise_cells import solutions
 
+import __main__
 import robo_genesis as rg
 from robo_genesis import page as pages
 from robo_genesis.core import project, shown, tables
@@ -235,15 +236,17 @@ def test_functions_are_counted_and_a_failed_one_is_shown_without_our_frames(
     ],
 )
 def test_after_an_error_the_next_cells_run_and_a_reader_knows_what_is_missing(
-    page, capsys, error, code, said
+    page, capsys, monkeypatch, error, code, said
 ):
     page._written["stepped"] = 1
+    monkeypatch.setitem(vars(__main__), "stepped", None)
     cell = SimpleNamespace(raw_cell=code, cell_id="a")
     result = ExecutionResult(cell)
     result.error_in_exec, result.execution_count = error, 7
     page.go_on(result)
     assert capsys.readouterr().out.startswith(said or "")
     assert page._errors == ({"a": "[7]"} if said else {})
+    assert hasattr(__main__, "stepped") == bool(page._written["stepped"])
     passes_on = isinstance(error, Exception)
     assert result.error_in_exec is (None if passes_on else error)
     page.begin(cell)
