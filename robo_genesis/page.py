@@ -238,11 +238,12 @@ class LessonPage:
         if not isinstance(error, Exception):
             return
         result.error_before_exec = result.error_in_exec = None
-        if isinstance(error, session.EngineError):
+        if isinstance(error, session.EngineError) and "gs.init(" in cell.raw_cell:
             return
         self._errors[cell.cell_id] = f"[{result.execution_count}]"
         for name in self._written:
-            if f"def {name}(" in cell.raw_cell:  # the older one must not count
+            # Such a cell has not defined it, and the older one must not count.
+            if isinstance(error, SyntaxError) and f"def {name}(" in cell.raw_cell:
                 self._written[name] = 0
                 vars(__main__).pop(name, None)
         missing = self._missing

@@ -95,6 +95,21 @@ def test_a_spoiled_run_fails_its_check_and_the_lab_says_which(run, name):
     assert all(f"`{of}` failed" in said for of in names & text.SENTENCES.keys())
 
 
+@pytest.mark.parametrize(
+    ("changes", "names"),
+    [({"steps": 10}, {"stamps"}), ({"height": 2.0}, {"start", "free_fall"})],
+)
+def test_a_changed_lab_fails_what_its_answer_says_and_meets_its_own_formula(
+    run, changes, names
+):
+    changed = {BASE: make_drop(replace(spec.BASELINE, **changes))}
+    pictures = {name: run.frames[name] for name in DROP.frames}
+    lab = replace(run, page=DROP, traces=changed, frames=pictures)
+    assert {check.name for check in lab.outcomes() if not check.passed} == names
+    stepped = text.three_drops(lab).splitlines()[3]
+    assert abs(float(stepped.split("|")[3].replace("−", "-"))) < 1e-3  # mm
+
+
 def test_each_check_has_a_run_that_fails_it(run):
     fails = {name for _, names in SPOILED.values() for name in names} | {"free_fall"}
     assert fails == {check.__name__ for check in run.page.checks}
