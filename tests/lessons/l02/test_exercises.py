@@ -1,16 +1,12 @@
 """The tests of the student's functions: right ones pass, and typical wrong ones fail."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from lessons.body_runs import make_drop
-from lessons.exercise_cells import solutions
+from lessons.exercise_cells import undetected
 from lessons.fake_scenes import FakeBody, FakeScene
 
 from robo_genesis.lessons.l02 import exercises, spec
-
-OURS = solutions("l02")["record"]
 
 
 def scene_with(rho=500, size=0.1, height=0.5, ground=True, fixed=False, **settings):
@@ -23,40 +19,33 @@ def scene_with(rho=500, size=0.1, height=0.5, ground=True, fixed=False, **settin
     return make
 
 
-def without_reset(scene, box, steps):
-    return OURS(SimpleNamespace(step=scene.step, reset=lambda: None), box, steps)
-
-
-CASES = {
-    "scene": {
-        "right": scene_with(),
-        "one substep": scene_with(substeps=1),
-        "the default density": scene_with(rho=600),
-        "the underside at half a metre": scene_with(height=0.55),
-        "no ground": scene_with(ground=False),
-        "fixed": scene_with(fixed=True),
-    },
-    "record": {
-        "right": OURS,
-        "without the first state": lambda *of: [values[1:] for values in OURS(*of)],
-        "without a reset": without_reset,
-        "speed downwards": lambda *of: (
-            OURS(*of)[0],
-            [-speed for speed in OURS(*of)[1]],
-        ),
-    },
+SCENES = {
+    "right": scene_with(),  # ours runs in the engine, when its page is executed
+    "one substep": scene_with(substeps=1),
+    "the default density": scene_with(rho=600),
+    "the underside at half a metre": scene_with(height=0.55),
+    "no ground": scene_with(ground=False),
+    "fixed": scene_with(fixed=True),
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "how"), [(n, how) for n, of in CASES.items() for how in of]
-)
-def test_only_the_right_solution_passes(name, how):
+@pytest.mark.parametrize("how", SCENES)
+def test_only_the_right_scene_passes(how):
+    check = exercises.scene(SCENES[how], None, spec.BASELINE)
+    assert check.passed == (how == "right"), check.detail
+
+
+RECORDS = {
+    "    scene.reset()\n": [""],
+    "return heights, speeds": [
+        "return heights[1:], speeds[1:]",
+        "return heights, [-speed for speed in speeds]",
+    ],
+}
+
+
+def test_each_mistake_in_a_record_is_found():
     scene, box = scene_with()(None)
     scene.step()  # the student's record starts from any state
-    more = {
-        "scene": (None, spec.BASELINE),
-        "record": (scene, box, make_drop(spec.BASELINE)),
-    }
-    check = getattr(exercises, name)(CASES[name][how], *more[name])
-    assert check.passed == (how == "right"), check.detail
+    given = scene, box, make_drop(spec.BASELINE)
+    assert undetected(exercises.record, RECORDS, "l02", "record", *given) == []
