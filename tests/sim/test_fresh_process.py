@@ -2,7 +2,7 @@
 
 import pytest
 
-from robo_genesis.sim.fresh_process import StartError, last_value, run_python
+from robo_genesis.sim.fresh_process import StartError, run_python
 
 
 def test_it_prints_with_the_changed_environment():
@@ -27,7 +27,3 @@ def test_another_status_or_no_output_is_an_error_with_the_last_lines(code, messa
     )
     with pytest.raises(StartError, match=message):
         run_python(["-c", code], {}, (0, 2))
-
-
-def test_the_value_is_on_the_last_line():
-    assert last_value("a line of the engine\n[1, 2]\n\n") == [1, 2]

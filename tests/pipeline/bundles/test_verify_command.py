@@ -5,7 +5,7 @@ import shutil
 import pytest
 from spoilers import filed_as, older_compiler, on
 
-from robo_genesis.core.project import ProjectError, engine_pin
+from robo_genesis.core.project import engine_pin
 from robo_genesis.pipeline.bundles import overview
 
 
@@ -43,14 +43,11 @@ def test_each_bundle_has_a_line(verify, recorded, built, capsys):
     assert all(f"Genesis {engine_pin()}, " in line[4] for line in lines)
 
 
-stale = older_compiler
-
-
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
         (
-            stale,
+            older_compiler,
             "stale        stale: manifest.json: engine.quadrants_version is 1.2.9, expected",
         ),
         (filed_as("rocm"), "rocm     refused      backend: "),
@@ -79,13 +76,8 @@ def check(verify, capsys):
 
 
 def test_one_folder_is_checked_alone(check, recorded, folder, tmp_path):
-    stale(recorded)
+    older_compiler(recorded)
     status, lines = check(folder)
     assert (status, len(lines)) == (0, 1)
     status, lines = check(tmp_path / "cpu")
     assert (status, lines[0].endswith(" There is no such folder.")) == (1, True)
-
-
-def test_a_broken_book_is_named(recorded):
-    with pytest.raises(ProjectError, match=r"_toc.yml cannot be read"):
-        overview.verify(None, recorded.parents[2])
