@@ -236,7 +236,6 @@ def test_performance_is_shown_and_decides_nothing(compared):
     ("spoiler", "said"),
     [
         (write(METRICS, "{}"), "digest: {}: metrics.json: sha256 is"),
-        (both(facts(lesson="l02"), seal), "is of l04/lab, {} of l02/lab. Give two"),
         (both(facts(lesson="l99"), seal), "lesson: Lesson 'l99' does not exist."),
     ],
 )

@@ -20,7 +20,6 @@ def test_executed_pages_are_the_notebooks_of_the_table_of_contents(tmp_path):
 
 
 BAD = (  # the text of a page, the line that is named, and what is said of it
-    (notebook(front="robo_genesis: {lesson: l04}\n"), 1, "{lesson: l04, page: lab}"),
     (notebook(front="robo_genesis: lab\n"), 1, "{lesson: l04, page: lab}"),
     # tags and options of a cell
     (
@@ -28,7 +27,6 @@ BAD = (  # the text of a page, the line that is named, and what is said of it
         9,
         "'solutions' is unknown. Valid: after",
     ),
-    (notebook(cell("1", ":tags: [skip-execution]\n")), 9, "unknown. Valid: after"),
     (notebook(cell("1", ":tag: [solution]\n")), 9, "'tag' is unknown. Valid: tags"),
     (notebook(cell("1", ":tags: [figure]\n")), 9, "a figure needs a text"),
     (notebook(raising("1", None)), 9, "the tag raises-exception needs"),
@@ -67,10 +65,7 @@ def test_one_report_names_all_bad_pages(tmp_path):
         assert said in str(refused.value)
 
 
-TWICE = "format: jb-book\nroot: index\nchapters:\n- file: a\n- file: a\n"
-
-
-@pytest.mark.parametrize("text", ["format: [", "root: index\nnoise: 1\n", TWICE])
+@pytest.mark.parametrize("text", ["format: [", "root: index\nnoise: 1\n"])
 def test_a_bad_table_of_contents_is_refused(tmp_path, text):
     book = make_book(tmp_path)
     (book / "_toc.yml").write_text(text)

@@ -82,6 +82,7 @@ def test_without_scripts_all_but_replay_and_explorer_remains(browser, address):
     assert bare.locator(f"{REPLAY} .shown").inner_text() == "at the start"
     assert not bare.locator(f"{REPLAY} button:visible").count()
     assert not bare.locator(f"{REPLAY} .panel").is_visible()
+    assert not bare.locator(".veil:visible").count()
     assert bare.locator("#fig-l04-gains svg").is_visible()
     bare.locator(f"{BLOCK} summary").click()
     assert bare.locator(BLOCK).get_by_text("gets the target").first.is_visible()

@@ -136,15 +136,6 @@ def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(
 
 
 @pytest.mark.parametrize("name", PLAYING)
-def test_without_javascript_the_samples_are_in_a_fold(browser_3d, address, name):
-    page = browser_3d.new_context(java_script_enabled=False).new_page()
-    page.goto(f"{address}/{name}.html")
-    assert page.locator(".replay + details summary").first.is_visible()
-    assert not page.locator(".veil").first.is_visible()
-    page.context.close()
-
-
-@pytest.mark.parametrize("name", PLAYING)
 def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(
     browser_3d, address, name
 ):

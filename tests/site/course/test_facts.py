@@ -11,16 +11,9 @@ from robo_genesis.core.project import ROOT, engine_pin
 from robo_genesis.site.course import facts, sizes
 
 
-@pytest.mark.parametrize(
-    ("counted", "shown"),
-    [
-        ((1, 0), "1 min to read"),
-        ((45, 16), "61 min (45 reading, 16 code and questions)"),
-        ((6, 61, True), "65 min with the work sheet"),
-    ],
-)
-def test_minutes_are_shown_with_their_parts(counted, shown):
-    assert str(sizes.Minutes(*counted)) == shown
+def test_minutes_are_shown_with_their_parts():
+    shown = "61 min (45 reading, 16 code and questions)"
+    assert str(sizes.Minutes(45, 16)) == shown
 
 
 def test_a_page_has_both_and_the_home_page_no_time(small_site):
