@@ -6,6 +6,7 @@ from operator import getitem
 from pathlib import Path
 
 import numpy as np
+from lessons import changed_runs as changes
 
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence import bundle
@@ -144,15 +145,6 @@ def rewrite(name="G1", **fields):
     )
 
 
-def changed_at(index, value):
-    def change(array):
-        array = np.array(array)
-        array[index] = value
-        return array
-
-    return change
-
-
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
     run = from_bundle(folder, bundle.read_manifest(folder), bundle.read_metrics(folder))
@@ -200,8 +192,11 @@ CARELESS = {
     ),
     "an archive that is none": ("bad-array", write("arrays/G1.npz", "x")),
     "arrays of Python's objects": ("bad-array", rewrite(q=lambda q: q.astype(object))),
-    "arrays that are not finite": ("bad-trace", rewrite(q=changed_at((-1, 0), np.nan))),
-    "a link elsewhere": ("failed", rewrite(link_pos=changed_at((5, 1, 2), 0.1))),
+    "arrays that are not finite": (
+        "bad-trace",
+        rewrite(q=changes.put((-1, 0), np.nan)),
+    ),
+    "a link elsewhere": ("failed", rewrite(link_pos=changes.put((5, 1, 2), 0.1))),
     "a frame that is no picture": ("frames", write("frames/final.png", "x")),
     "a frame too few": ("frames", remove("frames/final.png")),
     "frames without a camera": ("frames", part("render", mode="skip")),

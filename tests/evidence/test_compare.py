@@ -8,11 +8,11 @@ from textwrap import dedent
 import numpy as np
 import pytest
 from bundles import QUADRANTS
+from lessons.changed_runs import shift
 from spoilers import (
     CHECKS,
     METRICS,
     both,
-    changed_at,
     check,
     drop_case,
     facts,
@@ -190,17 +190,12 @@ def test_what_one_or_both_sides_lack_differs(compared, first, second, title, wha
     assert what in [row.what for row in differing]
 
 
-def added(place, amount):
-    """Return a function that adds an amount to one value of an array."""
-    return lambda array: changed_at(place, array[place] + np.float32(amount))(array)
-
-
 @pytest.mark.parametrize(
     ("amount", "state"), [(0.5, "differs"), (5e-4, "within tolerance")]
 )
 @pytest.mark.parametrize(("dof", "unit"), [(3, "rad/s"), (8, "m/s")])
 def test_arrays_agree_within_their_tolerance(compared, amount, state, dof, unit):
-    comparison = compared(rewrite(qd=added((7, dof), amount)))
+    comparison = compared(rewrite(qd=shift((7, dof), amount)))
     row = rows(comparison, "Arrays")[0]
     assert (comparison.state, row.state) == (state, state)
     assert row.what == f"G1 qd_rad_s_or_m_s[7, {dof}]"
@@ -211,7 +206,7 @@ def test_arrays_agree_within_their_tolerance(compared, amount, state, dof, unit)
 def test_an_array_without_a_tolerance_is_equal_and_a_case_may_have_no_bound(
     compared, monkeypatch
 ):
-    spoiler = rewrite(q=added((7, 3), 1e-6), qd=added((7, 3), 0.5))
+    spoiler = rewrite(q=shift((7, 3), 1e-6), qd=shift((7, 3), 0.5))
     monkeypatch.setattr(l04, "TOLERANCES", {"rad/s": (1.0, 0.0)})
     first, second, *others = rows(compared(spoiler), "Arrays")
     assert (first.state, first.allowed) == ("differs", "0 rad")

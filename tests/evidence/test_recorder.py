@@ -14,7 +14,6 @@ from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.reader import read_frames
 from robo_genesis.evidence.recorder import Recorder, RecordError
-from robo_genesis.pipeline.pages.sources import measuring_modules, running_modules
 from robo_genesis.sim import session
 from robo_genesis.sim.camera.frames import FrameError
 from robo_genesis.sim.visual_shape import FILE, Part, load_shape
@@ -117,14 +116,6 @@ def test_a_failed_write_leaves_nothing_or_the_old_bundle(
             recorder.write(spoiled, RENDERER)
         assert contents(outputs) == before
         recorder.write(experiment, RENDERER)
-
-
-def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(quiet):
-    names = "robo_genesis.sim.bodies.contacts robo_genesis.core.plotting"
-    quiet.setenv("ROBO_GENESIS_PAGE_IMPORTS", names)
-    found = running_modules("l04")
-    expected = measuring_modules("l04", ["robo_genesis.sim.bodies.contacts"])
-    assert found == expected != measuring_modules("l04", [])
 
 
 @pytest.mark.parametrize(

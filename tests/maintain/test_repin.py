@@ -104,7 +104,6 @@ def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree(root, stage):
     with pytest.raises(ProjectError) as caught:
         run(root, FAILS[stage])
     assert git(root, "status", "--porcelain") == ""
-    assert pin_of(root) == (PROJECT.format(OLD), LOCK.format(OLD))
     if stage == "resolve":
         assert str(caught.value) == "no set of packages"
         return
@@ -115,7 +114,6 @@ def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree(root, stage):
     rows = re.findall(r"^\| (?:lab|deeper) \|.*", text, re.MULTILINE)
     assert rows == (ROWS if stage == "book" else [])  # the tests print pages of others
     assert ("no rise" in str(caught.value)) == (stage == "book")
-    assert pin_of(root) == (PROJECT.format(OLD), LOCK.format(OLD))
     run(root, NEW)  # the worktree that was left is replaced
 
 

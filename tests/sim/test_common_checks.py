@@ -31,10 +31,8 @@ def test_the_times_of_every_run_are_judged(experiment):
 @pytest.mark.parametrize(
     ("names", "declared", "rendered", "found"),
     [
-        (("initial", "final"), (), True, []),
         (("initial", "final", "view"), ("view",), True, []),
         (("initial", "final", "view"), (), True, ["frames"]),
-        (("initial", "view"), ("view",), True, ["frames"]),
         ((), ("view",), False, []),
         (("view",), ("view",), False, ["frames"]),
     ],

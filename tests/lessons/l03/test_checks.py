@@ -9,7 +9,6 @@ from lessons.changed_runs import (
     case,
     copied,
     failed,
-    frames,
     metric,
     put,
     reading,
@@ -92,7 +91,7 @@ SPOILERS = {
     "near_coulomb": [moved("low_on_030", 0.5, "link_vel", 0, first=60)],
     "level_in_flight": [moved("bounce_sub20", 0.002, first=10)],
     "energy_converges": [metric("bounce_sub100", first_kept=90.0)],
-    "posture": [frames(initial="initial", final="initial"), one_pixel_changes],
+    "posture": [one_pixel_changes],
     "time_constants": [reading(study.GROUP, "h_20000us", 0.01)],
     "rebound_goes": [
         moved("h_500us_10000", 0.002, first=-20, end=-19),

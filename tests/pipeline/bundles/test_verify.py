@@ -2,7 +2,7 @@ import os
 
 import pytest
 from checkout import copy_checkout
-from spoilers import CARELESS, DAMAGED, moved, on
+from spoilers import CARELESS, DAMAGED, moved
 
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
@@ -28,11 +28,6 @@ def test_an_accepted_bundle_is_recomputed_only_when_something_changed(
         with pytest.raises(BundleRefused, match=r"^metrics: "):
             verify_bundle(folder, once=True)
     assert len(runs) == 3
-
-
-@pytest.mark.parametrize("actual", ["amdgpu", "cuda"])
-def test_a_sound_bundle_of_an_accelerator_is_accepted(folder, actual):
-    assert verify_bundle(on(actual)(folder)).backend.actual == actual
 
 
 @pytest.mark.parametrize("how", [*DAMAGED, *CARELESS])

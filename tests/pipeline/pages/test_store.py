@@ -48,18 +48,6 @@ def place(sound, tmp_path) -> Path:
     return place
 
 
-def test_a_stored_page_has_a_digest_of_each_file_and_the_time_of_each_cell(place):
-    record = json.loads((place / "page.json").read_text())
-    ran = nbformat.read(place / "executed.ipynb", as_version=4)
-    assert len(ran.metadata["cell_seconds"]) == 2
-    assert set(record["files"]) == {
-        "executed.ipynb",
-        "outputs/cpu/manifest.json",
-        "outputs/cpu/printed.json",
-        SHAPE,
-    }
-
-
 def test_the_table_of_seconds_has_what_the_last_execution_took(sound, place, tmp_path):
     pages = find_pages(sound / "book")
     written = store.write_seconds(tmp_path, tmp_path / "store", pages)

@@ -53,7 +53,7 @@ def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(
     assert of_user == {"docker": docker, "podman": podman}[engine]
 
 
-def test_a_missing_device_is_named_with_the_remedy(tmp_path, monkeypatch):
+def test_a_missing_device_is_named_with_the_remedy(monkeypatch):
     monkeypatch.setattr(rocm_container, "DEVICES", (NULL, Path("/dev/no-gpu")))
     monkeypatch.setattr(rocm_container.shutil, "which", lambda name: "/bin/docker")
     with pytest.raises(ProjectError, match=r"/dev/no-gpu missing here\. A recording "):
