@@ -14,7 +14,6 @@ from unittest.mock import Mock
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.command import TIMEOUT
 from robo_genesis.pipeline.pages.book import Page
@@ -126,20 +125,6 @@ def make_book(folder: Path, **pages: str) -> Path:
         shutil.copy(BOOK / name, book)
     shutil.copytree(BOOK / "_static", book / "_static", dirs_exist_ok=True)
     return book
-
-
-def seal(place: Path) -> None:
-    """Make the digests of an executed page's record right again."""
-    record = json.loads((place / "page.json").read_text())
-    files = [
-        path
-        for path in place.rglob("*")
-        if path.is_file() and path != place / "page.json"
-    ]
-    record["files"] = {
-        path.relative_to(place).as_posix(): sha256(path) for path in files
-    }
-    (place / "page.json").write_text(json.dumps(record))
 
 
 def contents(folder: Path) -> dict[str, bytes]:

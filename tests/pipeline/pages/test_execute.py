@@ -3,6 +3,7 @@ import signal
 import sys
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 from unittest.mock import Mock
 
 import nbformat
@@ -24,7 +25,6 @@ from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import Schedule, in_order
 from robo_genesis.pipeline.pages.kernels import CleanKernelManager
 from robo_genesis.pipeline.pages.page_folder import PageRefused
-from robo_genesis.pipeline.pages.page_run import PageRun
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import places, stored_result
 
@@ -287,43 +287,36 @@ def test_one_page_compiles_before_the_others_start(tmp_path, saved, tagged):
     assert said[1:3] == order
 
 
-def test_the_longest_pages_start_first_those_that_measure_time_last(tmp_path):
-    seconds = {"b": 20.0, "c": 30.0, "d": 2.0, "f": 90.0}
-    books = dict.fromkeys("bcd", notebook(cell("1")))
-    make_book(tmp_path, **books, f=notebook(cell("1", ":tags: [alone]\n")))
-    runs = [
-        PageRun(page, *[tmp_path] * 3, 1, {}, seconds[page.docname])
-        for page in find_pages(tmp_path / "book")
-    ]
-    assert [run.page.docname for run in in_order(runs)] == ["c", "b", "d", "f"]
+def waiting(lesson="l04", expected=1.0, alone=0):
+    """A page that waits for its start: of a lesson, for a run of so many seconds."""
+    page = SimpleNamespace(lesson=lesson, alone=alone)
+    return Mock(page=page, expected=expected, waits=False)
+
+
+def test_the_longest_pages_start_first_those_that_measure_time_last():
+    long, longer, short, alone = runs = (
+        waiting(expected=20.0),
+        waiting(expected=30.0),
+        waiting(expected=2.0),
+        waiting(expected=90.0, alone=1),
+    )
+    assert in_order(runs) == [longer, long, short, alone]
     schedule = Schedule(runs, None, 2, Mock())
     assert schedule.left == "0 of 4 pages, about 2 min left"
     schedule.ended, schedule.expected, schedule.elapsed = 1, 10.0, 100.0
     assert schedule.left == "1 of 5 pages, about 3 min left"
 
 
-def test_a_page_of_another_lesson_starts_beside_a_running_one(tmp_path):
-    """They compile the same kernels, and a process saves its own when it ends."""
-    fronts = {
-        name: f"robo_genesis: {{lesson: {lesson}, page: {name}}}\n"
-        for name, lesson in (("a", "l04"), ("b", "l04"), ("c", "l05"), ("d", "l06"))
-    }
-    books = {name: notebook(cell("1"), front=of) for name, of in fronts.items()}
-    books["d"] = notebook(cell("1", ":tags: [alone]\n"), front=fronts["d"])
-    make_book(tmp_path, **books)
-    runs = [
-        PageRun(page, *[tmp_path] * 3, 1, {}, 1.0)
-        for page in find_pages(tmp_path / "book")
-    ]
-    first, second, other, alone = runs
+def test_a_page_of_another_lesson_starts_beside_a_running_one():
+    """Pages of one compile the same kernels, and a process saves its own when it ends."""
+    first, second, other = waiting(), waiting(), waiting("l05")
+    alone = waiting("l06", alone=1)
     schedule = Schedule([second, other], None, 2, Mock())
     assert schedule.next_page() is second
     schedule.running[first] = Mock()
     assert schedule.next_page() is other
     schedule.waiting = [second, alone]
     assert schedule.next_page() is second
-    schedule.waiting = [alone]
-    assert schedule.next_page() is alone
     first.waits, schedule.waiting = True, [second, other]
     assert schedule.next_page() is second
 

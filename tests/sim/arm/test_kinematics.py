@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from robot_runs import solve
 
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.sim.arm import kinematics as of
@@ -40,21 +39,6 @@ def test_a_pose_error_leads_to_the_target():
     turn = np.append(np.cos(angle / 2), np.sin(angle / 2) * error[3:] / angle)
     reached = of.Pose(pose.position + error[:3], of.quat_multiply(turn, pose.quat))
     assert of.pose_error(DOWN, reached) == pytest.approx(np.zeros(6), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("position", "damping", "reached"),
-    [(spec.TARGET, 0.01, True), (spec.BEYOND_REACH, 0.1, False)],
-)
-def test_the_solver_reaches_a_target_within_the_limits_if_there_is_one(
-    position, damping, reached
-):
-    target, start = of.Pose(position, spec.DOWN), Q_START[:7]
-    q = solve(target, start, *spec.ARM_LIMITS, iterations=100, damping=damping)
-    error = of.pose_error(target, of.hand_pose(q))
-    assert np.isfinite(q).all()
-    assert of.accepted(q, error, 5e-4, 5e-3) == reached
-    assert of.limit_margin(q, *spec.ARM_LIMITS) >= 0
 
 
 def test_the_margin_is_that_of_the_nearest_limit():
