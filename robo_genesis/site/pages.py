@@ -1,5 +1,7 @@
 """Directives and roles of pages, whose refusals are errors of the build with page and line."""
 
+from pathlib import Path
+
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
@@ -18,6 +20,11 @@ class _OfPage:
 
 class PageDirective(_OfPage, SphinxDirective):
     """A directive; what it cannot show is an error of the build."""
+
+    @property
+    def book(self) -> Path:
+        """The folder of the pages."""
+        return Path(self.env.srcdir)
 
     def run(self) -> list[nodes.Node]:
         """Return the directive's nodes."""

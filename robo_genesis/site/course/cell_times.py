@@ -3,8 +3,6 @@
 The store of executed pages holds the seconds of each cell.
 """
 
-from pathlib import Path
-
 from docutils import nodes
 from sphinx.application import Sphinx
 
@@ -20,7 +18,7 @@ class CellTimes(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the table."""
         rows = []
-        for page in find_pages(Path(self.env.srcdir)):
+        for page in find_pages(self.book):
             seconds = cell_seconds(page.docname)
             row = {"page": f"[](/{page.docname}.md)", "code cells": len(seconds)}
             rows.append(row | {"all cells [s]": f"{sum(seconds):.1f}"})

@@ -73,19 +73,17 @@ def read_map(book: Path) -> list[Lesson]:
 class MapDirective(PageDirective):
     """Base of the directives that read the map."""
 
-    def lessons(self) -> list[Lesson]:
-        """Return the lessons.
+    def published(self) -> list[Lesson]:
+        """Return the published lessons.
 
         Raises:
             ValueError: the map is not valid, or the book lacks one of its pages.
         """
-        book = Path(self.env.srcdir)
-        self.env.note_dependency(str(book / FILE))
+        self.env.note_dependency(str(self.book / FILE))
         self.env.note_reread()  # it shows titles, times and pictures of other pages
-        lessons = read_map(book)
-        gone = [x.page for x in lessons if x.page and x.page not in self.env.found_docs]
-        if gone:
-            raise ValueError(f"the book has no page {', '.join(gone)}.")
+        lessons = [lesson for lesson in read_map(self.book) if lesson.page]
+        if gone := {str(lesson.page) for lesson in lessons} - self.env.found_docs:
+            raise ValueError(f"the book has no page {', '.join(sorted(gone))}.")
         return lessons
 
 
@@ -97,7 +95,7 @@ class Featured(MapDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the content; without the lesson it is not even parsed."""
-        published = [lesson.id for lesson in self.lessons() if lesson.page]
+        published = [lesson.id for lesson in self.published()]
         return self.parse_content_to_nodes() if self.arguments[0] in published else []
 
 
@@ -131,7 +129,7 @@ class CourseMap(MapDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the place of the map."""
-        self.lessons()
+        self.published()
         return [late(make=partial(cards, "brief" in self.options))]
 
 

@@ -29,8 +29,7 @@ class Reference(MapDirective):
                 ids=[lesson.id.lower()],
                 **{LESSON: lesson.id.lower()},
             )
-            for lesson in self.lessons()
-            if lesson.page
+            for lesson in self.published()
         ]
 
 

@@ -129,9 +129,8 @@ def size(notebook: NotebookNode, file: Path) -> tuple[Minutes, dict[str, int]]:
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
     visible = [
         cell.source
-        for cell in notebook.cells
-        if cell.cell_type == "code"
-        and not HIDDEN.intersection(cell.metadata.get("tags", ()))
+        for cell in code_cells(notebook)
+        if not HIDDEN.intersection(cell.metadata.get("tags", ()))
     ]
     lines = [sum(map(bool, map(str.strip, code.splitlines()))) for code in visible]
     functions = sum(STUB in code for code in visible)

@@ -34,7 +34,7 @@ class Evidence(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return one panel per backend with a run."""
-        runs = recorded_runs(Path(self.env.srcdir), self.arguments[0])
+        runs = recorded_runs(self.book, self.arguments[0])
         return [self.panel(run) for run in runs if run.status.state != "missing"]
 
     def panel(self, run: PageRun) -> nodes.Node:
@@ -50,7 +50,7 @@ class Evidence(PageDirective):
                 picture = image(env, file, content, alt), nodes.caption("", caption)
                 panel += nodes.figure("", *picture, ids=[Path(file).stem])
             panel += replay_block(self, run.key, run.folder)
-            here = page_run(Path(env.srcdir), run.lesson)
+            here = page_run(self.book, run.lesson)
             compared = compare(here.folder, run.folder)
             found = self.filled("comparison.md", compared=compared)
             panel += nodes.container("", *found, evidence_runs=(here.key, run.key))

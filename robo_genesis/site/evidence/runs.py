@@ -16,7 +16,6 @@ from typing import Any
 from docutils import nodes
 from markupsafe import Markup
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.markup import filled
@@ -142,7 +141,7 @@ class LessonStatus(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the fold; inside it is one line per backend."""
-        statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
+        statuses = lesson_statuses(self.book, self.arguments[0])
         known = [status for status in statuses if status.state != "missing"] or statuses
         return [status_list(known, line=known)]
 
@@ -152,12 +151,10 @@ class CourseStatus(MapDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return a title and a list for each lesson."""
-        book, lessons = Path(self.env.srcdir), self.lessons()
         link = partial(self.env.app.builder.get_relative_uri, self.env.docname)
         return [
-            status_list(lesson_statuses(book, x.id.lower()), lesson=x, link=link)
-            for x in lessons
-            if x.page
+            status_list(lesson_statuses(self.book, x.id.lower()), lesson=x, link=link)
+            for x in self.published()
         ]
 
 
@@ -167,14 +164,14 @@ def status_list(statuses: Iterable[Status], **values: Any) -> nodes.Node:
     return html(filled(template, statuses=statuses, badge=badge, **values))
 
 
-class CourseMeasured(SphinxDirective):
+class CourseMeasured(PageDirective):
     """Show with which engine and when the runs of this build were measured, then its content."""
 
     has_content = True
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return the paragraph."""
-        line = measured_line(all_runs(Path(self.env.srcdir)).values())
+        line = measured_line(all_runs(self.book).values())
         text = "\n".join(["{.course-measured}", line, *self.content])
         return self.parse_text_to_nodes(text)
 

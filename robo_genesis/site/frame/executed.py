@@ -8,7 +8,7 @@ from nbformat import NotebookNode
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
-from robo_genesis.pipeline.pages.book import code_of
+from robo_genesis.pipeline.pages.book import code_cells, code_of
 from robo_genesis.pipeline.pages.outputs import shown_outputs
 from robo_genesis.pipeline.pages.page_index import executed_notebook
 
@@ -41,12 +41,10 @@ class ExecutedPage(NotebookClientBase):
             raise ExtensionError(
                 f"{self.path} is not executed, and Sphinx executes nothing. Build with `make book`."
             )
-        executed_cells = iter(executed.cells)
-        for cell in self.notebook.cells:
-            if cell.cell_type == "code":
-                source = next(executed_cells)
-                cell.outputs = [*map(without_stack, source.outputs)]
-                cell.execution_count = source.execution_count
+        cells = zip(code_cells(self.notebook), executed.cells, strict=True)
+        for cell, ran in cells:
+            cell.outputs = [*map(without_stack, ran.outputs)]
+            cell.execution_count = ran.execution_count
         RECOMPUTED[page.as_posix()] = {
             index
             for index, cell in enumerate(self.notebook.cells)

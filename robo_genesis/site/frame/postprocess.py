@@ -143,7 +143,7 @@ def choose_theme(page: BeautifulSoup) -> None:
     that state: the page would change its colours and move when the deferred scripts
     run. Without scripts the page is light.
     """
-    for script in page.head.find_all("script", src=False) if page.head else ():
+    for script in page.select("head script:not([src])"):
         if "dataset.theme" in script.get_text():
             script.append(CHOOSE_THEME)
             script.find_parents("html")[0]["data-theme"] = "light"

@@ -30,7 +30,7 @@ class TakeawaysBox(PageDirective):
 
     def shown(self) -> list[nodes.Node]:
         """Return the box and the list."""
-        pages = find_pages(Path(self.env.srcdir))
+        pages = find_pages(self.book)
         page = next(page for page in pages if page.docname == self.env.docname)
         files = write_takeaways(page, folder(self.env), self.config)
         repository = self.config.course_repository

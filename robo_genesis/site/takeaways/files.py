@@ -31,7 +31,7 @@ from robo_genesis.pipeline.command import output_of
 from robo_genesis.pipeline.html.address import site_address
 from robo_genesis.pipeline.html.archive import sums
 from robo_genesis.pipeline.pages import page_index
-from robo_genesis.pipeline.pages.book import Page
+from robo_genesis.pipeline.pages.book import Page, code_cells
 from robo_genesis.pipeline.pages.sources import PACKAGE
 from robo_genesis.site.evidence.values import measured
 from robo_genesis.site.text.solutions import answer_left_out
@@ -178,8 +178,8 @@ def _arrays(run: Path, folder: Path) -> Iterator[Path]:
 
 def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]:
     """Write each figure of a cell as SVG, under the name that the page gives it."""
-    cells = [cell for cell in page.notebook.cells if cell.cell_type == "code"]
-    for number, (cell, ran) in enumerate(zip(cells, executed.cells, strict=True), 1):
+    pairs = zip(code_cells(page.notebook), executed.cells, strict=True)
+    for number, (cell, ran) in enumerate(pairs, 1):
         for output in ran.outputs:
             drawn = output.get("data", {}).get("image/svg+xml")
             if drawn:

@@ -106,9 +106,9 @@ def executed_notebook(
         origin: Markdown of the first cell.
         writer: of its prose; measured values are those of this run.
     """
-    ran = [cell for cell in executed.cells if cell.cell_type == "code"]
     left_out = {SITE_ONLY} if solutions_shown() else {SITE_ONLY, SOLUTION}
-    return _notebook([new_markdown_cell(origin), *_cells(page, writer, left_out, ran)])
+    cells = _cells(page, writer, left_out, executed.cells)
+    return _notebook([new_markdown_cell(origin), *cells])
 
 
 def _cells(

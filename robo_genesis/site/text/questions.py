@@ -114,11 +114,6 @@ def asked(**facts: Any) -> question:
     return question(opening=opening, closing=closing)
 
 
-def identifier(text: str) -> str:
-    """Return the name of a question by its words: it stays when the question moves."""
-    return f"question-{json_digest(text)[:8]}"
-
-
 def split_causes(
     content: Sequence[str], keys: Sequence[str]
 ) -> tuple[str, dict[str, str]]:
@@ -160,7 +155,8 @@ class Question(PageDirective):
         if "explained" in self.options and not here:
             return []
         text, facts = self.ask()
-        name = identifier(text)
+        # By its words, so that it stays when the question moves.
+        name = f"question-{json_digest(text)[:8]}"
         node = asked(name=name, **facts)
         node["kinds"] = [kind for kind in (*KINDS, "absent") if kind in self.options]
         self.set_source_info(node)
