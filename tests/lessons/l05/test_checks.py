@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.changed_runs import copied, put, reading, shift, trace
+from lessons.exercise_cells import with_mistake
 from lessons.experiments import require_spoilers
 from robot_runs import LINKS, answer, driven
 
 from robo_genesis.core.checks import evaluate
-from robo_genesis.lessons.l05 import checks, spec, study
+from robo_genesis.lessons.l05 import checks, exercises, spec, study
 from robo_genesis.lessons.l05.pages import LECTURE
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
@@ -73,6 +74,11 @@ CHANGES = [
 
 def test_each_check_fails_when_its_input_changes(reaches):
     require_spoilers(reaches, CHANGES)
+
+
+def test_a_quaternion_of_the_other_sign_is_right(reaches):
+    chain = with_mistake("l05", "chain", "return at, turn", "return at, -turn")
+    assert exercises.forward(chain, reaches.traces["baseline"]).passed
 
 
 def test_the_lecture_compares_solver_steps_and_force_limits(reaches):
