@@ -62,7 +62,7 @@ document.addEventListener("DOMContentLoaded", () => {
       const now = { ...line(run, mark), chosen: true };
       const axes = pair.filter(Boolean).map((cell) => cell.map.axes[key]);
       draw(svg, {
-        ...axes[0], title, height: HEIGHT, end: until,
+        ...axes[0], title, width: plots.clientWidth, height: HEIGHT, end: until,
         curves: last ? [{ ...line(last, "ghost"), name: "last run" }, now] : [now],
         low: Math.min(...axes.map(({ low }) => low)), high: Math.max(...axes.map(({ high }) => high)),
       });
@@ -94,7 +94,6 @@ document.addEventListener("DOMContentLoaded", () => {
     button.addEventListener("click", async () => {
       button.hidden = true;
       await scene.open("robot", "The map and its values do not need it.");
-      button.hidden = Boolean(scene.viewer);
       pose(chosen);
     });
     return pose;
@@ -124,23 +123,19 @@ document.addEventListener("DOMContentLoaded", () => {
       const inside = table.contains(document.activeElement);
       for (const cell of cellsOf(open)) {
         const { place, name, tag, state, texts, numbers } = cell;
-        const before = cell === last;
         place.textContent = texts[k];
         if (tag) place.prepend(add(place, "b", {}, tag), " ");
         const observed = numbers[k] === null ? " not observed" : "";
         const spoken = `${place.textContent} ${label}${observed}: ${name}`;
-        place.setAttribute("aria-label", before ? `${spoken}, the last run` : spoken);
+        place.setAttribute("aria-label", cell === last ? `${spoken}, the last run` : spoken);
         place.classList.toggle("refused", state === "refused");
-        place.classList.toggle("last", before);
+        place.classList.toggle("last", cell === last);
         place.style.setProperty("--share", ((numbers[k] ?? low) - low) / (high - low || 1));
         place.setAttribute("aria-selected", cell === chosen);
         place.tabIndex = cell === chosen ? 0 : -1;
       }
-      const text = cellsOf(open).map(({ place }) => place.textContent).join("");
-      table.caption.textContent = `${open.caption} Numbers: ${label}.`;
-      for (const [sign, note] of Object.entries(data.notes)) {
-        if (text.includes(sign)) table.caption.append(` ${note}`);
-      }
+      const about = [open.caption, `Numbers: ${label}.`, ...Object.values(data.notes)];
+      table.caption.textContent = about.join(" ");
       if (inside) chosen.place.focus();
     }
 
@@ -186,12 +181,6 @@ document.addEventListener("DOMContentLoaded", () => {
       .map((selector) => root.querySelector(selector));
     const centre = pose.map((line) => line[3]);
 
-    /* From the camera through the middle of a pixel, with 1 along the optical axis. */
-    function ray(u, v) {
-      const seen = [(u + 0.5 - K[0][2]) / K[0][0], (v + 0.5 - K[1][2]) / K[1][1], 1];
-      return pose.map((line) => dot(line.slice(0, 3), seen));
-    }
-
     /* The depth in closed form, NaN where the ray misses, undefined for other shapes. */
     function closedForm(number, direction) {
       if (number in planes) return (planes[number] - centre[2]) / direction[2];
@@ -207,7 +196,9 @@ document.addEventListener("DOMContentLoaded", () => {
       const number = numbers[at];
       const depth = (65536 * depths[at] + 256 * depths[at + 1] + depths[at + 2]) * unit;
       if (number === 0) return [names[0], `${write(depth, 3)} m: no surface`, "–", "–", "–"];
-      const direction = ray(u, v);
+      // From the camera through the middle of a pixel, with 1 along the optical axis.
+      const ray = [(u + 0.5 - K[0][2]) / K[0][0], (v + 0.5 - K[1][2]) / K[1][1], 1];
+      const direction = pose.map((line) => dot(line.slice(0, 3), ray));
       const point = centre.map((value, k) => write(value + depth * direction[k], 4)).join(", ");
       const expected = closedForm(number, direction);
       const found = [names[number], `${write(depth, 4)} m`, `${point} m`];

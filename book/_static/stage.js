@@ -11,13 +11,12 @@ globalThis.Scene = class Scene {
     this.root = root;
   }
 
-  /* Adds a script once for all replays of the page; a script that failed is added again. */
+  /* Adds a script once for all replays of the page. */
   static script(src) {
     Scene.requested[src] ??= new Promise((onload, onerror) => {
       const element = document.createElement("script");
       document.head.append(Object.assign(element, { src, onload, onerror }));
     });
-    Scene.requested[src].catch(() => delete Scene.requested[src]);
     return Scene.requested[src];
   }
 
@@ -92,18 +91,14 @@ globalThis.Scene = class Scene {
       const near = button("Close-up", () => {
         this.near = !this.near;
         near.setAttribute("aria-pressed", this.near);
-        this.aim(this.near ? "0m 0m 0m" : this.root.dataset.target, this.near ? closeUp : "auto");
+        this.viewer.cameraTarget = this.near ? "0m 0m 0m" : this.root.dataset.target;
+        this.viewer.fieldOfView = this.near ? closeUp : "auto";
+        this.viewer.jumpCameraToGoal();
         this.pose(...this.posed);
       }, { "aria-pressed": false });
     }
     button("−", () => this.viewer.zoom(-10), { "aria-label": "Zoom out" });
     button("+", () => this.viewer.zoom(10), { "aria-label": "Zoom in" });
-  }
-
-  /* Points the camera at once at a place, with an angle of view. */
-  aim(target, angle) {
-    Object.assign(this.viewer, { cameraTarget: target, fieldOfView: angle });
-    this.viewer.jumpCameraToGoal();
   }
 
   /* Shows a share of the copies at the target, whose material alone is translucent. */
