@@ -2,8 +2,7 @@
    the chosen posture in 3D. The page contains all data as JSON. */
 "use strict";
 
-/* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
-document.addEventListener("DOMContentLoaded", () => {
+document.addEventListener("DOMContentLoaded", () => { // as in replay.js
   const KEYS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
   const { add, draw, write } = globalThis.timePlot;
   const HEIGHT = 210;
@@ -134,8 +133,7 @@ document.addEventListener("DOMContentLoaded", () => {
         place.setAttribute("aria-selected", cell === chosen);
         place.tabIndex = cell === chosen ? 0 : -1;
       }
-      const about = [open.caption, `Numbers: ${label}.`, ...Object.values(data.notes)];
-      table.caption.textContent = about.join(" ");
+      table.caption.textContent = [open.caption, `Numbers: ${label}.`, ...Object.values(data.notes)].join(" ");
       if (inside) chosen.place.focus();
     }
 
@@ -153,8 +151,8 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     which.addEventListener("change", () => {
-      const cells = cellsOf(data.maps[which.value]);
-      choose(cells[cellsOf(open).indexOf(chosen)] ?? cells[0]); // the same place
+      const cells = cellsOf(data.maps[which.value]); // the same place, if it has one
+      choose(cells[cellsOf(open).indexOf(chosen)] ?? cells[0]);
     });
     measure.addEventListener("change", writeMap);
     show();
@@ -162,11 +160,9 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* Bytes of a PNG, four for each pixel. */
   async function decode(text) {
-    const image = new Image();
-    image.src = `data:image/png;base64,${text}`;
+    const image = Object.assign(new Image(), { src: `data:image/png;base64,${text}` });
     await image.decode();
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const brush = canvas.getContext("2d", { willReadFrequently: true });
+    const brush = new OffscreenCanvas(image.width, image.height).getContext("2d");
     brush.drawImage(image, 0, 0);
     return brush.getImageData(0, 0, image.width, image.height).data;
   }

@@ -32,12 +32,9 @@ globalThis.timePlot = (() => {
     });
   }
 
-  /* How far a line is from a height, where it is below or above a name: 0 if it crosses the height. */
-  const distance = (points, [from, to], height) => Math.min(...points.map(([x, y], k) => {
-    const [before, beside] = points[k - 1] ?? [x, y];
-    if (x < from || before > to) return Infinity;
-    return Math.max(Math.min(y, beside) - height, height - Math.max(y, beside), 0);
-  }));
+  /* How far the points of a line are from a height, where they are below or above a name. */
+  const distance = (points, [from, to], height) => Math.min(...points
+    .filter(([x]) => x >= from && x <= to).map(([, y]) => Math.abs(y - height)));
 
   /* Writes the name of a curve above or below it, where the other lines are farthest, and adds it to
      them; returns the text and its sample. Where all are close, no name would say which is which. */
@@ -61,9 +58,8 @@ globalThis.timePlot = (() => {
   }
 
   /* Draws a plot from the start; all lengths are CSS pixels.
-     curves: [{name, times, values, mark, chosen}], `mark` a class of palette.css, `name` written where the
-     curve is farthest from all others, or not written; levels: [{value, mark}];
-     ticks: [{value, label}]; low, high: ends of the value axis; end: of time [s], which begins at 0.
+     curves: [{name, times, values, mark, chosen}], `mark` a class of palette.css, `name` not always written;
+     levels: [{value, mark}]; ticks: [{value, label}]; low, high: ends of the value axis; end: of time [s].
      Returns x and y, from time and value to pixels, share, from pixels to a share of the time, and grow,
      which leaves of the curves what lies before a sample and at it. */
   function draw(svg, { title, width, height, curves, levels, ticks, low, high, end }) {
@@ -98,9 +94,8 @@ globalThis.timePlot = (() => {
     });
     const step = Math.ceil(placed[0].points.length / TRIED);
     const taken = placed.map(({ points }) => points.filter((_, k) => k % step === 0));
-    const box = [x(0), x(end), EDGE.top, floor];
     const texts = placed.flatMap(({ name, mark }, k) => (
-      name ? writeName(svg, { name, mark, points: taken[k] }, taken, box) : []
+      name ? writeName(svg, { name, mark, points: taken[k] }, taken, [x(0), x(end), EDGE.top, floor]) : []
     ));
     function grow(sample) {
       for (const { line, points } of lines) {

@@ -127,7 +127,6 @@ document.addEventListener("DOMContentLoaded", () => {
       nameCase();
       const width = places[0].clientWidth;
       if (!width) return showSample(); // they are hidden, and drawn when they show
-      const { levels } = run();
       cursors = channels.map(({ name, unit, top }, k) => {
         const curves = Object.entries(runs).map(([one, { time, values, mark }]) => ({
           times: time.slice(0, last + 1), values: values[k].slice(0, last + 1), mark,
@@ -136,7 +135,7 @@ document.addEventListener("DOMContentLoaded", () => {
         const title = `${name[0].toUpperCase()}${name.slice(1)} [${unit}]`;
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
         svgs[k].setAttribute("aria-label", about);
-        const drawn = levels.filter(({ channel }) => channel === name);
+        const drawn = run().levels.filter(({ channel }) => channel === name);
         return draw(svgs[k], { width, curves, levels: drawn, title, top, pick });
       });
       showSample();
