@@ -12,8 +12,7 @@ document.addEventListener("change", ({ target, detail }) => {
     const [value, tolerance] = [question.dataset.value, question.dataset.tolerance].map(Number);
     const near = (factor) => Math.abs(target.valueAsNumber - factor * value) <= factor * tolerance;
     const wrong = texts.map((text) => text.dataset.key).find((k) => near(Number(k.slice(1))));
-    const side = target.valueAsNumber < value ? "low" : "high";
-    const key = near(1) ? "right" : wrong ?? side;
+    const key = near(1) ? "right" : wrong ?? (target.valueAsNumber < value ? "low" : "high");
     shown = target.value ? texts.find((text) => text.dataset.key === key) : null;
     for (const text of texts) text.classList.toggle("shown", text === shown);
   }

@@ -2,8 +2,7 @@
    the chosen posture in 3D. The page contains all data as JSON. */
 "use strict";
 
-/* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
-document.addEventListener("DOMContentLoaded", () => {
+document.addEventListener("DOMContentLoaded", () => { // as in replay.js
   const KEYS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
   const { add, draw, write } = globalThis.timePlot;
   const HEIGHT = 210;
@@ -62,7 +61,7 @@ document.addEventListener("DOMContentLoaded", () => {
       const now = { ...line(run, mark), chosen: true };
       const axes = pair.filter(Boolean).map((cell) => cell.map.axes[key]);
       draw(svg, {
-        ...axes[0], title, height: HEIGHT, end: until,
+        ...axes[0], title, width: plots.clientWidth, height: HEIGHT, end: until,
         curves: last ? [{ ...line(last, "ghost"), name: "last run" }, now] : [now],
         low: Math.min(...axes.map(({ low }) => low)), high: Math.max(...axes.map(({ high }) => high)),
       });
@@ -94,7 +93,6 @@ document.addEventListener("DOMContentLoaded", () => {
     button.addEventListener("click", async () => {
       button.hidden = true;
       await scene.open("robot", "The map and its values do not need it.");
-      button.hidden = Boolean(scene.viewer);
       pose(chosen);
     });
     return pose;
@@ -124,23 +122,18 @@ document.addEventListener("DOMContentLoaded", () => {
       const inside = table.contains(document.activeElement);
       for (const cell of cellsOf(open)) {
         const { place, name, tag, state, texts, numbers } = cell;
-        const before = cell === last;
         place.textContent = texts[k];
         if (tag) place.prepend(add(place, "b", {}, tag), " ");
         const observed = numbers[k] === null ? " not observed" : "";
         const spoken = `${place.textContent} ${label}${observed}: ${name}`;
-        place.setAttribute("aria-label", before ? `${spoken}, the last run` : spoken);
+        place.setAttribute("aria-label", cell === last ? `${spoken}, the last run` : spoken);
         place.classList.toggle("refused", state === "refused");
-        place.classList.toggle("last", before);
+        place.classList.toggle("last", cell === last);
         place.style.setProperty("--share", ((numbers[k] ?? low) - low) / (high - low || 1));
         place.setAttribute("aria-selected", cell === chosen);
         place.tabIndex = cell === chosen ? 0 : -1;
       }
-      const text = cellsOf(open).map(({ place }) => place.textContent).join("");
-      table.caption.textContent = `${open.caption} Numbers: ${label}.`;
-      for (const [sign, note] of Object.entries(data.notes)) {
-        if (text.includes(sign)) table.caption.append(` ${note}`);
-      }
+      table.caption.textContent = [open.caption, `Numbers: ${label}.`, ...Object.values(data.notes)].join(" ");
       if (inside) chosen.place.focus();
     }
 
@@ -158,8 +151,8 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     which.addEventListener("change", () => {
-      const cells = cellsOf(data.maps[which.value]);
-      choose(cells[cellsOf(open).indexOf(chosen)] ?? cells[0]); // the same place
+      const cells = cellsOf(data.maps[which.value]); // the same place, if it has one
+      choose(cells[cellsOf(open).indexOf(chosen)] ?? cells[0]);
     });
     measure.addEventListener("change", writeMap);
     show();
@@ -167,11 +160,9 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* Bytes of a PNG, four for each pixel. */
   async function decode(text) {
-    const image = new Image();
-    image.src = `data:image/png;base64,${text}`;
+    const image = Object.assign(new Image(), { src: `data:image/png;base64,${text}` });
     await image.decode();
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const brush = canvas.getContext("2d", { willReadFrequently: true });
+    const brush = new OffscreenCanvas(image.width, image.height).getContext("2d");
     brush.drawImage(image, 0, 0);
     return brush.getImageData(0, 0, image.width, image.height).data;
   }
@@ -185,12 +176,6 @@ document.addEventListener("DOMContentLoaded", () => {
     const [column, row, stage, cross] = ["[name=column]", "[name=row]", ".stage", ".cross"]
       .map((selector) => root.querySelector(selector));
     const centre = pose.map((line) => line[3]);
-
-    /* From the camera through the middle of a pixel, with 1 along the optical axis. */
-    function ray(u, v) {
-      const seen = [(u + 0.5 - K[0][2]) / K[0][0], (v + 0.5 - K[1][2]) / K[1][1], 1];
-      return pose.map((line) => dot(line.slice(0, 3), seen));
-    }
 
     /* The depth in closed form, NaN where the ray misses, undefined for other shapes. */
     function closedForm(number, direction) {
@@ -207,7 +192,9 @@ document.addEventListener("DOMContentLoaded", () => {
       const number = numbers[at];
       const depth = (65536 * depths[at] + 256 * depths[at + 1] + depths[at + 2]) * unit;
       if (number === 0) return [names[0], `${write(depth, 3)} m: no surface`, "–", "–", "–"];
-      const direction = ray(u, v);
+      // From the camera through the middle of a pixel, with 1 along the optical axis.
+      const ray = [(u + 0.5 - K[0][2]) / K[0][0], (v + 0.5 - K[1][2]) / K[1][1], 1];
+      const direction = pose.map((line) => dot(line.slice(0, 3), ray));
       const point = centre.map((value, k) => write(value + depth * direction[k], 4)).join(", ");
       const expected = closedForm(number, direction);
       const found = [names[number], `${write(depth, 4)} m`, `${point} m`];

@@ -55,17 +55,14 @@ document.addEventListener("DOMContentLoaded", () => {
     keep(question.id, answer === "" ? undefined : answer);
   });
 
-  /* Marks of finished and begun pages in the menu and in the map. */
+  /* Marks of finished pages in the menu and in the map. */
   function mark() {
     for (const old of document.querySelectorAll(".progress-mark")) old.remove();
     const { pages = {} } = read();
     for (const link of document.querySelectorAll(".bd-links a, .lesson-list a, .course-map .time a")) {
-      const of = pages[nameOf(link.href)];
-      if (!of) continue;
-      const [name, sign] = of.finished ? ["finished", " ✓"] : ["begun", " ◐"];
-      const sight = make("span", { className: `progress-mark ${name}`, role: "img", ariaLabel: name, title: name });
-      sight.textContent = sign;
-      link.append(sight);
+      if (!pages[nameOf(link.href)]?.finished) continue;
+      const names = { role: "img", ariaLabel: "finished", title: "finished" };
+      link.append(make("span", { className: "progress-mark", textContent: " ✓", ...names }));
     }
   }
   mark();
@@ -87,38 +84,23 @@ document.addEventListener("DOMContentLoaded", () => {
     place.append("Continue where you left off: ", go, ". Answers and finished pages are kept in this browser alone. ", away);
   }
 
-  /* The heading at the top of the window. */
-  const here = () => {
-    const headings = [...article.querySelectorAll("h1, h2, h3")].filter((one) => one.getClientRects().length);
-    return headings.findLast((one) => one.getBoundingClientRect().top < 200) ?? headings[0];
-  };
-
-  /* The link to the form for feedback names it. */
-  const report = document.querySelector(".report a");
-  const address = report?.href; // it ends with the page
-  report?.addEventListener("click", () => {
-    report.href = address + encodeURIComponent(`, "${here().firstChild.textContent}"`);
-  });
-
   /* A page of a lesson: it is the last one, at the heading where it was left, and its end offers to mark it. */
   if (!article || !keeps || !page.startsWith("lessons/")) return;
   const title = article.querySelector("h1").firstChild.textContent;
-  keep("opened", true);
-  mark();
   if (last?.page !== page) write({ ...read(), last: { page, title } });
   document.addEventListener("visibilitychange", () => {
-    if (document.visibilityState === "visible" || !read().pages) return; // or all was forgotten
-    const heading = here();
-    const at = heading.matches("h1") ? {} : {
-      hash: heading.querySelector(".headerlink")?.hash, heading: heading.firstChild.textContent,
-    };
-    write({ ...read(), last: { page, title, ...at } });
+    if (document.visibilityState === "visible" || !read().last) return; // or all was forgotten
+    const heading = [...article.querySelectorAll("h2, h3")].filter((one) => one.checkVisibility())
+      .findLast((one) => one.getBoundingClientRect().top < 200); // the one at the top of the window
+    const hash = heading?.querySelector(".headerlink")?.hash;
+    write({ ...read(), last: { page, title, hash, heading: heading?.firstChild.textContent } });
   });
-  const box = make("input", { type: "checkbox", id: "finished", checked: kept("finished") });
+  const box = make("input", { type: "checkbox", checked: kept("finished") });
   box.addEventListener("change", () => {
     keep("finished", box.checked || undefined);
     mark();
   });
-  const label = make("label", { htmlFor: box.id, textContent: " I have finished this page" });
-  article.querySelector(".finish-page").append(box, label);
+  const label = make("label");
+  label.append(box, " I have finished this page");
+  article.querySelector(".finish-page").append(label);
 });

@@ -4,8 +4,8 @@
 globalThis.timePlot = (() => {
   const SVG = "http://www.w3.org/2000/svg";
   const EDGE = { left: 52, right: 18, top: 24, bottom: 22 };
-  const APART = 12; // from a name to the nearest other curve, at least [px]
-  const TRIED = 60; // places for a name along a curve
+  const APART = 12; // from a name to the nearest other line, at least [px]
+  const TRIED = 60; // points of a curve that are looked at for a name's place, at most
 
   /* Adds an element with attributes and a text; in an SVG it is one of its own. */
   function add(parent, name, attributes = {}, text = "") {
@@ -32,48 +32,37 @@ globalThis.timePlot = (() => {
     });
   }
 
-  /* How far a curve is from a height, where it is below or above a name: 0 if it crosses the height. */
-  const distance = (points, [from, to], height) => Math.min(...points.map(([x, y], k) => {
-    const [before, beside] = points[k - 1] ?? [x, y];
-    if (x < from || before > to) return Infinity;
-    return Math.max(Math.min(y, beside) - height, height - Math.max(y, beside), 0);
-  }));
+  /* How far the points of a line are from a height, where they are below or above a name. */
+  const distance = (points, [from, to], height) => Math.min(...points
+    .filter(([x]) => x >= from && x <= to).map(([, y]) => Math.abs(y - height)));
 
-  /* Writes the name of a curve beside it, where other curves and names are farthest, and if there is
-     room not on a level; returns the text and its sample. All these are lines of points, and the name's
-     is added to `names`. Where all curves lie close together, no name would say which is which. */
-  function writeName(svg, { name, mark, points }, others, names, levels, [left, right, top, bottom]) {
+  /* Writes the name of a curve above or below it, where the other lines are farthest, and adds it to
+     them; returns the text and its sample. Where all are close, no name would say which is which. */
+  function writeName(svg, { name, mark, points }, lines, [left, right, top, bottom]) {
     const half = 3.8 * name.length; // half of its width
-    let best = { weight: 0 };
-    for (let at = 0; at < points.length; at += Math.ceil(points.length / TRIED)) {
-      const [x, y] = points[at];
-      if (y < top || others.some((other) => Math.abs(other[at][1] - y) < 6)) continue;
-      for (const [dx, dy] of [[0, -9], [0, 11], [half + 6, 0], [-half - 6, 0]]) {
-        const [middle, height] = [x + dx, y + dy];
-        const span = [middle - half, middle + half];
+    const others = lines.filter((line) => line !== points);
+    let best = { gap: APART };
+    for (const [at, [x, y]] of points.entries()) {
+      const span = [x - half, x + half];
+      for (const height of [y - 9, y + 11]) {
         if (span[0] < left || span[1] > right || height < top + 5 || height > bottom - 5) continue;
-        const room = (lines, most) => Math.min(most, ...lines.map((one) => distance(one, span, height)));
-        const gap = room([...others, ...names], 30);
-        const own = Math.min(9, distance(points, dx ? [span[0] + 3, span[1] - 3] : span, height));
-        if (gap < APART || own < 7) continue;
-        const weight = gap + own + room(levels, 9);
-        if (weight > best.weight) best = { weight, middle, height, span, at };
+        if (distance(points, span, height) < 6) continue;
+        const gap = Math.min(...others.map((line) => distance(line, span, height)));
+        if (gap > best.gap) best = { gap, x, height, span, at };
       }
     }
-    if (!best.weight) return [];
-    names.push(best.span.map((end) => [end, best.height]));
-    const place = { x: best.middle, y: best.height + 4, "text-anchor": "middle", class: `name ${mark}` };
+    if (!best.span) return [];
+    lines.push(best.span.map((end) => [end, best.height]));
+    const place = { x: best.x, y: best.height + 4, "text-anchor": "middle", class: `name ${mark}` };
     return [{ text: add(svg, "text", place, name), at: best.at }];
   }
 
   /* Draws a plot from the start; all lengths are CSS pixels.
-     curves: [{name, times, values, mark, chosen}], `mark` a class of palette.css, `name` written where the
-     curve is farthest from all others, or not written; levels: [{value, mark}];
-     ticks: [{value, label}]; low, high: ends of the value axis; end: of time [s], which begins at 0.
+     curves: [{name, times, values, mark, chosen}], `mark` a class of palette.css, `name` not always written;
+     levels: [{value, mark}]; ticks: [{value, label}]; low, high: ends of the value axis; end: of time [s].
      Returns x and y, from time and value to pixels, share, from pixels to a share of the time, and grow,
      which leaves of the curves what lies before a sample and at it. */
-  function draw(svg, { title, height, curves, levels, ticks, low, high, end }) {
-    const width = svg.parentElement.clientWidth;
+  function draw(svg, { title, width, height, curves, levels, ticks, low, high, end }) {
     const across = width - EDGE.left - EDGE.right;
     const floor = height - EDGE.bottom;
     const x = (time) => EDGE.left + (time / end) * across;
@@ -103,17 +92,16 @@ globalThis.timePlot = (() => {
       const line = { class: `curve ${mark}${chosen ? " chosen" : ""}`, points: pairs.join(" ") };
       return { line: add(svg, "polyline", line), points: pairs };
     });
-    const names = [];
-    const heights = levels.map(({ value }) => [[x(0), y(value)], [x(end), y(value)]]);
-    const texts = placed.filter(({ name }) => name).flatMap((curve) => {
-      const others = placed.filter((one) => one !== curve).map(({ points }) => points);
-      return writeName(svg, curve, others, names, heights, [x(0), x(end), EDGE.top, floor]);
-    });
+    const step = Math.ceil(placed[0].points.length / TRIED);
+    const taken = placed.map(({ points }) => points.filter((_, k) => k % step === 0));
+    const texts = placed.flatMap(({ name, mark }, k) => (
+      name ? writeName(svg, { name, mark, points: taken[k] }, taken, [x(0), x(end), EDGE.top, floor]) : []
+    ));
     function grow(sample) {
       for (const { line, points } of lines) {
         line.setAttribute("points", points.slice(0, sample + 1).join(" "));
       }
-      for (const { text, at } of texts) text.style.display = at > sample ? "none" : "";
+      for (const { text, at } of texts) text.style.display = at * step > sample ? "none" : "";
     }
     return { x, y, floor, top: EDGE.top, share: (pixels) => (pixels - EDGE.left) / across, grow };
   }

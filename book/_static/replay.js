@@ -29,7 +29,7 @@ document.addEventListener("DOMContentLoaded", () => {
 
   /* Draws one plot of all cases; returns the function that moves its cursor, and shows the part of
      the curves that was seen. */
-  function draw(svg, { curves, levels, title, top: highest, pick }) {
+  function draw(svg, { width, curves, levels, title, top: highest, pick }) {
     const drawn = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
     const all = [...curves.flatMap((c) => c.values), ...drawn.map((l) => l.value)]
       .filter((value) => value <= (highest ?? Infinity));
@@ -37,9 +37,8 @@ document.addEventListener("DOMContentLoaded", () => {
     const margin = 0.08 * (most - least || 1); // a constant value also needs a range
     const { times, values, mark } = curves.find(({ chosen }) => chosen);
     const { x, y, floor, top, share, grow } = globalThis.timePlot.draw(svg, {
-      title, curves, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
-      end: times.at(-1),
-      ticks: ticksOf(least - margin, most + margin),
+      width, title, curves, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
+      end: times.at(-1), ticks: ticksOf(least - margin, most + margin),
     });
     const line = add(svg, "line", { y1: top, y2: floor, class: "cursor" });
     const dot = add(svg, "circle", { r: 4.5, class: `dot ${mark}` });
@@ -61,12 +60,11 @@ document.addEventListener("DOMContentLoaded", () => {
     const timeDigits = Number(root.dataset.timeDigits);
     const radios = [...root.querySelectorAll("input[type=radio]")];
     const runs = read(root, radios, channels);
-    const [slider, speed] = ["input[type=range]", "select"].map((name) => root.querySelector(name));
-    const [play, shown] = [".play", ".shown"].map((name) => root.querySelector(name));
+    const [slider, speed, play, shown, rest] = ["input[type=range]", "select", ".play", ".shown", ".rest"]
+      .map((name) => root.querySelector(name));
     const scene = new globalThis.Scene(root);
     const [terms, texts, places] = ["dt", "dd", ".plot"].map((name) => root.querySelectorAll(name));
     const svgs = [...places].map((place) => add(place, "svg", { role: "img" }));
-    const rest = root.querySelector(".rest");
     const all = Number(slider.max);
     let last = rest ? Number(rest.dataset.until) : all; // the motion first, the rest on request
     const block = root.parentElement;
@@ -78,8 +76,7 @@ document.addEventListener("DOMContentLoaded", () => {
     let seen = blind ? 0 : last;
     let cursors = [];
     let playing = null; // {clock, time, next}: of the last frame [ms], of the run [s], the next frame
-    let loading = false;
-    let tried = false;
+    let loading; // undefined before the model was asked for
 
     const chosen = () => radios.find((radio) => radio.checked).value;
     const run = () => runs[chosen()];
@@ -128,8 +125,8 @@ document.addEventListener("DOMContentLoaded", () => {
 
     function drawPlots() {
       nameCase();
-      if (!places[0].clientWidth) return showSample(); // they are hidden, and drawn when they show
-      const { levels } = run();
+      const width = places[0].clientWidth;
+      if (!width) return showSample(); // they are hidden, and drawn when they show
       cursors = channels.map(({ name, unit, top }, k) => {
         const curves = Object.entries(runs).map(([one, { time, values, mark }]) => ({
           times: time.slice(0, last + 1), values: values[k].slice(0, last + 1), mark,
@@ -138,8 +135,8 @@ document.addEventListener("DOMContentLoaded", () => {
         const title = `${name[0].toUpperCase()}${name.slice(1)} [${unit}]`;
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
         svgs[k].setAttribute("aria-label", about);
-        const drawn = levels.filter(({ channel }) => channel === name);
-        return draw(svgs[k], { curves, levels: drawn, title, top, pick });
+        const drawn = run().levels.filter(({ channel }) => channel === name);
+        return draw(svgs[k], { width, curves, levels: drawn, title, top, pick });
       });
       showSample();
     }
@@ -179,7 +176,7 @@ document.addEventListener("DOMContentLoaded", () => {
 
     /* Loads the model. Where that fails, the plots play alone. */
     async function load() {
-      loading = tried = true;
+      loading = true;
       play.textContent = "Loading …";
       await scene.open(thing, "The plots show the same runs.");
       loading = false;
@@ -190,7 +187,7 @@ document.addEventListener("DOMContentLoaded", () => {
 
     play.addEventListener("click", async () => {
       if (loading) return;
-      if (!scene.viewer && !playing) await load();
+      if (loading === undefined) await load();
       if (sample() === last) slider.value = 0;
       else if (calm) slider.value = sample() + STRIDE;
       if (calm) return showSample();
@@ -203,7 +200,7 @@ document.addEventListener("DOMContentLoaded", () => {
     function jump() {
       if (playing) stop();
       showSample();
-      if (!tried) load(); // the picture shows the start
+      if (loading === undefined) load(); // the picture shows the start
     }
 
     function pick(share) {
@@ -236,8 +233,8 @@ document.addEventListener("DOMContentLoaded", () => {
       });
     }
     label();
-    new ResizeObserver(drawPlots).observe(root.querySelector(".plots"));
-    drawPlots();
+    showSample();
+    new ResizeObserver(drawPlots).observe(root.querySelector(".plots")); // and before the first frame
   }
 
   document.querySelectorAll(".replay").forEach(start);

@@ -5,19 +5,16 @@ document.addEventListener("DOMContentLoaded", () => {
   const { read, nameOf } = globalThis.memory;
   const list = document.querySelector(".all-questions");
   const { pages = {} } = read();
-  const groups = { missed: [], open: [], right: [] };
+  const [missed, open, right] = [[], [], []];
   for (const item of list.children) {
-    const { value, tolerance, right } = item.dataset;
+    const { value, tolerance, right: answer } = item.dataset;
     const link = item.querySelector("a");
     const given = pages[nameOf(link.href)]?.[link.hash.slice(1)];
-    const isRight = value ? Math.abs(given - value) <= tolerance : String(given) === right;
-    groups[given === undefined ? "open" : isRight ? "right" : "missed"].push(item);
+    const isRight = value ? Math.abs(given - value) <= tolerance : String(given) === answer;
+    (given === undefined ? open : isRight ? right : missed).push(item);
   }
-  const { missed, open, right } = groups;
   const state = document.querySelector(".review");
-  if (missed.length + right.length === 0) {
-    return;
-  }
+  if (missed.length + right.length === 0) return;
   state.textContent = `Missed: ${missed.length}. Right: ${right.length}. Without an answer: ${open.length}.`;
   for (const item of missed) item.prepend(Object.assign(document.createElement("strong"), { textContent: "Missed: " }));
   list.replaceChildren(...missed, ...open);

@@ -48,11 +48,4 @@
     target.querySelectorAll(BOXES).forEach(mark);
   }, true); // the event does not bubble
   addEventListener("beforeprint", () => document.querySelectorAll(".explorer-block details").forEach(insert));
-
-  /* An element that gets the focus inside such a box is scrolled into full view. */
-  document.addEventListener("focusin", ({ target }) => {
-    if (target.closest(`main .scroll-box, ${BOXES}`)) {
-      target.scrollIntoView({ block: "nearest", inline: "nearest" });
-    }
-  });
 })();

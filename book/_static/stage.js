@@ -11,28 +11,19 @@ globalThis.Scene = class Scene {
     this.root = root;
   }
 
-  /* Adds a script once for all replays of the page; a script that failed is added again. */
+  /* Adds a script once for all replays of the page. */
   static script(src) {
     Scene.requested[src] ??= new Promise((onload, onerror) => {
       const element = document.createElement("script");
       document.head.append(Object.assign(element, { src, onload, onerror }));
     });
-    Scene.requested[src].catch(() => delete Scene.requested[src]);
     return Scene.requested[src];
   }
 
-  /* Light from above, as a small picture. Without a graphics card, the viewer's own surroundings
-     would take seconds before the first frame. */
-  static light() {
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [128, 64];
-    const brush = canvas.getContext("2d");
-    brush.fillStyle = brush.createLinearGradient(0, 0, 0, canvas.height);
-    brush.fillStyle.addColorStop(0, "#fff");
-    brush.fillStyle.addColorStop(1, "#888");
-    brush.fillRect(0, 0, canvas.width, canvas.height);
-    return canvas.toDataURL();
-  }
+  /* Light from above: a picture that goes from white to #888. Without a graphics card, the viewer's own
+     surroundings would take seconds before the first frame. */
+  static light = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAIAAAABACAAAAAD3vSCjAAAARklEQVR42u3TwQkAAAgDMQX3"
+    + "H1kdw4fpBIFy2XG7AjgHjAsAAGQIACBDFwAAyBAAQIYuAACQIQCADF0AACBDAAAZuuA7YAGfN0CHUmo0SAAAAABJRU5ErkJggg==";
 
   /* Loads the model, and tells the reader how that went: without it there are `others`. */
   async open(what, others) {
@@ -63,7 +54,7 @@ globalThis.Scene = class Scene {
       "touch-action": "pan-y", "min-field-of-view": "2deg",
       "camera-orbit": orbit, "camera-target": target,
       "min-camera-orbit": distance, "max-camera-orbit": distance,
-      "environment-image": Scene.light(), exposure: "1.25", "animation-crossfade-duration": "0",
+      "environment-image": Scene.light, exposure: "1.25", "animation-crossfade-duration": "0",
       src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
     };
     for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);
@@ -92,18 +83,14 @@ globalThis.Scene = class Scene {
       const near = button("Close-up", () => {
         this.near = !this.near;
         near.setAttribute("aria-pressed", this.near);
-        this.aim(this.near ? "0m 0m 0m" : this.root.dataset.target, this.near ? closeUp : "auto");
+        this.viewer.cameraTarget = this.near ? "0m 0m 0m" : this.root.dataset.target;
+        this.viewer.fieldOfView = this.near ? closeUp : "auto";
+        this.viewer.jumpCameraToGoal();
         this.pose(...this.posed);
       }, { "aria-pressed": false });
     }
     button("−", () => this.viewer.zoom(-10), { "aria-label": "Zoom out" });
     button("+", () => this.viewer.zoom(10), { "aria-label": "Zoom in" });
-  }
-
-  /* Points the camera at once at a place, with an angle of view. */
-  aim(target, angle) {
-    Object.assign(this.viewer, { cameraTarget: target, fieldOfView: angle });
-    this.viewer.jumpCameraToGoal();
   }
 
   /* Shows a share of the copies at the target, whose material alone is translucent. */
@@ -121,12 +108,9 @@ globalThis.Scene = class Scene {
     this.posed = [name, time];
     const { viewer } = this;
     if (!viewer) return;
-    const animation = this.near ? `${name}, close-up` : name;
-    if (viewer.animationName !== animation) {
-      viewer.animationName = animation;
-      await viewer.updateComplete;
-    }
-    const latest = this.posed[1]; // the time may have moved on
-    viewer.currentTime = Math.min(latest, viewer.duration - 1e-7); // at its end it would start again
+    viewer.animationName = this.near ? `${name}, close-up` : name;
+    await viewer.updateComplete;
+    // The time may have moved on, and at its end the animation would start again.
+    viewer.currentTime = Math.min(this.posed[1], viewer.duration - 1e-7);
   }
 };

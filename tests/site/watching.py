@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Page, Request
+from playwright.sync_api import Page, Request, expect
 
 from robo_genesis.pipeline import npm
 
@@ -103,9 +103,12 @@ def readout(page: Page, block: str, values: str = "dd") -> dict[str, str]:
 
 def show_all(page: Page, replay: str = ".replay") -> None:
     """Show a blind replay without an answer, also one that a question hides, and the whole runs."""
-    hiding = f".choice:has(+ .after-answer):has(~ * {replay}) summary"
-    for answer in page.locator(hiding).all():
+    hiding = f".choice:has(+ .after-answer):has(~ * {replay})"
+    for answer in page.locator(f"{hiding} summary").all():
         answer.click()
+    # The browser tells later that a fold has opened: until then, nothing after it shows.
+    waiting = page.locator(f"{hiding}:not(.answered)")
+    expect(waiting).to_have_count(0, timeout=120_000)
     for button in (f"{replay} .veil button", f"{replay} .rest"):
         for found in page.locator(button).all():
             if found.is_visible():
@@ -127,4 +130,6 @@ def choose(page: Page, case: str, sample: int, replay: str = ".replay"):
     page.locator(f"{replay} input[value={case}]").check()
     slider = page.locator(f"{replay} input[type=range]")
     slider.fill(str(sample))
+    # Of a run that shows in part, the slider ends before the last sample.
+    assert slider.input_value() == str(sample)
     return slider

@@ -116,6 +116,7 @@ def test_nothing_of_the_runs_shows_before_an_answer_and_curves_grow_with_time(
     assert page.get_by_text("Noted. Play the run").count() == 1
     assert feedback.count() == 0
     slider = page.locator(f"{STEPS} input[type=range]")
+    page.locator(CURVES).first.wait_for(state="attached")  # they come with a frame
     lengths = "all => all.map(line => line.getAttribute('points').split(' ').length)"
     for key, seen in (("Home", 1), ("ArrowRight", 2), ("ArrowLeft", 2), ("End", 61)):
         slider.press(key)

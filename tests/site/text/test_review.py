@@ -53,8 +53,9 @@ def test_a_reader_goes_on_at_the_heading_and_sees_what_is_done(page, small_site)
             page.evaluate("scrollTo(0, 9e9)")
         page.goto(f"{site}/cards.html")
         marks = page.locator("article .progress-mark")
-        seen = [mark.get_attribute("aria-label") for mark in marks.all()]
-        assert seen == ["begun", "finished", "begun"]
+        assert [mark.get_attribute("aria-label") for mark in marks.all()] == [
+            "finished"
+        ]
         go = page.locator(".memory a")
         assert go.inner_text() == "Six, “Later”"
         assert go.get_attribute("href") == f"{site}/lessons/l06-six/lecture.html#later"
