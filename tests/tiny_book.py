@@ -14,6 +14,7 @@ from unittest.mock import Mock
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.command import TIMEOUT
 from robo_genesis.pipeline.pages.book import Page
@@ -200,3 +201,17 @@ def commit(root: Path) -> None:
     git(root, "init", "--quiet")
     git(root, "add", ".")
     git(root, "commit", "--quiet", "--message", "a")
+
+
+def seal(place: Path) -> None:
+    """Make the digests of an executed page's record right again."""
+    record = json.loads((place / "page.json").read_text())
+    files = [
+        path
+        for path in place.rglob("*")
+        if path.is_file() and path != place / "page.json"
+    ]
+    record["files"] = {
+        path.relative_to(place).as_posix(): sha256(path) for path in files
+    }
+    (place / "page.json").write_text(json.dumps(record))

@@ -93,6 +93,7 @@ document.addEventListener("DOMContentLoaded", () => { // as in replay.js
     button.addEventListener("click", async () => {
       button.hidden = true;
       await scene.open("robot", "The map and its values do not need it.");
+      button.hidden = Boolean(scene.viewer); // else a press tries again
       pose(chosen);
     });
     return pose;

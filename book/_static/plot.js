@@ -32,23 +32,30 @@ globalThis.timePlot = (() => {
     });
   }
 
-  /* How far the points of a line are from a height, where they are below or above a name. */
-  const distance = (points, [from, to], height) => Math.min(...points
-    .filter(([x]) => x >= from && x <= to).map(([, y]) => Math.abs(y - height)));
+  /* How far a line is from a height, where it is below or above a name: 0 if it crosses the height. */
+  const distance = (points, [from, to], height) => Math.min(...points.map(([x, y], k) => {
+    const [before, beside] = points[k - 1] ?? [x, y];
+    if (x < from || before > to) return Infinity;
+    return Math.max(Math.min(y, beside) - height, height - Math.max(y, beside), 0);
+  }));
 
-  /* Writes the name of a curve above or below it, where the other lines are farthest, and adds it to
-     them; returns the text and its sample. Where all are close, no name would say which is which. */
+  /* Writes the name of a curve beside it, where the other lines are farthest, and adds it to them;
+     returns the text and its sample. Where all are close, no name would say which is which. */
   function writeName(svg, { name, mark, points }, lines, [left, right, top, bottom]) {
     const half = 3.8 * name.length; // half of its width
+    const curves = lines.filter((line) => line.length > 2);
     const others = lines.filter((line) => line !== points);
     let best = { gap: APART };
-    for (const [at, [x, y]] of points.entries()) {
-      const span = [x - half, x + half];
-      for (const height of [y - 9, y + 11]) {
+    for (let at = 0; at < points.length; at += Math.ceil(points.length / TRIED)) {
+      const [x, y] = points[at];
+      if (curves.some((one) => one !== points && Math.abs((one[at]?.[1] ?? Infinity) - y) < 6)) continue;
+      for (const [dx, dy] of [[0, -9], [0, 11], [half + 6, 0], [-half - 6, 0]]) {
+        const [middle, height] = [x + dx, y + dy];
+        const span = [middle - half, middle + half];
         if (span[0] < left || span[1] > right || height < top + 5 || height > bottom - 5) continue;
         if (distance(points, span, height) < 6) continue;
         const gap = Math.min(...others.map((line) => distance(line, span, height)));
-        if (gap > best.gap) best = { gap, x, height, span, at };
+        if (gap > best.gap) best = { gap, x: middle, height, span, at };
       }
     }
     if (!best.span) return [];
@@ -92,8 +99,7 @@ globalThis.timePlot = (() => {
       const line = { class: `curve ${mark}${chosen ? " chosen" : ""}`, points: pairs.join(" ") };
       return { line: add(svg, "polyline", line), points: pairs };
     });
-    const step = Math.ceil(placed[0].points.length / TRIED);
-    const taken = placed.map(({ points }) => points.filter((_, k) => k % step === 0));
+    const taken = placed.map(({ points }) => points);
     const texts = placed.flatMap(({ name, mark }, k) => (
       name ? writeName(svg, { name, mark, points: taken[k] }, taken, [x(0), x(end), EDGE.top, floor]) : []
     ));
@@ -101,7 +107,7 @@ globalThis.timePlot = (() => {
       for (const { line, points } of lines) {
         line.setAttribute("points", points.slice(0, sample + 1).join(" "));
       }
-      for (const { text, at } of texts) text.style.display = at * step > sample ? "none" : "";
+      for (const { text, at } of texts) text.style.display = at > sample ? "none" : "";
     }
     return { x, y, floor, top: EDGE.top, share: (pixels) => (pixels - EDGE.left) / across, grow };
   }

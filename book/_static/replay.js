@@ -112,19 +112,13 @@ document.addEventListener("DOMContentLoaded", () => {
       seen = Math.max(seen, sample());
       for (const cursor of cursors) cursor(time, sample(), seen);
       if (seen === last && block.classList.contains("growing")) reveal();
+      // The picker may be out of sight. The picture before the model is of the start.
+      if (scene.viewer) Object.assign(shown, { textContent: chosen(), className: `shown case-mark ${run().mark}` });
       scene.pose(chosen(), time);
       scene.fade(distance());
     }
 
-    /* Shows the case at the 3D model: the picker may be out of sight. Its picture is of the start. */
-    function nameCase() {
-      if (!scene.viewer) return;
-      shown.textContent = chosen();
-      shown.className = `shown case-mark ${run().mark}`;
-    }
-
     function drawPlots() {
-      nameCase();
       const width = places[0].clientWidth;
       if (!width) return showSample(); // they are hidden, and drawn when they show
       cursors = channels.map(({ name, unit, top }, k) => {
@@ -180,14 +174,13 @@ document.addEventListener("DOMContentLoaded", () => {
       play.textContent = "Loading …";
       await scene.open(thing, "The plots show the same runs.");
       loading = false;
-      nameCase();
       showSample(); // the time may be another one than that of the picture
       label();
     }
 
     play.addEventListener("click", async () => {
       if (loading) return;
-      if (loading === undefined) await load();
+      if (!scene.viewer && !playing) await load();
       if (sample() === last) slider.value = 0;
       else if (calm) slider.value = sample() + STRIDE;
       if (calm) return showSample();

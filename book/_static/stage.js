@@ -17,11 +17,11 @@ globalThis.Scene = class Scene {
       const element = document.createElement("script");
       document.head.append(Object.assign(element, { src, onload, onerror }));
     });
+    Scene.requested[src].catch(() => delete Scene.requested[src]); // another Play tries again
     return Scene.requested[src];
   }
 
-  /* Light from above: a picture that goes from white to #888. Without a graphics card, the viewer's own
-     surroundings would take seconds before the first frame. */
+  /* Light from above, white to #888: without a graphics card, the viewer's own would take seconds. */
   static light = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAIAAAABACAAAAAD3vSCjAAAARklEQVR42u3TwQkAAAgDMQX3"
     + "H1kdw4fpBIFy2XG7AjgHjAsAAGQIACBDFwAAyBAAQIYuAACQIQCADF0AACBDAAAZuuA7YAGfN0CHUmo0SAAAAABJRU5ErkJggg==";
 

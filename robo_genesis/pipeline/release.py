@@ -75,6 +75,10 @@ def build(options: Namespace) -> int:
     Raises:
         ProjectError: the tree has changes, or the build failed.
     """
+    if options.book != BOOK:
+        raise ProjectError(
+            f"A release builds the commit's own book, not {options.book}."
+        )
     names = ("render", "jobs", "site_url", "solutions", "timeout")
     settings = [
         f"--{name.replace('_', '-')}={getattr(options, name)}" for name in names

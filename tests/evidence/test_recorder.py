@@ -1,5 +1,6 @@
 import base64
 import hashlib
+import logging
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -14,8 +15,11 @@ from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.reader import read_frames
 from robo_genesis.evidence.recorder import Recorder, RecordError
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.pages.sources import measuring_modules, running_modules
 from robo_genesis.sim import session
 from robo_genesis.sim.camera.frames import FrameError
+from robo_genesis.sim.engine_log import EngineLog
 from robo_genesis.sim.visual_shape import FILE, Part, load_shape
 
 
@@ -116,6 +120,23 @@ def test_a_failed_write_leaves_nothing_or_the_old_bundle(
             recorder.write(spoiled, RENDERER)
         assert contents(outputs) == before
         recorder.write(experiment, RENDERER)
+
+
+def test_a_message_of_the_engine_is_a_warning_of_the_manifest(recorder, experiment):
+    log = EngineLog()
+    message = {"levelname": "WARNING", "msg": "red b"}
+    log.emit(logging.makeLogRecord(message))
+    recorder.engine = replace(recorder.engine, log=log)
+    folder = recorder.write(experiment, RENDERER)
+    assert verify_bundle(folder).warnings == ["red b"]
+
+
+def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(quiet):
+    names = "robo_genesis.sim.bodies.contacts robo_genesis.core.plotting"
+    quiet.setenv("ROBO_GENESIS_PAGE_IMPORTS", names)
+    found = running_modules("l04")
+    expected = measuring_modules("l04", ["robo_genesis.sim.bodies.contacts"])
+    assert found == expected != measuring_modules("l04", [])
 
 
 @pytest.mark.parametrize(

@@ -48,3 +48,9 @@ def test_memory_grows_by_what_is_kept():
     kept = np.ones(400 * throughput.MIB // 8)
     assert throughput.used_memory() - before == pytest.approx(400, rel=0.2)
     assert kept.all()
+
+
+def test_a_fit_finds_the_model_that_made_the_times():
+    sizes, model = np.array([1, 16, 256]), throughput.Model(0.002, 3e-5)
+    found = throughput.fit(sizes, model.step_time(sizes))
+    assert (found.fixed, found.each) == pytest.approx((model.fixed, model.each))

@@ -5,7 +5,9 @@ import os
 import shutil
 from pathlib import Path
 
+import nbformat
 import pytest
+from nbformat.v4 import new_output
 from small_book import executed
 from tiny_book import (
     LAB_FRONT,
@@ -15,6 +17,7 @@ from tiny_book import (
     make_book,
     notebook,
     refuse,
+    seal,
 )
 
 from robo_genesis.evidence.refusals import BundleRefused
@@ -52,12 +55,22 @@ def test_the_table_of_seconds_has_what_the_last_execution_took(sound, place, tmp
     assert json.loads(written.read_text()) == {"lab": round(seconds)}
 
 
+def fail_a_cell(place: Path) -> None:
+    """Let the first cell have raised, and make the digest of the notebook right again."""
+    ran = nbformat.read(place / "executed.ipynb", as_version=4)
+    error = new_output("error", ename="ValueError", evalue="no", traceback=[])
+    ran.cells[0].outputs = [error]
+    nbformat.write(ran, place / "executed.ipynb")
+    seal(place)
+
+
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
         (lambda place: (place / SHAPE).write_text("new"), f"{SHAPE} changed"),
         (lambda place: (place / "new").touch(), "new changed since"),
         (lambda place: (place / "page.json").write_text("{"), "missing or damaged"),
+        (fail_a_cell, "the cell raised ValueError: no, but"),
     ],
 )
 def test_a_damaged_page_is_refused_by_the_name_of_its_file(sound, place, spoil, said):
