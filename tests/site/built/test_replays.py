@@ -37,6 +37,17 @@ POSED = """([name, time]) => {
 }"""
 
 
+# Names of curves through which a curve runs.
+CROSSED = """() => [...document.querySelectorAll(".time-plot .name")].flatMap(name => {
+  const { x, y, width, height } = name.getBBox();
+  const inside = at => at.x > x && at.x < x + width && at.y > y + 3 && at.y < y + height - 3;
+  return [...name.parentNode.querySelectorAll("polyline")].flatMap(line => {
+    const steps = Array.from({ length: line.getTotalLength() / 3 }, (_, k) => 3 * k);
+    return steps.some(s => inside(line.getPointAtLength(s))) ? [name.textContent] : [];
+  });
+})"""
+
+
 @pytest.fixture(scope="module")
 def lecture(browser_3d, site) -> Iterator[Page]:
     """The lecture from disk with the robot loaded."""
@@ -157,4 +168,5 @@ def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(
     for width in (1280, 320):
         page.set_viewport_size({"width": width, "height": 800})
         assert call(page, "too_wide") == []
+        assert page.evaluate(CROSSED) == []
     page.close()
