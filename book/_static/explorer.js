@@ -134,7 +134,9 @@ document.addEventListener("DOMContentLoaded", () => { // as in replay.js
         place.setAttribute("aria-selected", cell === chosen);
         place.tabIndex = cell === chosen ? 0 : -1;
       }
-      table.caption.textContent = [open.caption, `Numbers: ${label}.`, ...Object.values(data.notes)].join(" ");
+      const shows = (sign) => cellsOf(open).some(({ place }) => place.textContent.includes(sign));
+      const notes = Object.entries(data.notes).flatMap(([sign, note]) => (shows(sign) ? note : []));
+      table.caption.textContent = [open.caption, `Numbers: ${label}.`, ...notes].join(" ");
       if (inside) chosen.place.focus();
     }
 

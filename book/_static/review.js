@@ -13,9 +13,8 @@ document.addEventListener("DOMContentLoaded", () => {
     const isRight = value ? Math.abs(given - value) <= tolerance : String(given) === answer;
     (given === undefined ? open : isRight ? right : missed).push(item);
   }
-  const state = document.querySelector(".review");
   if (missed.length + right.length === 0) return;
-  state.textContent = `Missed: ${missed.length}. Right: ${right.length}. Without an answer: ${open.length}.`;
+  document.querySelector(".review").textContent = `Missed: ${missed.length}. Right: ${right.length}. Without an answer: ${open.length}.`;
   for (const item of missed) item.prepend(Object.assign(document.createElement("strong"), { textContent: "Missed: " }));
   list.replaceChildren(...missed, ...open);
 });

@@ -26,11 +26,10 @@ if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = f
     const { terms, titleterms } = Search._index;
     const known = Object.keys({ ...terms, ...titleterms });
     const pages = (word) => [terms[word] ?? []].flat().length;
-    for (const word of words) {
+    for (const word of [...words]) {
       if (word.length < 4 || known.some((one) => one.includes(word))) continue;
       const like = near(word);
-      const [nearest] = known.filter((one) => like.test(one)).sort((a, b) => pages(b) - pages(a));
-      if (!nearest) continue;
+      const [nearest = word] = known.filter((one) => like.test(one)).sort((a, b) => pages(b) - pages(a));
       words.delete(word);
       for (const list of [words, shown]) list.add(nearest);
     }

@@ -1,4 +1,4 @@
-"""A view is read freshly. Pages compare it with what stands in the scene."""
+"""Each view is a new picture. Pages compare views with the geometry of the scene."""
 
 from unittest.mock import Mock, call
 
