@@ -4,19 +4,20 @@ import shutil
 import tempfile
 import zipfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.core.comparison import Relation, differences
 from robo_genesis.core.text import quoted
 from robo_genesis.lessons import find_lesson, find_page
 
 from . import bundle, rows
-from .bundle import Manifest
+from .bundle import Arrays, Manifest
 from .refusals import BundleRefused
 from .rows import Section, Side, worst
-from .trace_files import read_any_trace
+from .trace_files import read_any_trace, read_run
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +131,18 @@ def bundle_folder(path: Path) -> Iterator[Path]:
         yield Path(folder)
 
 
+def read_trace(folder: Path, arrays: Arrays, case: str, manifest: Manifest) -> Any:
+    """Return one run of the kind that its page declares, or of one that fits its arrays."""
+    with suppress(LookupError):  # another version of the course has the lesson or page
+        page = find_page(manifest.lesson, manifest.page)
+        run = page.runs.get(case)
+        kind = run.kind if run and run.kind else page.kind
+        names = {stored.name for stored in kind.arrays().values()}
+        if names == {*arrays.cases[case].variables}:
+            return read_run(folder, case, kind)
+    return read_any_trace(folder, arrays, case)
+
+
 def read_side(path: Path) -> Side:
     """Read one bundle, a folder or an archive; its digests must be right.
 
@@ -143,7 +156,8 @@ def read_side(path: Path) -> Side:
             bundle.check_files(folder, manifest)
             arrays = bundle.read_arrays(folder)
             traces = {
-                case: read_any_trace(folder, arrays, case) for case in arrays.cases
+                case: read_trace(folder, arrays, case, manifest)
+                for case in arrays.cases
             }
             return Side(
                 str(path), manifest, bundle.read_metrics(folder), arrays, traces

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from robo_genesis.core import statistics
 from robo_genesis.core.checks import (
     Finding,
     Findings,
@@ -27,7 +28,7 @@ from robo_genesis.sim.arm.franka import JOINT_NAMES, MODEL_COUNTS
 from robo_genesis.sim.arm.picking import PickCase
 from robo_genesis.sim.common_checks import posture, stamps, structure
 
-from . import capstone, checks, metrics, spec, statistics
+from . import capstone, checks, metrics, spec
 
 MEASURES = False
 

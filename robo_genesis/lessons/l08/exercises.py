@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core import statistics
 from robo_genesis.core.checks import Findings, equal
 from robo_genesis.core.exercises import (
     Written,
@@ -18,7 +19,7 @@ from robo_genesis.core.exercises import (
 from robo_genesis.sim.arm import lifting, picking
 from robo_genesis.sim.arm.kinematics import ARM
 
-from . import metrics, statistics
+from . import metrics
 
 MEASURES = False
 

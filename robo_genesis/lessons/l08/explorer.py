@@ -8,7 +8,7 @@ from robo_genesis.core import maps
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import decimal
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm import ladder, picking
 
 from . import metrics, spec
 
@@ -27,7 +27,7 @@ COLUMNS = (
 def explored(found: Experiment) -> dict[str, Any]:
     """Return the data of the map, as `site/figures/explorer.py` shows them."""
     trace, case = found.traces["askew"], spec.ASKEW
-    level, apart = metrics.reached(trace, case), metrics.off_axis(trace, case)[-1]
+    level, apart = metrics.reached(trace, case), ladder.off_axis(trace, case)[-1]
     cells = []
     for k, moving in enumerate((trace.phase == picking.MOVE).T):
         press = np.median(trace.force[moving, k]) if moving.any() else 0.0

@@ -9,18 +9,24 @@ from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Episodes
 from robo_genesis.sim.arm.kinematics import hand_pose, rotate
+from robo_genesis.sim.arm.ladder import BELOW as BELOW
+from robo_genesis.sim.arm.ladder import CENTRED as CENTRED
+from robo_genesis.sim.arm.ladder import PRESSES as PRESSES
+from robo_genesis.sim.arm.ladder import RAISED as RAISED
+from robo_genesis.sim.arm.ladder import STILL as STILL
+from robo_genesis.sim.arm.ladder import (
+    contained,
+    count,
+    lowest,
+    off_axis,
+    pressed,
+    resting,
+    risen,
+)
 from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 from robo_genesis.sim.arm.picking import CLOSE, DONE, LIFT, LOWER, MOVE, PickCase
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.free_fall import GRAVITY
-
-PRESSES = 0.1  # Normal force from which a finger holds [N]
-
-RAISED = 0.05  # Height that an object must gain in the lift [m]
-
-# An object is in the bowl if its centre is this near to the axis, and its lowest point
-# this far below the rim [m].
-CENTRED, BELOW = 0.06, 0.01
 
 # Half of the length of a pad [m].
 HALF_PAD = 8.5e-3
@@ -29,52 +35,20 @@ HALF_PAD = 8.5e-3
 # number of such episodes.
 LEAVING, FEWEST = (5e-4, 12e-3), 10
 
-# Time at the end [s] in which an object at rest moves by less than this [m], as in L07.
-WINDOW, STILL = 0.2, 2e-4
-
-
-def lowest(trace: Episodes, case: PickCase) -> FloatArray:
-    """Return the height (n+1, e) of the lowest point of a cylinder or box [m]."""
-    back = trace.object_quat * np.array([1.0, -1.0, -1.0, -1.0])
-    up, half = np.abs(rotate(back, np.array([0.0, 0.0, 1.0]))), np.array(case.size) / 2
-    if case.shape == "cylinder":
-        reach = np.hypot(up[..., 0], up[..., 1]) * half[0] + up[..., 2] * half[2]
-    else:
-        reach = up @ half
-    return trace.object_pos[..., 2] - reach
-
-
-def off_axis(trace: Episodes, case: PickCase) -> FloatArray:
-    """Return the horizontal distance (n+1, e) of the object from the axis of the bowl [m]."""
-    return np.linalg.norm(trace.object_pos[..., :2] - case.bowl_at, axis=-1)
-
-
-def pressed(trace: Episodes) -> np.ndarray:
-    """Return the samples (n+1, e) in which both fingers hold the object."""
-    return np.asarray((trace.force > PRESSES).all(axis=2))
-
-
-def risen(trace: Episodes) -> FloatArray:
-    """Return how far the object is above its start (n+1, e) [m]."""
-    return trace.object_pos[..., 2] - trace.object_pos[0, :, 2]
-
 
 def rungs(trace: Episodes, case: PickCase) -> dict[str, np.ndarray]:
     """Return by rung which episodes (e,) pass it, whatever the others say."""
     both = pressed(trace)
     carry = (trace.phase == MOVE) | (trace.phase == LOWER)
     at_move = (trace.phase >= MOVE).argmax(axis=0)
-    last = trace.object_pos[-round(WINDOW / trace.dt) - 1 :]
-    moved = np.linalg.norm(last[-1] - last, axis=2)
-    inside = off_axis(trace, case)[-1] < CENTRED
     return {
         "planned": trace.phase[0] < DONE,
         "held": (both & (trace.phase == LIFT)).any(axis=0),
         "lifted": risen(trace)[at_move, np.arange(len(at_move))] >= RAISED,
         "carried": carry.any(axis=0) & (both | ~carry).all(axis=0),
         "released": (trace.phase[-1] == DONE) & (trace.touches[-1] == 0),
-        "contained": inside & (lowest(trace, case)[-1] < bowl.HEIGHT - BELOW),
-        "resting": moved.max(axis=0) < STILL,
+        "contained": contained(trace, case),
+        "resting": resting(trace),
     }
 
 
@@ -84,8 +58,7 @@ RUNGS = ("planned", "held", "lifted", "carried", "released", "contained", "resti
 
 def reached(trace: Episodes, case: PickCase) -> np.ndarray:
     """Return how many rungs each episode passes before the first that it fails (e,)."""
-    passed = np.stack([*rungs(trace, case).values()])
-    return np.logical_and.accumulate(passed).sum(axis=0)
+    return count(rungs(trace, case))
 
 
 def good(trace: Episodes, case: PickCase) -> np.ndarray:

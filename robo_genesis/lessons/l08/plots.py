@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, legend_above, look
-from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm import ladder, picking
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import hand_pose
 from robo_genesis.sim.bodies.grippers import HeldCase
@@ -88,9 +88,7 @@ def leaving(run: Experiment) -> Figure:
         closing = metrics.first_closing(trace)
         start = beyond[closing, np.arange(len(closing))]
         for row in np.flatnonzero((start > 5e-4) & (start < 2e-3)):
-            held = metrics.pressed(trace)[:, row] & (
-                trace.phase[:, row] <= picking.MOVE
-            )
+            held = ladder.pressed(trace)[:, row] & (trace.phase[:, row] <= picking.MOVE)
             times = trace.t[held] - trace.t[closing[row]]
             ax.semilogy(times, 1000 * beyond[held, row], **look(mark) | {"lw": 0.8})
         ax.plot([], [], label=CONES[name], **look(mark))

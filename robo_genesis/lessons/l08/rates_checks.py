@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from robo_genesis.core import statistics
 from robo_genesis.core.checks import Findings, above, at_most, below, equal, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.arm.picking import CLOSE
 from robo_genesis.sim.common_checks import stamps, structure
 
-from . import checks, metrics, rates, statistics
+from . import checks, metrics, rates
 
 MEASURES = False
 

@@ -4,18 +4,19 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core import statistics
 from robo_genesis.core.exercises import Written, brief
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed, scaled_value
 from robo_genesis.core.trace import Episodes
-from robo_genesis.sim.arm import picking
+from robo_genesis.sim.arm import ladder, picking
 from robo_genesis.sim.arm.kinematics import hand_pose
 from robo_genesis.sim.arm.picking import CLOSE, DONE, OPEN, PickCase
 from robo_genesis.sim.bodies import bowl
 from robo_genesis.sim.bodies.table import World
 
-from . import metrics, spec, statistics
+from . import metrics, spec
 
 MEASURES = False
 
@@ -64,7 +65,7 @@ def run(
 def levels(rungs: Written, trace: Episodes, case: PickCase) -> np.ndarray:
     """Return by a student's ladder how many rungs each episode passes."""
     lowest, rim = (
-        metrics.lowest(trace, case)[-1],
+        ladder.lowest(trace, case)[-1],
         np.array([*case.bowl_at, bowl.HEIGHT]),
     )
     arrays = (trace.phase, trace.force, trace.object_pos, trace.touches)

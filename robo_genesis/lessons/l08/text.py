@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from robo_genesis.core import tables
+from robo_genesis.core import statistics, tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT
 from robo_genesis.core.text import decimal, scaled_value
 from robo_genesis.sim.throughput import KEPT
 
-from . import creep, metrics, rates, spec, statistics
+from . import creep, metrics, rates, spec
 from .creep_checks import share_of
 from .rates_checks import pairs
 

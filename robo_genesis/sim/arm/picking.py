@@ -192,8 +192,13 @@ class Expert:
         self.timed = np.broadcast_to(case.timed, len(accepted))
         self.stride = np.broadcast_to(case.stride, len(accepted))[:, None]
 
-    def act(self, q: FloatArray, qd: FloatArray) -> FloatArray:
-        """Return the next command (e, 9) from positions and velocities (e, 9) [rad or m]."""
+    def act(
+        self, q: FloatArray, qd: FloatArray, pose: FloatArray | None = None
+    ) -> FloatArray:
+        """Return the next command (e, 9) from positions and velocities (e, 9) [rad or m].
+
+        This expert knows where the object began, and ignores its present `pose` (e, 7).
+        """
         self.since += 1
         ends = self.ends(q, qd) | (self.since >= LIMIT)
         ends &= self.phase < DONE
@@ -279,7 +284,8 @@ def run(
                 (expert.phase.copy(), q, pos[:, -1], quat[:, -1], *pressing(world))
             )
         if k < case.steps * case.commands:
-            batch.command(expert.act(q, qd))
+            pose = np.concatenate([pos[:, -1], quat[:, -1]], axis=1)
+            batch.command(expert.act(q, qd, pose))
             batch.step(1)
     phase, q, pos, quat, force, touches = map(np.stack, zip(*samples, strict=True))
     return (

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from robo_genesis.lessons.l08 import statistics
+from robo_genesis.core import statistics
 from robo_genesis.sim.arm.lifting import HAND_TO_PAD
 from robo_genesis.sim.bodies.grippers import ARMATURE, PAD_MASS
 

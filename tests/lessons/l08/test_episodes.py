@@ -7,8 +7,9 @@ import pytest
 from lessons.changed_runs import copied, failed, metric, put, reading, shift, trace
 from lessons.experiments import require_spoilers
 
-from robo_genesis.lessons.l08 import explorer, metrics, plots, spec, statistics, text
-from robo_genesis.sim.arm import picking
+from robo_genesis.core import statistics
+from robo_genesis.lessons.l08 import explorer, metrics, plots, spec, text
+from robo_genesis.sim.arm import ladder, picking
 from robo_genesis.sim.session import CaseError
 
 PLACED = spec.SHOWN["placed"]
@@ -67,7 +68,7 @@ def test_the_lowest_point_of_a_tilted_cylinder_and_box(episodes):
     tilted = replace(one, object_quat=quat, object_pos=np.zeros_like(one.object_pos))
     corner = -(0.025 + 0.035) * np.sqrt(0.5)
     for shape in ("cylinder", "box"):
-        found = metrics.lowest(tilted, replace(spec.ASKEW, shape=shape))
+        found = ladder.lowest(tilted, replace(spec.ASKEW, shape=shape))
         assert found == pytest.approx(np.full_like(found, corner))
 
 

@@ -1,6 +1,9 @@
-"""Rates with their intervals, and two experts on the same starts."""
+"""Rates with their intervals, two policies on the same starts, and means of few groups."""
 
 from math import comb, sqrt
+from typing import Any
+
+import numpy as np
 
 Z = 1.96  # Of an interval that holds in 95 % of repetitions
 
@@ -30,3 +33,20 @@ def paired(only_one: int, only_other: int) -> float:
     n, fewest = only_one + only_other, min(only_one, only_other)
     tail = sum(comb(n, k) for k in range(fewest + 1)) / 2**n
     return min(1.0, 2 * tail)
+
+
+def of_groups(values: Any) -> tuple[float, float, float]:
+    """Return the mean of independent groups' values (n,), and the ends of its 95 % interval.
+
+    The interval is Student's, with n − 1 degrees of freedom.
+
+    Raises:
+        ValueError: there is one group, which has no spread.
+    """
+    from scipy.special import stdtrit
+
+    n, mean = len(values), float(np.mean(values))
+    if n < 2:
+        raise ValueError(f"{n} group has no spread: give the values of two or more.")
+    half = float(stdtrit(n - 1, 0.975) * np.std(values, ddof=1) / sqrt(n))
+    return mean, mean - half, mean + half
