@@ -74,7 +74,7 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, marks of merges
 	$(SCHEMA).dependabot .github/dependabot.yml
 	$(SCHEMA).github-issue-forms .github/ISSUE_TEMPLATE/*.yml
 
-lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l09)
+lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l99)
 	@$(COURSE) lesson "$(NEW)"
 
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)

@@ -45,8 +45,9 @@ def of_groups(values: Any) -> tuple[float, float, float]:
     """
     from scipy.special import stdtrit
 
-    n, mean = len(values), float(np.mean(values))
+    n = len(values)
     if n < 2:
         raise ValueError(f"{n} group has no spread: give the values of two or more.")
+    mean = float(np.mean(values))
     half = float(stdtrit(n - 1, 0.975) * np.std(values, ddof=1) / sqrt(n))
     return mean, mean - half, mean + half

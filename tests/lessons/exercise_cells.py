@@ -28,7 +28,8 @@ def solutions(lesson: str, page: str = "lab") -> dict[str, Any]:
     imports = [
         line
         for line in statements
-        if isinstance(line, ast.ImportFrom) and str(line.module).startswith("robo_")
+        if isinstance(line, ast.ImportFrom)
+        and str(line.module).startswith(("robo_", "scipy."))
     ]
     solved: dict[str, Any] = {"np": np}
     exec(compile(ast.Module(imports, []), given.docname, "exec"), solved)

@@ -18,7 +18,7 @@ from robo_genesis.pipeline.pages.page_folder import NOTEBOOK
 from robo_genesis.pipeline.pages.values import LOG
 from robo_genesis.site.course.sizes import HIDDEN
 
-MODULES = {"genesis", "mujoco", "numpy", "robo_genesis"}
+MODULES = {"genesis", "mujoco", "numpy", "robo_genesis", "torch"}
 OF_COURSE = {"rg.model_file"}  # Where the model of a lesson lies
 FAILS = "raises-exception"  # A cell that shows an error; a script would end there
 NEXT = "next cell"  # What the script prints between two cells

@@ -8,7 +8,6 @@ from robo_genesis.core.checks import claim_of
 from robo_genesis.core.comparison import HELD_BY
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.core.trace import BodyTrace, ContactTrace, Episodes, Trace
 from robo_genesis.lessons import (
     LESSONS,
     course_marks,
@@ -51,7 +50,11 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
         assert not units
     assert {*lesson.about_metrics("unit").values()} <= lesson.spec.RESOLUTION.keys()
     sources = {name for of in lesson.about_metrics("sources").values() for name in of}
-    kinds = (Trace, BodyTrace, ContactTrace, Episodes)
+    kinds = {
+        run.kind or page.kind
+        for page in lesson.pages.values()
+        for run in page.runs.values()
+    }
     assert sources <= {of.name for kind in kinds for of in kind.arrays().values()}
 
 

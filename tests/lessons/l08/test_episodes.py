@@ -7,32 +7,11 @@ import pytest
 from lessons.changed_runs import copied, failed, metric, put, reading, shift, trace
 from lessons.experiments import require_spoilers
 
-from robo_genesis.core import statistics
 from robo_genesis.lessons.l08 import explorer, metrics, plots, spec, text
-from robo_genesis.sim.arm import ladder, picking
+from robo_genesis.sim.arm import picking
 from robo_genesis.sim.session import CaseError
 
 PLACED = spec.SHOWN["placed"]
-
-
-@pytest.mark.parametrize(
-    ("k", "n", "low", "high"),
-    [
-        (1, 1, 0.207, 1.0),
-        (64, 64, 0.943, 1.0),
-        (256, 256, 0.985, 1.0),
-        (0, 10, 0.0, 0.278),
-        (15, 16, 0.717, 0.989),
-    ],
-)
-def test_wilson_intervals_that_others_publish(k, n, low, high):
-    assert statistics.wilson(k, n) == pytest.approx((low, high), abs=6e-4)
-
-
-def test_the_paired_test_is_exact():
-    assert statistics.paired(0, 5) == pytest.approx(2 / 32)
-    assert statistics.paired(3, 3) == 1.0
-    assert statistics.paired(1, 22) == statistics.paired(22, 1)
 
 
 def test_figures_and_tables_show_the_episodes(episodes):
@@ -58,18 +37,6 @@ def test_an_episode_is_lost_at_its_rung(episodes, rung, arrays):
     run = trace("askew", **arrays)(episodes)
     level = metrics.reached(run.traces["askew"], spec.ASKEW)[PLACED]
     assert metrics.RUNGS[level] == rung
-
-
-def test_the_lowest_point_of_a_tilted_cylinder_and_box(episodes):
-    one = episodes.traces["askew"]
-    half = np.pi / 8  # a turn by 45° about x
-    quat = np.zeros_like(one.object_quat)
-    quat[..., 0], quat[..., 1] = np.cos(half), np.sin(half)
-    tilted = replace(one, object_quat=quat, object_pos=np.zeros_like(one.object_pos))
-    corner = -(0.025 + 0.035) * np.sqrt(0.5)
-    for shape in ("cylinder", "box"):
-        found = ladder.lowest(tilted, replace(spec.ASKEW, shape=shape))
-        assert found == pytest.approx(np.full_like(found, corner))
 
 
 def test_a_start_over_the_bowl_is_refused():

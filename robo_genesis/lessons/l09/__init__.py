@@ -1,0 +1,1 @@
+"""L09: copy the expert."""
