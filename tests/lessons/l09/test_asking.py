@@ -8,7 +8,7 @@ import pytest
 
 from robo_genesis.lessons.l09 import remedies, spec, study
 from robo_genesis.lessons.l09.cloning import Rows
-from robo_genesis.lessons.l09.experts import CLOSE, LIFT
+from robo_genesis.lessons.l09.experts import CLOSE, LIFT, RETREAT
 from robo_genesis.lessons.l09.remedies import MOVED, Asking
 
 STARTS = np.array([[0.5, 0.0], [0.45, -0.1]])
@@ -46,11 +46,9 @@ def test_in_the_hand_they_are_solved_again_only_on_demand(
 
 def test_an_answer_steps_from_the_last_command_to_the_goal_of_its_own_object():
     rows = asked(False, 0, 2 * MOVED).rows()
-    first, second = rows.command[..., :7]
-    assert first == pytest.approx(Q[:, :7] + CASE.stride)
-    ways = CASE.stride * np.array([[1], [-1]])
-    assert second == pytest.approx(FAR[:, :7] + ways)
-    assert np.array_equal(rows.seen["last"][1], np.float32(FAR))
+    first, second = rows.command[..., :7] - [Q[:, :7], FAR[:, :7]]
+    assert first == pytest.approx(CASE.stride, abs=1e-6)
+    assert second / CASE.stride == pytest.approx(np.tile([[1], [-1]], 7), abs=1e-5)
     assert rows.used.tolist() == [[True, True], [True, False]]
 
 
@@ -61,3 +59,13 @@ def test_the_answers_of_two_episodes_of_each_network_are_learned():
     right = [16 * k + j for k in range(8) for j in range(2)]
     for of in (found.seen["q"], *found[1:]):
         assert of[0].tolist() == right
+
+
+def test_the_postures_are_those_above_the_bowl():
+    """The last joint turns the hand, and does not move it."""
+    way = np.zeros((9, 1, 7))
+    way[RETREAT, :, 6] = -0.3
+    solve = Mock(side_effect=[(GOALS, None), (GOALS + way, None)])
+    found = study.Study.postures(Mock(solve=solve))
+    assert found == pytest.approx({"joints": 0.3, "hand": 0}, abs=1e-6)
+    assert (solve.call_args[0][0] == CASE.bowl_at).all()

@@ -14,7 +14,7 @@ from robo_genesis.lessons.l09 import pages, plots, spec, text
 from robo_genesis.lessons.l09.metrics import RUNGS, Copies, copies_metrics
 
 
-def copies(good, loss, error, lost=2):
+def copies(good, loss, error, lost):
     """Return a record of eight networks: successes of 16, last loss, and error [rad].
 
     The other episodes pass the first `lost` rungs.
@@ -29,33 +29,36 @@ def copies(good, loss, error, lost=2):
     )
 
 
-PROMPT = (4, 10, 6, 7, 0, 6, 6, 6)
-FIVE = (11, 13, 12, 12, 13, 9, 11, 13)
-
-# By kind, the arguments of `copies`.
-SOUND = {
-    "waiting": (0, 0.012, 2.5e-3, 0),
-    "waiting_phase": ((0, 0, 0, 1, 1, 0, 0, 0), 3.5e-4, 1.5e-3),
-    "waiting_no_turn": (1, 0.012, 2.5e-3),
-    "waiting_both": ((1, 3, 9, 8, 2, 5, 3, 6), 4e-4, 1.29e-3),
-    "waiting_five": ((1, 0, 2, 1, 1, 2, 0, 4), 0.012, 3e-3),
-    "prompt": (PROMPT, 2.4e-3, 2.4e-3),
-    "no_turn": ((15, 15, 16, 15, 16, 14, 14, 12), 2.5e-3, 2.1e-3),
-    "delayed": (0, 0.013, 2.5e-3, 0),
-    "five": (FIVE, 4.8e-3, 3.2e-3),
-    "few": ((12, 11, 14, 12, 11, 14, 13, 13), 1.65e-3, 8e-4),
-    "always": (12, 9e-3, 6.2e-3),
-    "elsewhere": (13, 3e-3, 1e-3),
-    "more": (14, 2e-3, 6.6e-4),
-    "most": (15, 2e-3, 6.6e-4),
-    "difference": ((12, 11, 12, 9, 9, 12, 13, 13), 8e-3, 9.5e-4),
-    "floor": ((11, 9, 11, 11, 7, 11, 8, 7), 2.5e-3, 2.4e-3),
-    "last": ((5, 5, 7, 9, 3, 4, 5, 5), 1e-3, 1.5e-3),
-    "noisy": ((14, 15, 15, 15, 12, 15, 15, 10), 6e-3, 3.2e-3),
-    "longer": ((12, 10, 10, 13, 15, 9, 12, 9), 7.5e-4, 1.8e-3),
-    "own": (PROMPT, 3e-3, 2.6e-3),
-    "asked": (13, 3e-3, 1e-3),
-}
+# By kind: rungs that failures pass, last loss, error [rad], successes of all or each network.
+RECORDS = """
+waiting          0  0.012    2.5e-3   0
+waiting_phase    2  0.00035  1.5e-3   0 0 0 1 1 0 0 0
+waiting_no_turn  2  0.012    2.5e-3   1
+waiting_both     2  0.0004   1.29e-3  1 3 9 8 2 5 3 6
+waiting_five     2  0.012    3.0e-3   1 0 2 1 1 2 0 4
+prompt           2  0.0024   2.4e-3   4 10 6 7 0 6 6 6
+no_turn          2  0.0025   2.1e-3   15 15 16 15 16 14 14 12
+delayed          0  0.013    2.5e-3   0
+five             2  0.0048   3.2e-3   11 13 12 12 13 9 11 13
+few              2  0.00165  0.8e-3   12 11 14 12 11 14 13 13
+always           2  0.009    6.2e-3   12
+elsewhere        2  0.003    1.0e-3   13
+more             2  0.002    0.66e-3  14
+most             2  0.002    0.66e-3  15
+difference       2  0.008    0.95e-3  12 11 12 9 9 12 13 13
+floor            2  0.0025   2.4e-3   11 9 11 11 7 11 8 7
+last             2  0.001    1.5e-3   5 5 7 9 3 4 5 5
+noisy            2  0.006    3.2e-3   14 15 15 15 12 15 15 10
+longer           2  0.00075  1.8e-3   12 10 10 13 15 9 12 9
+own              2  0.003    2.6e-3   4 10 6 7 0 6 6 6
+asked            2  0.003    1.0e-3   13
+"""
+SOUND = {}  # By kind, the arguments of `copies`
+for line in RECORDS.strip().splitlines():
+    kind, *numbers = line.split()
+    lost, loss, error, *good = map(float, numbers)
+    SOUND[kind] = good, loss, error, lost
+PROMPT = SOUND["prompt"][0]
 STILL = np.zeros((2, len(LINKS), 3))
 POSTURES = {"joints": 0.3, "hand": 1e-3}
 
@@ -63,8 +66,7 @@ POSTURES = {"joints": 0.3, "hand": 1e-3}
 def of(name, *good, **parts):
     """Give a kind of clones other successes, or another loss, error or lost rung."""
     given = good + SOUND[name][len(good) :]
-    names = ("good", "loss", "error", "lost")
-    one = dict(zip(names, given, strict=False)) | parts
+    one = dict(zip(("good", "loss", "error", "lost"), given, strict=True)) | parts
     return with_trace(name, lambda run: copies(**one))
 
 
@@ -117,6 +119,7 @@ SPOILED = {
             of("waiting_no_turn", SEVENTEEN),
             of("prompt", 15),
             of("waiting_both", 15),
+            of("no_turn", ONE),
         ],
         "error_does_not_rank": [
             of("waiting_phase", error=2.5e-3),
