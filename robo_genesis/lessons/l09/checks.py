@@ -147,11 +147,11 @@ def silent_input_harms(run: Experiment) -> Findings:
 
 def noise_helps(run: Experiment) -> Findings:
     """With noise in the demonstrations clones succeed more often, by the interval of the
-    difference, and their error is larger.
+    difference, and their error is more than half as large.
     """
     yield above("noisy.more", difference(run, "noisy", "prompt")[1], 0)
     error = run.metrics["prompt"].error
-    yield above("noisy.error_rad", run.metrics["noisy"].error, error)
+    yield above("noisy.error_rad", run.metrics["noisy"].error, error / 2)
 
 
 def relative_outputs_help(run: Experiment) -> Findings:

@@ -27,6 +27,10 @@ def losses(run: Experiment, name: str) -> Figure:
     trace = run.traces[name]
     for loss in 100 * trace.loss.T:
         ax.semilogy(trace.t[1:], loss, **look("baseline") | {"lw": 0.9})
+    least = 100 * trace.loss.min()
+    ticks = [tick for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10) if tick >= least]
+    ax.set_yticks(ticks, map(str, ticks))
+    ax.minorticks_off()
     ax.set(xlabel="step of the optimiser", ylabel="loss [%]")
     ax.set_title("The loss of eight networks")
     return figure
@@ -60,7 +64,7 @@ def orders(run: Experiment, *names: str) -> Figure:
 
 def networks(run: Experiment, *names: str) -> Figure:
     """Draw the rate of each network as a point, and the interval of their mean."""
-    figure, ax = plotting.axes(0.9 + 0.55 * len(names))
+    figure, ax = plotting.axes(0.8 + 0.6 * len(names))
     for row, name in enumerate(reversed(names)):
         shares = 100 * run.traces[name].shares
         ends = 100 * np.array(interval(run.traces[name]))
@@ -70,7 +74,8 @@ def networks(run: Experiment, *names: str) -> Figure:
         ax.plot(
             [shares.mean()], [row + 0.28], "|", ms=8, color=look("baseline")["color"]
         )
-    labels = [spec.LABELS[name] for name in reversed(names)]
-    ax.set_yticks(range(len(names)), labels)
-    ax.set(xlabel="success [%]", xlim=(-3, 103))
+        ax.text(0, row + 0.36, spec.LABELS[name], va="bottom")
+    ax.set(
+        xlabel="success [%]", xlim=(-3, 103), ylim=(-0.4, len(names) - 0.1), yticks=()
+    )
     return figure

@@ -144,7 +144,7 @@ SPOILED = {
     },
     "inputs": {
         "silent_input_harms": [of("no_turn", FIVES), of("floor", 5), of("floor", 15)],
-        "noise_helps": [of("noisy", PROMPT[::-1]), of("noisy", error=2.3e-3)],
+        "noise_helps": [of("noisy", PROMPT[::-1]), of("noisy", error=1.1e-3)],
         "relative_outputs_help": [
             of("difference", PROMPT[::-1]),
             of("difference", error=2.5e-3),
