@@ -15,9 +15,9 @@ def difference(run: Experiment, name: str, base: str) -> tuple[float, float, flo
 
 
 def experts_succeed(run: Experiment) -> Findings:
-    """Each expert succeeds in all 128 episodes."""
+    """Each expert succeeds in at least 120 of 128 episodes."""
     for name, good in run.readings["experts"].items():
-        yield equal(f"{name}.success", good, len(spec.SHOWN))
+        yield above(f"{name}.success", good, 119.5)
 
 
 def trained(run: Experiment) -> Findings:

@@ -166,7 +166,7 @@ def test_each_check_fails_for_a_spoiled_run(runs, page):
     expert, *_ = run.readings["experts"]
     everywhere = {
         "structure": [reading("model", "links", 10)],
-        "experts_succeed": [reading("experts", expert, 127)],
+        "experts_succeed": [reading("experts", expert, 119)],
         "trained": [of(kind, loss=0.21), trace(kind, weights=np.arange(8) % 7)],
     }
     require_spoilers(run, each(everywhere | SPOILED[page]))
