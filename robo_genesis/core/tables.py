@@ -39,12 +39,12 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def as_table(rows: Callable[[Experiment], Rows]) -> Callable[[Experiment], str]:
+def as_table(rows: Callable[..., Rows]) -> Callable[..., str]:
     """Make a function that returns a Markdown table of one that yields its rows."""
 
     @wraps(rows)
-    def table(run: Experiment) -> str:
-        return markdown([*rows(run)])
+    def table(run: Experiment, *arguments: Any) -> str:
+        return markdown([*rows(run, *arguments)])
 
     return table
 

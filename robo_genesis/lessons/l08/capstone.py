@@ -107,7 +107,7 @@ class Work:
         trace, batch = picking.run(world, joints, case)
         runs[name], page.traces[name] = replace(runs[name], case=case), trace
         if name == "own":
-            runs["first"] = replace(runs["first"], case=spec.one(0, case))
+            runs["first"] = replace(runs["first"], case=case.episode(0))
             page.traces["first"] = batch.trace(0)
             page.capture(world.cameras["world"], "final")
             world.scene.reset()

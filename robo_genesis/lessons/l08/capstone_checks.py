@@ -179,7 +179,7 @@ CHECKS = (
 CAPSTONE: MeasuringPage = with_functions(
     MeasuringPage(
         runs=runs_of(
-            {"first": spec.one(0, capstone.CASES["own"])},
+            {"first": capstone.CASES["own"].episode(0)},
             False,
             "the first episode of `own`, at all its steps",
             Trace,

@@ -15,7 +15,6 @@ from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, FloatArray, read_only
 from robo_genesis.sim.arm import franka, lifting, reaching
 from robo_genesis.sim.arm.picking import PickCase
-from robo_genesis.sim.bodies.table import SceneCase
 from robo_genesis.sim.camera import film
 
 from . import creep
@@ -103,27 +102,10 @@ PLACES = ((0.0, -0.5), (0.0, 0.5), (-1.4, -0.5), (-1.4, 0.5))
 # How many rungs each of them reaches; not fitted to a run.
 REACH = {"placed": 7, "slipped": 3, "tipped": 2, "pushed": 1}
 
-
-def one(row: int, of: PickCase = ASKEW) -> SceneCase:
-    """Return the settings of one episode of a batch, at all its outer steps."""
-    control = of.control
-    return SceneCase(
-        shape=of.shape,
-        size=of.size,
-        place=(*of.starts[row].tolist(), 0.0),
-        ball_radius=0.0,
-        kp=of.kp,
-        kv=of.kv,
-        steps=control.steps,
-        dt=control.dt,
-        substeps=control.substeps,
-    )
-
-
-EPISODES = {name: one(row) for name, row in SHOWN.items()}
+EPISODES = {name: ASKEW.episode(row) for name, row in SHOWN.items()}
 
 # The episode of `EXACT` that the lab has at all its outer steps.
-LAB_EPISODE = {"one": one(0, EXACT)}
+LAB_EPISODE = {"one": EXACT.episode(0)}
 
 # Films of the lab; they show the first environments of `EXACT` in their order.
 FILMS = ("film_0", "film_1", "film_2")

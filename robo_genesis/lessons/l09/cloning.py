@@ -254,7 +254,6 @@ class Acting:
     ) -> None:
         self.clones = clones
         self.beside = KINDS[clones.training.expert](case, goals, accepted)
-        self.accepted = accepted
         self.last = self.beside.command.copy()
         self.seen: list[dict[str, FloatArray]] = []
         self.ahead: FloatArray = np.zeros((len(accepted), 0, self.last.shape[1]))

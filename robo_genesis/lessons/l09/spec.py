@@ -5,7 +5,9 @@ computes nothing. `parameters()` has the values that decide what runs; all other
 only judge.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,7 +17,6 @@ from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA
 from robo_genesis.sim.arm import franka, lifting, reaching
 from robo_genesis.sim.arm.picking import PickCase
-from robo_genesis.sim.bodies.table import SceneCase
 
 from .settings import Training, spread
 
@@ -96,27 +97,14 @@ LAB = {"own": LOOKING, "asked": replace(LOOKING, answers="elsewhere")}
 # The episode that the replay shows, among those of `TRIED`.
 ROW = 5
 
-
-def one(row: int, of: PickCase = TRIED) -> SceneCase:
-    """Return the settings of one episode of a batch."""
-    control = of.control
-    return SceneCase(
-        shape=of.shape,
-        size=of.size,
-        place=(*of.starts[row].tolist(), 0.0),
-        ball_radius=0.0,
-        kp=of.kp,
-        kv=of.kv,
-        steps=control.steps,
-        dt=control.dt,
-        substeps=control.substeps,
-    )
-
-
 # What is shown at one start: the expert, its clone, and the clone with five commands.
-EPISODES = {"expert": one(ROW), "clone": one(ROW), "chunk": one(ROW)}
-LAB_EPISODE = {"one": one(ROW, DEMONSTRATED)}
-ASKED_EPISODES = {"before": one(ROW), "after": one(ROW)}
+EPISODES = {
+    "expert": TRIED.episode(ROW),
+    "clone": TRIED.episode(ROW),
+    "chunk": TRIED.episode(ROW),
+}
+LAB_EPISODE = {"one": DEMONSTRATED.episode(ROW)}
+ASKED_EPISODES = {"before": TRIED.episode(ROW), "after": TRIED.episode(ROW)}
 
 VIEW = CAMERA | {"pos": (1.05, -0.4, 1.0), "lookat": (0.45, 0.0, 0.0)}
 
@@ -163,9 +151,15 @@ TOLERANCES |= dict.fromkeys([*CASES, *ANSWERS, *CHANGED, *LAB], (64.0, 0.0))
 RELATIONS: tuple[Any, ...] = ()
 
 
-def parameters(kinds: Any = None, episodes: Any = None) -> dict[str, Any]:
+def parameters(
+    kinds: Mapping[str, Any], episodes: Mapping[str, Any] = MappingProxyType({})
+) -> dict[str, Any]:
     """Return every configured input of a page as JSON values, for the evidence key."""
-    scenes = {"shown": DEMONSTRATED, "tried": TRIED, "asked": QUESTIONED}
-    kinds = CASES if kinds is None else kinds
-    cases = kinds | scenes | (episodes or {})
-    return inputs(cases, VIEW, held_out=HELD_OUT, answered=ANSWERED)
+    scenes = {
+        "demonstrated_batch": DEMONSTRATED,
+        "tried_batch": TRIED,
+        "questioned_batch": QUESTIONED,
+    }
+    return inputs(
+        {**kinds, **scenes, **episodes}, VIEW, held_out=HELD_OUT, answered=ANSWERED
+    )

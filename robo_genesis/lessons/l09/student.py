@@ -9,7 +9,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Demonstrations
 
 from . import spec
-from .cloning import LEAST, Clones, Rows, Scale, chunks, fit
+from .cloning import LEAST, Clones, Rows, Scale, fit
 from .settings import Training
 
 Written = Callable[..., Any]  # A function that a student wrote
@@ -62,7 +62,7 @@ class Own(Clones):
         q, place, turn = x[:, :9], x[:, 9:12], x[:, 12:]
         seen = {"q": q, "place": place, "turn": turn}
         inputs = self.inputs(seen)
-        outputs = (chunks(y[:, None], 1)[:, 0] - self.offset(seen)).reshape(len(x), -1)
+        outputs = (y[:, None] - self.offset(seen)).reshape(len(x), -1)
         self.given = Scale(*scale(inputs, used, training.least))
         self.made = Scale(*scale(outputs, used, LEAST))
         self.losses, self.layers = fit(

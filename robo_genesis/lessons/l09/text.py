@@ -1,9 +1,5 @@
 """Tables and sentences of L09, each a function of the experiment."""
 
-from collections.abc import Callable
-from functools import wraps
-from typing import Any
-
 import numpy as np
 
 from robo_genesis.core import statistics, tables
@@ -15,16 +11,6 @@ from . import spec
 from .metrics import RUNGS, Copies
 
 MEASURES = False
-
-
-def as_table(rows: Callable[..., tables.Rows]) -> Callable[..., str]:
-    """Make a function that returns a table of one that yields its rows."""
-
-    @wraps(rows)
-    def table(run: Experiment, *names: Any) -> str:
-        return tables.markdown([*rows(run, *names)])
-
-    return table
 
 
 def percent(low: float, high: float) -> str:
@@ -63,14 +49,14 @@ def learned(run: Experiment, name: str) -> dict[str, str]:
     }
 
 
-@as_table
+@tables.as_table
 def kind_table(run: Experiment, head: str, *names: str) -> tables.Rows:
     """Return rates of kinds of clones."""
     for name in names:
         yield {head: spec.LABELS[name]} | rate(run.traces[name])
 
 
-@as_table
+@tables.as_table
 def order_table(run: Experiment, head: str, *names: str) -> tables.Rows:
     """Return losses, errors and rates of kinds, the smallest error first."""
     for name in sorted(names, key=lambda one: run.metrics[one].error):
@@ -78,7 +64,7 @@ def order_table(run: Experiment, head: str, *names: str) -> tables.Rows:
         yield {head: spec.LABELS[name]} | row
 
 
-@as_table
+@tables.as_table
 def change_table(run: Experiment, head: str, base: str, *names: str) -> tables.Rows:
     """Return losses, errors and rates of kinds, and the difference to another one's rate.
 
@@ -95,7 +81,7 @@ def change_table(run: Experiment, head: str, base: str, *names: str) -> tables.R
         yield row | {"difference [points]": more}
 
 
-@as_table
+@tables.as_table
 def network_table(run: Experiment, head: str, *names: str) -> tables.Rows:
     """Return the successes of each network, and how they spread beside those of fair tosses."""
     for name in names:
@@ -111,14 +97,14 @@ def network_table(run: Experiment, head: str, *names: str) -> tables.Rows:
         }
 
 
-@as_table
+@tables.as_table
 def rung_table(run: Experiment, *names: str) -> tables.Rows:
     """Return how many episodes pass each rung and those before it."""
     for rung in RUNGS:
-        counts = {
+        passed = {
             spec.LABELS[name]: int(getattr(run.metrics[name], rung)) for name in names
         }
-        yield {"rung": rung} | counts
+        yield {"rung": rung} | passed
 
 
 def counts(trace: Copies) -> np.ndarray:

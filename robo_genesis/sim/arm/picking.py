@@ -107,6 +107,21 @@ class PickCase(SceneCase):
             case, dt=self.dt / n, substeps=self.substeps // n, steps=self.steps * n
         )
 
+    def episode(self, row: int) -> SceneCase:
+        """Return the settings of one episode, at all its outer steps."""
+        control = self.control
+        return SceneCase(
+            shape=self.shape,
+            size=self.size,
+            place=(*self.starts[row].tolist(), 0.0),
+            ball_radius=0.0,
+            kp=self.kp,
+            kv=self.kv,
+            steps=control.steps,
+            dt=control.dt,
+            substeps=control.substeps,
+        )
+
     @property
     def waypoints(self) -> list[FloatArray]:
         """Positions (e, 3) of the hand [m]: pregrasp, grasp, lifted, above the bowl, at release."""

@@ -137,7 +137,7 @@ def test_data_of_the_lesson_and_of_what_the_page_imports_is_in_its_evidence_key(
 # What a measuring module may call that is in no evidence key: places, words and
 # judgements, and what makes cases, which `parameters()` has.
 OUTSIDE_OF_KEYS = re.compile(
-    r"core\.(project|text)|sim\.(\w+\.)?laws|lessons\.(l07\.spec\.lift_of|l08\.spec\.(one|starts))"
+    r"core\.(project|text)|sim\.(\w+\.)?laws|lessons\.(l07\.spec\.lift_of|l08\.spec\.starts)"
 )
 
 
